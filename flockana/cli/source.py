@@ -1,4 +1,4 @@
-"""Where positions come from: a saved run, a CSV, an equilibrium's file, or a builder such as ``square:4x5``."""
+"""Sources of positions: saved runs, CSV files, equilibria, and builders such as ``square:4x5``."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _BUILDERS: dict[str, tuple[Callable[..., FloatArray], str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Positions, with the scale and the range that they are to be measured with."""
+    """Positions with their scale and range."""
 
     name: str  # what was asked for
     q: FloatArray  # shape (n, m)
@@ -86,7 +86,7 @@ def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r:
 
 
 def integrated_law(law: Any) -> Any:
-    """The continuous law that a scheme integrates; any other law, and None, as it is.
+    """Return the continuous law behind a scheme; other laws and None unchanged.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
 
 
 def builders() -> tuple[str, ...]:
-    """Every builder with the form of its size.
+    """Return every builder with the form of its size.
 
     Examples
     --------
@@ -148,7 +148,7 @@ def builders() -> tuple[str, ...]:
 
 
 def build(text: str, d: float) -> tuple[FloatArray, float]:
-    """Positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
+    """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
 
 
 def read_csv(path: Path) -> FloatArray:
-    """Positions from a CSV: a row for each agent, one to three columns, a header or none."""
+    """Return positions from a CSV with a row per agent, one to three columns, with or without a header."""
     try:
         rows = csv.reader(StringIO(read_whole(path).removeprefix("\ufeff"), newline=""))
         lines = [(k, row) for k, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]

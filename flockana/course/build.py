@@ -1,4 +1,4 @@
-"""Lectures as notebooks: for students without our solutions, for lecturers with them, and the files that go with them.
+"""Building of lectures as notebooks, for students and with solutions, with the files that they need.
 
 A lecture is a text in jupytext's percent format whose cells are tagged: ``exercise`` poses, ``answer`` is what the
 student fills in, ``solution`` is our answer, and ``check`` grades it by one call of `grade`. ``facts`` asserts what the
@@ -59,13 +59,13 @@ class Exercise:
 
 
 def lectures() -> Path:
-    """The folder that holds the sources: in the package where it is installed, in the checkout where it is not."""
+    """Return the folder of lecture sources, in the installed package or in the checkout."""
     shipped = _PACKAGE / "lectures"
     return shipped if shipped.is_dir() else _CHECKOUT / "notebooks"
 
 
 def sources() -> list[Path]:
-    """The lectures, in the order in which they are taught."""
+    """Return the lectures in teaching order."""
     files = {number_of(path): path for path in lectures().glob("*.py")}
     return [files[lecture.number] for lecture in course_map(lectures())]
 
@@ -95,13 +95,13 @@ def notebook(source: Path, version: str) -> Any:
 
 
 def _install(source: Path) -> Any:
-    """A cell that installs flockana where it is missing, as on Colab, with what this lecture imports from beside it."""
+    """Return a cell that installs flockana and fetches companion files where they are missing, as on Colab."""
     lines = _INSTALL + (_COMPANIONS if needs_companions(source) else "")
     return nbformat.v4.new_code_cell(lines, metadata={"tags": ["install"], "jupyter": {"source_hidden": True}})
 
 
 def needs_companions(source: Path) -> bool:
-    """Whether a lecture imports from folders beside it."""
+    """Return whether a lecture imports from folders beside it."""
     return any(f"from {name}." in source.read_text(encoding="utf-8") for name in ("own_law", "proofs"))
 
 
@@ -125,7 +125,7 @@ def _head(text: str, source: Path) -> tuple[int, int, int, str]:
 
 
 def asked(check: str) -> tuple[str, str]:
-    """The variable that a check looks at, and the form of its answer.
+    """Return the variable that a check reads, and the form of its answer.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def asked(check: str) -> tuple[str, str]:
 
 
 def form_check(check: str) -> str:
-    """What a student's copy has in the place of a check: a look at the form of the answer.
+    """Return the check in a student's copy, which tests the form of the answer only.
 
     Examples
     --------
@@ -159,14 +159,14 @@ def form_check(check: str) -> str:
 
 
 def write(folder: Path, version: str = "student") -> list[Path]:
-    """Write a version of all lectures, and what they import or show, so that they run there."""
+    """Write a version of all lectures with everything that they import or show."""
     books = {f"{source.stem}.ipynb": notebook_bytes(notebook(source, version)) for source in sources()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
     return deliver(folder, books | pages | companions())[: len(books)]
 
 
 def companions() -> dict[str, bytes]:
-    """What lectures import, by name: the law of lecture 11, and the files of `proofs` that its proof needs."""
+    """Return the files that lectures import, by name."""
     law, shipped = lectures() / "own_law", lectures() / "proofs"
     proofs = shipped if shipped.is_dir() else _CHECKOUT / "proofs"
     found = {path: f"own_law/{path.relative_to(law).as_posix()}" for path in sorted(law.rglob("*")) if path.is_file()}

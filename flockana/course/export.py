@@ -77,7 +77,7 @@ def _assignment(source: Path) -> str:
 
 
 def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
-    """Raw cells bound the parts of a question; the hidden test has all its points, and is not in the student's copy."""
+    """Export for Otter: raw cells delimit a question, and the hidden test carries its points."""
     by_hand = exercise.form == "text"
     head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
     yield _raw(head + "\nmanual: true" * by_hand)
@@ -100,7 +100,7 @@ def _scored(points: int, *, hidden: bool) -> str:
 
 
 def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
-    """Metadata say what a cell is; what stands between ``### BEGIN`` and ``### END`` is not in the student's copy."""
+    """Export for nbgrader: cell metadata, and solutions between ``### BEGIN`` and ``### END``."""
     by_hand = exercise.form == "text"
     yield nbformat.v4.new_markdown_cell(text.source)
     answer = nbformat.v4.new_code_cell(

@@ -1,4 +1,4 @@
-"""Pictures that a slider or a film goes through, drawn beforehand: they move wherever a notebook or its HTML is shown.
+"""Precomputed pictures for sliders and films, usable in notebooks and their HTML.
 
 No kernel has to answer a slider, so that lectures run without widgets, headless too, and keep working when exported.
 """
@@ -42,7 +42,7 @@ if (button) button.onclick = () => {{
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Pictures, one for each value: a notebook shows them behind a slider."""
+    """Slider over a sequence of pictures."""
 
     pictures: tuple[bytes, ...]  # as PNG
     texts: tuple[str, ...]  # the values, as they are shown
@@ -53,11 +53,11 @@ class Frames:
     seconds: float = 0.0  # of a film; 0 for a slider
 
     def __repr__(self) -> str:
-        """One line."""
+        """Return a one-line description."""
         return f"<{len(self.pictures)} pictures of {self.title}, {self.name} from {self.texts[0]} to {self.texts[-1]}>"
 
     def html(self) -> str:
-        """The page that shows them, which needs neither network nor other files."""
+        """Return a self-contained page with the pictures."""
         sources = ["data:image/png;base64," + base64.b64encode(each).decode() for each in self.pictures]
         return _PAGE.format(
             title=escape(self.title),
@@ -81,7 +81,7 @@ class Frames:
 
 
 def _as_script(value: Any) -> str:
-    """As a literal of a script, in which nothing can end the script."""
+    """Return a JSON literal that cannot end its script."""
     return json.dumps(value).replace("<", "\\u003c")
 
 

@@ -16,7 +16,7 @@ _ROUNDING = 1e-9  # of the right answer: what double precision may leave of an e
 
 @dataclass(frozen=True)
 class Grade:
-    """What became of an answer; shows itself in a notebook.
+    """Result of grading an answer, shown in a notebook.
 
     Examples
     --------
@@ -36,7 +36,7 @@ class Grade:
 def grade(
     answer: Any, right: Any, *, digits: int | None = None, within: float | None = None, hint: str = "", form: str = ""
 ) -> Grade:
-    """Compare an answer with the right one, or ask a function whether it is right.
+    """Grade an answer against the right one, or by a function.
 
     A number counts to the precision that the question asks for, and no wider: to so many significant `digits`, that is
     half a unit of the last of them, or `within` so much. Without either, to rounding.
@@ -136,7 +136,7 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
 
 
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
-    """Whether each answer is one of the right ones, and each of those is given once."""
+    """Return whether the answers match the right ones one to one."""
     for b in rights:
         found = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
         if found is None:

@@ -1,4 +1,4 @@
-"""What all lectures share, from two tables beside them: the map of the course, notation and references."""
+"""Headers, references and map of the course, from two tables."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Lecture:
 
 
 def number_of(source: Path) -> str:
-    """The number of a lecture, from the name of its file.
+    """Return the number of a lecture from its file name.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def number_of(source: Path) -> str:
 
 
 def course_map(folder: Path) -> list[Lecture]:
-    """The lectures in the order in which they are taught."""
+    """Return the lectures in teaching order."""
     table = tomllib.loads((folder / "lectures.toml").read_text(encoding="utf-8"))
     files = {number_of(path): path for path in sorted(folder.glob("[0-9A][0-9]*_*.py"))}
     if set(table) != set(files):
@@ -88,7 +88,7 @@ def as_text(bibtex: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """TeX's accents as letters, without its braces."""
+    """Convert TeX accents to letters and drop braces."""
     accented = re.sub(r"\\([\"'])(\w)", lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]), text)
     return re.sub(r"[{}~]", "", accented).replace("--", "-")
 
@@ -112,7 +112,7 @@ def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
 
 
 def header(lecture: Lecture, folder: Path) -> str:
-    """What stands below a lecture's title: what goes before, how long it takes, and its symbols."""
+    """Return the header of a lecture: prerequisites, duration, symbols."""
     before = ", ".join(lecture.after) or "none"
     symbols = "\n".join(_rows(notation(folder), lecture.number))
     return (
@@ -122,7 +122,7 @@ def header(lecture: Lecture, folder: Path) -> str:
 
 
 def references(lecture: Lecture) -> str:
-    """What stands at a lecture's end."""
+    """Return the references of a lecture."""
     lists = (("References", lecture.references), ("Further reading", lecture.further))
     return "\n\n".join(f"## {title}\n\n" + "\n".join(f"- {text}" for text in texts) for title, texts in lists)
 
@@ -135,7 +135,7 @@ def notation_page(folder: Path) -> str:
 
 
 def map_page(folder: Path) -> str:
-    """The map of the course, in Markdown: its lectures, what each builds on, and a drawing for Mermaid."""
+    """Return the course map in Markdown: lectures, their prerequisites, and a Mermaid drawing."""
     lectures = course_map(folder)
     rows = "\n".join(f"| {e.number} | {e.title} | {', '.join(e.after) or '–'} | {e.minutes} |" for e in lectures)
     arrows = "\n".join(f"    L{before} --> L{each.number}" for each in lectures for before in each.after)

@@ -39,7 +39,7 @@ def slides(source: Path) -> Any:
 
 
 def _parts(cell: Any) -> Iterator[Any]:
-    """A cell of text as one for each heading; any other as it is."""
+    """Split a text cell at its headings; return other cells unchanged."""
     if cell.cell_type != "markdown":
         yield cell
         return
@@ -57,11 +57,11 @@ def _kind(cell: Any, before: Any) -> str:
 
 
 def shown() -> list[Path]:
-    """What has slides: an assignment has none, as it is handed out."""
+    """Return the lectures with slides; assignments have none."""
     return [source for source in sources() if not source.name.startswith("A")]
 
 
 def write_slides(folder: Path) -> list[Path]:
-    """Write all lectures as slides, and what they import."""
+    """Write all lectures as slides, with the files that they import."""
     books = {f"{source.stem}.ipynb": notebook_bytes(slides(source)) for source in shown()}
     return deliver(folder, books | companions())[: len(books)]

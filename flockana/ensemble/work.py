@@ -1,4 +1,4 @@
-"""One run of an ensemble, from names and numbers to a plain record; what a worker executes."""
+"""Execution of one run of an ensemble, from names and numbers to a plain record."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of every run of an ensemble; names and numbers only, so it can be sent to any machine."""
+    """Request for every run of an ensemble; names and numbers only, so it can be sent."""
 
     scenario: str  # a name of the catalogue, or ``"module:function"``
     # which to check; by default all of the scenario's own and what its source reports
@@ -50,7 +50,7 @@ class Request:
 
 @dataclass(frozen=True)
 class Record:
-    """What an ensemble keeps of one run."""
+    """Record of one run of an ensemble."""
 
     job: Job  # which run
     status: str  # complete; ended early by the integrator; raised an error; or ended its worker process
@@ -63,7 +63,7 @@ class Record:
     seconds: float = 0.0  # wall time of simulating and checking: the one entry that differs from run to run
 
     def to_json(self, key: str = "") -> str:
-        """As text that gives every number back to the bit (NaN and infinities in Python's spelling), with a digest."""
+        """Return JSON that restores every number exactly (NaN and infinities in Python's spelling), with a digest."""
         data = asdict(self)
         return json.dumps({**data, SEAL: digest([key, data])}, ensure_ascii=False)
 
@@ -125,7 +125,7 @@ def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
 
 
 def run_one(request: Request, job: Job) -> Record:
-    """Make one run; whatever goes wrong becomes part of its record."""
+    """Make one run; errors become part of its record."""
     started = time.perf_counter()
     try:
         with interrupts_recognised():

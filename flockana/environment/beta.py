@@ -1,4 +1,4 @@
-"""Several obstacles together: sums over their β-agents, and whether they leave a start free."""
+"""Sums over the β-agents of several obstacles, and checks of starts among them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OUTWARD = 1e-6  # how far beyond the surface a push ends, relative to its lengt
 
 
 class Kind(NamedTuple):
-    """All obstacles of one kind, as the compiled sums take them."""
+    """Obstacles of one kind, as arrays for the compiled sums."""
 
     kernels: ObstacleKernels
     obstacles: tuple[Obstacle, ...]
@@ -45,7 +45,7 @@ class BetaLinks(NamedTuple):
 
 @dataclass(frozen=True)
 class ObstacleField:
-    """Obstacles and the interaction that keeps agents off them."""
+    """Obstacles with their interaction."""
 
     obstacles: tuple[Obstacle, ...]  # any kinds, of one dimension; they may overlap
     beta: BetaInteraction  # clearance d', range r'
@@ -79,7 +79,7 @@ class ObstacleField:
         return total
 
     def hessian_blocks(self, q: FloatArray) -> FloatArray:
-        """Hessian of `potential_energy`: its diagonal blocks (n, m, m); the others vanish."""
+        """Return the diagonal blocks (n, m, m) of the Hessian of `potential_energy`; the others vanish."""
         n, m = q.shape
         blocks = np.zeros((n, m, m))
         for obstacle in self.obstacles:
@@ -113,7 +113,7 @@ class ObstacleField:
 
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
-    """Raise if an agent is inside or on the surface of an obstacle; the first such agent is named."""
+    """Raise if an agent is inside or on an obstacle; the error names the first one."""
     inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
     agents = np.flatnonzero(inside.any(axis=0))
     if agents.size == 0:
@@ -135,7 +135,7 @@ def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
 
 
 def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray | None:
-    """Push a point out of one obstacle after the other until it is outside all of them."""
+    """Push a point out of the obstacles until it is outside all."""
     here = point[None, :].copy()
     for _ in range(_PUSHES):
         depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]

@@ -53,7 +53,7 @@ class Obstacle(ABC):
     @property
     @abstractmethod
     def ball(self) -> tuple[FloatArray, float]:
-        """(centre, radius) of a ball that holds the obstacle; the radius is infinite if none does."""
+        """Return (centre, radius) of a bounding ball; the radius is infinite without one."""
 
     @property
     def dimension(self) -> int:

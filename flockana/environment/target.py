@@ -1,4 +1,4 @@
-"""What a γ-agent is: where it is, how it moves, and what it tells the law."""
+"""Interface of γ-agents: position, velocity, and the velocity reported to the law."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Target(ABC):
 
     @property
     def harmonic(self) -> Harmonic | None:
-        """The path in closed form, for compiled integrators; None if it is of another form."""
+        """Return the path in closed form for compiled integrators, or None."""
         return None
 
     def mismatch(self, times: npt.ArrayLike) -> float:

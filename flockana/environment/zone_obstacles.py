@@ -1,4 +1,4 @@
-"""What zone-based flocking avoids: polygons of any simple shape, and the walls of a box.
+"""Obstacles of zone-based flocking: simple polygons and the walls of a box.
 
 Discs and balls are `flockana.environment.obstacles.Sphere`. A `SimplePolygon` need not be convex, so it has no
 β-agents and is no `Obstacle` of Algorithm 3.
@@ -94,7 +94,7 @@ class SimplePolygon:
         return signed
 
     def holds(self, point: FloatArray) -> bool:
-        """Whether one point is inside or on the boundary; to tell that needs no compiled code.
+        """Return whether a point is inside or on the boundary, without compiled code.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The energy that it takes to bring two agents together, and the flock sizes beyond which no state is below c*.
+"""Energy needed to bring two agents together, and flock sizes beyond which no state is below c*.
 
 All energies here are those of V, to be multiplied by c1α.
 """
@@ -99,7 +99,7 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 
 
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
-    """Lengths between which a pair has ψ_α < ψ_α(r_α), so that it lowers V below that of pairs out of range.
+    """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V.
 
     They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
 
@@ -166,7 +166,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
 
 
 def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Least n from which on, provably, no state at all has V < c*, so that Theorem 1(iii) is empty; None if unknown.
+    """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
 
 
 def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Largest n of which an exact α-lattice has V < c*; None where κ is too large for these lattices, or m = 3.
+    """Return the largest n whose exact α-lattice has V < c*; None where κ is too large, or m = 3.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Minima of U_λ as λ/c1α grows, and the ratio from which on agents coincide (erratum E11)."""
+"""Minima of U_λ reached from a lattice, against its size and the ratio c1γ/c1α."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NUDGE = 1e-4  # of d: a symmetric start would be squeezed along its symmetry, p
 
 @dataclass(frozen=True)
 class CollapseDiagram:
-    """Minima of U_λ that a lattice relaxes to, against its size and the ratio λ/c1α = c1γ/c1α."""
+    """Minima of U_λ reached from a lattice, against its size and the ratio c1γ/c1α."""
 
     sizes: npt.NDArray[np.int64]  # shape (N,)
     ratios: FloatArray  # shape (L,): c1γ/c1α
@@ -41,7 +41,7 @@ class CollapseDiagram:
 
 
 def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
-    """Algorithm 2 with c1α = 1 and c1γ = ratio, its γ-agent at rest at the origin.
+    """Return Algorithm 2 with c1α = 1, c1γ = ratio and a γ-agent at rest at the origin.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
 
 
 def nudged(q: FloatArray, d: float) -> FloatArray:
-    """A configuration disturbed by 1e-4 d, always in the same way, so that it does not stay at a symmetric saddle.
+    """Return a configuration with a fixed perturbation of 1e-4 d, to leave symmetric saddles.
 
     Examples
     --------

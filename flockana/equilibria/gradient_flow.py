@@ -1,4 +1,4 @@
-"""The gradient flow q' = −∇U of a law's structural potential, followed to its limit: an equilibrium downhill."""
+"""Gradient flow q' = −∇U of a law's structural potential, to its limit."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
 
 
 def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
-    """Where Newton's method leads from q, and the relative force there."""
+    """Return the result of Newton's method from q, and the relative force there."""
     scale = law.scales.force
     for _ in range(_NEWTON_STEPS):
         residual = structural_force(law, q)

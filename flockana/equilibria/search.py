@@ -80,7 +80,7 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
 
 @dataclass(frozen=True)
 class Distinct:
-    """An equilibrium that a search came to, once or more often."""
+    """Equilibrium found by a search, with its number of hits."""
 
     equilibrium: Equilibrium  # the first of those that are the same but for a rigid motion and the numbering
     count: int  # how many starts ended there
@@ -124,7 +124,7 @@ def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
 
 
 def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None) -> Search:
-    """Find the equilibria that many starts lead to, each once.
+    """Find the distinct equilibria reached from many starts.
 
     Examples
     --------

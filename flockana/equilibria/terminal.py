@@ -1,4 +1,4 @@
-"""The last state of a run: its distance from equilibrium, its links, and its second-order character."""
+"""Last state of a run: distance from equilibrium, links, second-order character."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
-    """The structural potential about a configuration; None where its Hessian is too large for the whole spectrum.
+    """Return the structural potential about a configuration; None where its Hessian is too large.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a page asks for: a start with changed numbers and moved agents; as a law and a flock, and as Python."""
+"""Cases of the page: a start with changed parameters and moved agents, as law and flock and as Python."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
 
 @dataclass(frozen=True)
 class Case:
-    """A start and what was changed of it.
+    """Start with its changes.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class Case:
 
     @classmethod
     def of(cls, asked: Any) -> Case:
-        """A case from what a page sent."""
+        """Return the case described by a message of the page."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
         moved = asked.get("moved") or {}
@@ -63,11 +63,11 @@ class Case:
 
     @property
     def untouched(self) -> bool:
-        """Whether nothing is changed."""
+        """Return whether nothing is changed."""
         return not (self.changes or self.moved or self.duration)
 
     def start(self) -> Start:
-        """What it starts from."""
+        """Return the start without changes."""
         if self.kind == "file":
             return from_file(self.name)
         if self.kind == "law":
@@ -76,7 +76,7 @@ class Case:
 
     @property
     def parts(self) -> Start:
-        """The start with all that is changed, and the Python that makes it; a law that refuses a number says so."""
+        """Return the changed start and its Python; a value refused by the law raises."""
         start = self.start()
         tree, lines = tree_of(start.law, self.changes), list(start.lines)
         law, q0 = changed(start.law, tree), start.q0.copy()

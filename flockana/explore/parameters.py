@@ -1,4 +1,4 @@
-"""The numbers in a law by their paths: listed, replaced, and the replacement written as Python.
+"""Numeric parameters of a law by path: listing, replacement, and replacement as Python.
 
 A page changes numbers and nothing else: it names a path that the law has and gives a number, or a vector of as many.
 What they may be the law's own classes say, which check them as they do when a program makes them.
@@ -32,7 +32,7 @@ class Number:
 
 
 def numbers(law: Any) -> tuple[Number, ...]:
-    """Every number and short vector among the parameters of a law, and of what they are made of.
+    """Return every number and short vector among a law's parameters, nested ones included.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def _like(path: str, old: Value, given: Any) -> Value:
 
 
 def changed(item: Any, tree: Tree) -> Any:
-    """A law with other numbers; its classes check them.
+    """Return a law with other parameters, checked by its classes.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def changed(item: Any, tree: Tree) -> Any:
 
 
 def expression(name: str, item: Any, tree: Tree) -> str:
-    """The same as Python: an expression of the changed law.
+    """Return a Python expression of the changed law.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a page starts from: a scenario, a law with a random flock, or a file; with the Python that makes the same."""
+"""Starts of the page: scenarios, laws with random flocks, and files, with equivalent Python."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def law_names() -> tuple[str, ...]:
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
-    """A law of its usual parameters, and as Python; a γ-agent and a ball on the way to it where it has such."""
+    """Return a law with default parameters and its Python, with a γ-agent and a ball if it uses them."""
     here = (0.0,) * m
     there, between = (2.0 * side, *here[1:]), (side, *here[1:])
     if name == "Algorithm2":
@@ -79,7 +79,7 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
-    """A law of its usual parameters, and agents spread over a square at random.
+    """Return a law with default parameters, and agents at random in a square.
 
     Examples
     --------
@@ -154,7 +154,7 @@ def from_file(path: str) -> Start:
 
 @cache
 def theorems_of(law: str) -> tuple[str, ...]:
-    """Ids of the theorems that the catalogue checks on runs of a kind of law; errata are about runs of their own.
+    """Return the ids of theorems that the catalogue checks on this kind of law, errata excluded.
 
     Examples
     --------

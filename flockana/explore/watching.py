@@ -1,4 +1,4 @@
-"""A run that is shown while it is made: first frames at once, more as they come, an end if it takes too long."""
+"""Runs streamed while they are computed: first frames at once, an error if they take too long."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _TRIED, _FAR = 2.0, 4.0  # seconds after which the end is foretold; multiples of
 
 
 class TooLargeError(ArgumentError):
-    """A run that takes longer than a page should wait for; the message names its cost."""
+    """Run that would take too long for a page; the message states its cost."""
 
 
 def ensure_small(parts: Start) -> None:
@@ -39,7 +39,7 @@ def ensure_small(parts: Start) -> None:
 
 
 def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancelled: Callable[[], bool]) -> Trajectory:
-    """The run, shown while it is made."""
+    """Return the run, streaming frames while it is computed."""
     samples: list[Sample] = []
     span = parts.t_span[1] - parts.t_span[0]
     started, due, pause = time.perf_counter(), 0.0, _FIRST

@@ -31,7 +31,7 @@ class Evaluation:
 
     @property
     def found(self) -> bool:
-        """Whether the claim is refuted."""
+        """Return whether the claim is refuted."""
         return self.verdict is not None and self.verdict.claim(self.claim).status == "refuted"
 
 
@@ -56,7 +56,7 @@ class Problem:
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 
     def judged(self, case: Scenario) -> Evaluation:
-        """Run a case and grade its verdict; errors are the caller's."""
+        """Run a case and grade its verdict; errors are raised."""
         with np.errstate(all="ignore"):
             run = case.run()
             if run.status == "interrupted":
@@ -66,7 +66,7 @@ class Problem:
             return self.graded(run, self.verdict(case, run))
 
     def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
-        """The verdict on a run of a case, its refutations confirmed by a much finer run."""
+        """Return the verdict on a case's run, refutations confirmed by a finer run."""
 
         def judge(again: Trajectory) -> Verdict:
             return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
@@ -95,6 +95,6 @@ class Problem:
 
 
 def units(verdict: Verdict) -> dict[str, float]:
-    """Units of margins: their sizes on a run, so that those of different claims can be compared."""
+    """Return the units of margins on a run, so that different claims can be compared."""
     sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
     return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}

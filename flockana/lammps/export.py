@@ -50,7 +50,7 @@ _LONGEST_LINE = 1000  # bytes; ours are shorter
 
 @dataclass(frozen=True)
 class LammpsExport:
-    """What `export_lammps` wrote."""
+    """Result of `export_lammps`: files written and untranslated parts."""
 
     folder: Path  # where
     files: tuple[Path, ...]  # input script, data file, table, and a text on what they hold
@@ -143,7 +143,7 @@ def export_lammps(
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
-    """The continuous law and its pair term, or an error."""
+    """Return the continuous law and its pair term, or raise."""
     ensure_law(law)
     continuous = law.continuous
     term = None if continuous is None else continuous.term(PairTerm)
@@ -178,7 +178,7 @@ def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float
 
 
 def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> Clock:
-    """Steps of equal length, none longer than dt, that end on time, with equally many between samples."""
+    """Return equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {type(law).__name__} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
@@ -187,7 +187,7 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:
-    """Raise if a file is there that no export wrote, such as a README.txt of the user's."""
+    """Raise if a file exists there that no export wrote."""
     for path in paths:
         if not os.path.lexists(path):
             continue

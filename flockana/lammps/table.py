@@ -21,7 +21,7 @@ _INNER, _INNER_SINGULAR = 1e-6, 0.25  # first distance: of the range, and of the
 
 @dataclass(frozen=True, eq=False)
 class PairTable:
-    """Energy and force of a pair against its distance."""
+    """Table of energy and force of a pair against its distance."""
 
     r: FloatArray  # shape (N,): distances, from the inner cutoff to the range; their squares are evenly spaced
     energy: FloatArray  # energy, force: shape (N,): potential, 0 at the range, and force, positive where it repels
@@ -69,7 +69,7 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
 
 
 def _jumps(term: PairTerm, x: float, largest: float) -> bool:
-    """Whether the force jumps at a distance, not only bends."""
+    """Return whether the force jumps at a distance."""
     sides = energy_and_force(term, x * np.array([1.0 - _BESIDE, 1.0 + _BESIDE]))[1]
     return bool(abs(sides[1] - sides[0]) > _JUMP * largest)
 

@@ -29,7 +29,7 @@ _MAX_RATIO = {
 
 
 def max_ratio(name: str) -> float:
-    """The largest κ = r/d for which a builder's pattern is an α-lattice: its second neighbour distance over its first.
+    """Return the largest κ = r/d at which a builder's pattern is an α-lattice.
 
     The ratio itself is allowed, as neighbours are nearer than r: `links` takes a distance that equals r up to rounding
     for r.
@@ -81,7 +81,7 @@ def line(n: int, d: float) -> FloatArray:
 
 
 def triangular(n: int, d: float) -> FloatArray:
-    """The first n points of a nearly square patch of the triangular lattice, row by row.
+    """Return the first n points of a spiral on the triangular lattice, with Harborth's number of links.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def triangular(n: int, d: float) -> FloatArray:
 
 
 def hexagonal_spiral(n: int, d: float) -> FloatArray:
-    """The first n points of a spiral on the triangular lattice: it has Harborth's largest number of links.
+    """Return the first n points of a spiral on the triangular lattice, with Harborth's number of links.
 
     Returns
     -------

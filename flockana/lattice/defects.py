@@ -36,7 +36,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
 @dataclass(frozen=True, eq=False)
 class Defects:
-    """Neighbours of each agent, and who stands inside a triangulated part of the net.
+    """Return coordination numbers of a planar net, with interior and rim agents separate.
 
     Attributes
     ----------
@@ -55,13 +55,13 @@ class Defects:
 
     @property
     def counts(self) -> dict[int, int]:
-        """How many interior agents have 3, 4, 5 … neighbours."""
+        """Return the numbers of interior agents with 3, 4, 5 … neighbours."""
         sizes, numbers = np.unique(self.coordination[self.interior], return_counts=True)
         return {int(k): int(v) for k, v in zip(sizes, numbers, strict=True)}
 
 
 def defects(q: Any, links: Any) -> Defects:
-    """Coordination numbers of a planar net, told apart by whether an agent is inside the net or at its rim.
+    """Return coordination numbers of a planar net, with interior and rim agents separate.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ DENSE_MAX = 800  # coordinates up to which singular values take less than a seco
 
 @dataclass(frozen=True)
 class Rigidity:
-    """How many ways there are to move without stretching a link, and to stress links in balance.
+    """Rank, flexes and self-stresses of a net.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Rigidity:
 
     @property
     def infinitesimally_rigid(self) -> bool:
-        """Whether only translations and rotations keep all lengths to first order."""
+        """Return whether only translations and rotations keep all lengths to first order."""
         return self.flexes == 0
 
 

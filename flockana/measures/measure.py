@@ -1,4 +1,4 @@
-"""What is measured of any run, over time and as one number of it: a measure is one entry of one table.
+"""Table of measures of runs, over time and as one number.
 
 A file of this package that defines ``MEASURES`` adds to it: `Trajectory.metrics`, ensembles and plots then know them.
 What only the runs of one law have is in that law's `measures`.
@@ -19,7 +19,7 @@ from flockana.measures.metrics import nets
 
 @dataclass(frozen=True, eq=False)
 class Flock:
-    """A flock at several instants, under its law: what measures are taken of."""
+    """Flock at several instants, under its law."""
 
     law: Any
     q: FloatArray  # q, p: shape (T, n, m)
@@ -34,7 +34,7 @@ class Flock:
 
 
 class Series(NamedTuple):
-    """A measure that a law takes of its own runs: taken, or to be taken by a function of nothing."""
+    """Measure that a law takes of its own runs: values, or a function that computes them."""
 
     text: str
     values: FloatArray | Callable[[], FloatArray]
@@ -42,17 +42,17 @@ class Series(NamedTuple):
 
 
 def any_law(law: Any) -> bool:
-    """Whether a measure makes sense for the law: always."""
+    """Return True: the measure is defined for every law."""
     return True
 
 
 def has_range(law: Any) -> bool:
-    """Whether the law has an interaction range, so that there is a net."""
+    """Return whether the law has an interaction range, and so a net."""
     return law.pair is not None
 
 
 def has_lattice(law: Any) -> bool:
-    """Whether the law has a lattice scale d and an interaction range r."""
+    """Return whether the law has a lattice scale d and an interaction range r."""
     return law.lattice is not None
 
 
@@ -79,7 +79,7 @@ class Measure:
 
     @property
     def summary(self) -> str:
-        """What `number` is."""
+        """Description of `number`."""
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:
@@ -93,7 +93,7 @@ class Measure:
 
 @cache
 def measures() -> Mapping[str, Measure]:
-    """Every measure by name: those of all ``MEASURES`` in the files of this package.
+    """Return all measures by name, from the ``MEASURES`` of the files of this package.
 
     Examples
     --------

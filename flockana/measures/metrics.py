@@ -195,7 +195,7 @@ def order(p: Any) -> float:
 
 
 def coordination(p: Any) -> float:
-    """C of Jond: the mean over all pairs of the cosine between their velocities; agents at rest are left out.
+    """Return Jond's C, the mean cosine between velocities over all pairs of moving agents.
 
     NaN if fewer than two agents move.
 
@@ -212,7 +212,7 @@ def coordination(p: Any) -> float:
 
 
 def coincident_pairs(q: Any, tol: float) -> int:
-    """Number of unordered pairs closer than `tol`.
+    """Return the number of unordered pairs of coincident agents.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def coincident_pairs(q: Any, tol: float) -> int:
 
 
 def pairs_at_one_place(q: Any) -> int:
-    """Number of unordered pairs at exactly the same place: no pair force parts them.
+    """Return the number of unordered pairs of coincident agents.
 
     Parameters
     ----------
@@ -300,7 +300,7 @@ def min_distances(q: FloatArray) -> FloatArray:
 
 
 def diameters(x: FloatArray) -> FloatArray:
-    """`diameter` over time, unchecked: of all pairs those are looked at whose agents are far out.
+    """Return `diameter` over time, unchecked, from agents far from the centre.
 
     Parameters
     ----------

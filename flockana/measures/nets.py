@@ -24,7 +24,7 @@ LinkArray = npt.NDArray[np.int32]
 
 
 def links(q: Any, r: float) -> LinkArray:
-    """Unordered pairs closer than r, each once with i < j, sorted.
+    """Return the unordered pairs closer than r, each once with i < j, sorted.
 
     Parameters
     ----------

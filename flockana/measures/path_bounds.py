@@ -95,7 +95,7 @@ def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
 def cohesion_bound(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
 ) -> FloatArray:
-    """Upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples, its ends included.
+    """Return an upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples.
 
     Examples
     --------
@@ -130,7 +130,7 @@ class Contact:
 def contacts(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float, intervals: Iterable[int] | None = None
 ) -> tuple[Contact, ...]:
-    """Pairs that come within `tol` of each other, each with its first time, in order of time.
+    """Return the pairs that come within `tol` of each other, with their first times, in order of time.
 
     Only in the intervals given, in rising order, if it is known that none comes so near in the others.
 

@@ -1,4 +1,4 @@
-"""Distances of all pairs over time, by their quantiles: what a figure of all shows, for any number of agents."""
+"""Quantiles of all pair distances over time, for any number of agents."""
 
 from __future__ import annotations
 

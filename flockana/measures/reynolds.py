@@ -1,4 +1,4 @@
-"""Reynolds' rules inside Algorithm 1: flock centring, collision avoidance and velocity matching, told apart.
+"""Reynolds' rules inside Algorithm 1: flock centring, collision avoidance, velocity matching.
 
 The force between neighbours is a spring along the link, s_ij (q_j − q_i), of stress
 s_ij = φ_α(‖q_j − q_i‖_σ)/(1 + ε‖q_j − q_i‖_σ). Its sign parts the neighbours of an agent into positive friends F⁺

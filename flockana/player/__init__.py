@@ -23,7 +23,7 @@ __all__ = ["Player", "marks_of", "page", "scene", "script", "style"]
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """A run to watch: a notebook shows it, and keeps it when it is exported as HTML."""
+    """Interactive player of a run in a notebook, kept in HTML exports."""
 
     trajectory: Trajectory
     height: int = 760  # of the frame in a notebook, in pixels
@@ -37,7 +37,7 @@ class Player:
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number > 0")
 
     def __repr__(self) -> str:
-        """One line."""
+        """Return a one-line description."""
         return f"<Player of {self.trajectory!r}>"
 
     def html(self) -> str:
@@ -48,7 +48,7 @@ class Player:
         return scene(self.trajectory, values=self.values, marks=marks_of(self.trajectory, self.verdicts))
 
     def save(self, path: str) -> Path:
-        """Write that page; an existing file is replaced only when the new one is whole."""
+        """Write the player as a page; an existing file is replaced only once the new one is complete."""
         target = Path(path)
         with replacing(target, remedy="choose another file") as partial:
             partial.write_text(self.html(), encoding="utf-8")
@@ -59,7 +59,7 @@ class Player:
         return f'<iframe title="A run" sandbox="allow-scripts" style="{look}" srcdoc="{escape(self.html())}"></iframe>'
 
     def widget(self) -> Any:
-        """It as a widget, whose ``time`` the notebook's code reads and sets; needs flockana[notebook].
+        """Return a widget whose ``time`` can be read and set; needs flockana[notebook].
 
         A notebook with it that is exported to HTML fetches what shows widgets from the network; of the player itself
         the export needs nothing.

@@ -1,4 +1,4 @@
-"""The player's parts for a page, and a page of its own."""
+"""Player as parts of a page, and as a page of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the player shows of a run: its frames, links, obstacles, targets and series, as a header and arrays.
+"""Scene of the player: frames, links, obstacles, targets and series, as header and arrays.
 
 A law with a world of its own registers it (`world`), as it registers how a snapshot draws it (`plots.snapshot`).
 """
@@ -49,7 +49,7 @@ _EXTREME = 1e30  # beyond it a number is shown as if it were this
 
 @dataclass(frozen=True)
 class World:
-    """What is around the agents."""
+    """Surroundings of the agents: obstacles, targets and aliens."""
 
     # reach, length: Agents nearer than the first are linked, and the links coloured by their strain about the second
     reach: float | None = None
@@ -66,7 +66,7 @@ class World:
 
 @singledispatch
 def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """What is around the agents of a run; ``@world.register(Law)`` for a law with a world of its own."""
+    """Return the surroundings of a run's agents; a law registers its own with ``@world.register(Law)``."""
     pair, target = law.pair, law.target
     return World(
         reach=_finite(None if pair is None else pair.range),
@@ -166,7 +166,7 @@ def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
 
 
 def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
-    """(name, label, whether logarithmic, values at all samples) of what the strip shows."""
+    """Return (name, label, logarithmic, values) of each series of the strip."""
     found = []
     energy = run.energy()
     if np.isfinite(energy).any():
@@ -199,7 +199,7 @@ def _solid(solid: Obstacle) -> dict[str, Any]:
 
 
 def outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
-    """Closed lines on those that are neither balls nor walls: the closest points of circles about each."""
+    """Return closed outlines of obstacles other than balls and walls."""
     turn = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
     lines = []
     for solid in solids:

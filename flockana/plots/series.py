@@ -40,7 +40,7 @@ PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "norm
 
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
-    """Draw one of the run's metrics over time; left empty, and said so, where the law does not define it.
+    """Draw one metric of a run over time; empty axes say why where the law does not define it.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
 
 
 def has_metric(trajectory: Trajectory, name: str) -> bool:
-    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer)."""
+    """Return whether a run has a metric, without computing the others."""
     try:
         trajectory.metric(name)
     except UnknownNameError:

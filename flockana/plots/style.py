@@ -1,4 +1,4 @@
-"""One look for every figure, as a context: matplotlib's global settings are never touched."""
+"""Figure style as a context; matplotlib's global settings are never changed."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ LEGEND: dict[str, Any] = {"fontsize": 8, "framealpha": 0.85, "edgecolor": "none"
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Draw in flockana's look inside a ``with`` block; outside of it nothing changes.
+    """Apply flockana's style inside a ``with`` block, and restore the settings after it.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def subplots(
 
 
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:
-    """Name the two axes of a drawing and put a legend above it if something in it has a label; returns the axes."""
+    """Label the axes and add a legend above them if something has a label; return the axes."""
     if x:
         ax.set_xlabel(typeset(x))
     if y:
@@ -190,7 +190,7 @@ def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
 
 
 def finish_empty(ax: Any, y: str, reason: str) -> Axes:
-    """Leave the axes empty, with the reason in their middle."""
+    """Show a reason in the middle of empty axes."""
     ax.set_xticks([])
     ax.set_yticks([])
     ax.text(0.5, 0.5, typeset(reason), ha="center", va="center", transform=ax.transAxes, color=MUTED)
@@ -244,7 +244,7 @@ def hairline(n: int) -> tuple[float, float]:
 
 
 def in_plane(points: FloatArray) -> FloatArray:
-    """Points as they are drawn: those of a line on the axis y = 0."""
+    """Return points in the plane; those on a line lie on the axis y = 0."""
     return np.column_stack([points, np.zeros(len(points))]) if points.shape[1] == 1 else points
 
 

@@ -1,4 +1,4 @@
-"""Zone-based flocking: one instant with obstacle zones, box and aliens, and its series against their bounds."""
+"""Zone-based flocking: snapshots with obstacle zones, box and aliens, and series against their bounds."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _law(trajectory: Trajectory) -> ZoneFlocking:
 def zones(
     trajectory: Trajectory, time: float | None = None, *, ax: Axes | None = None, velocities: bool = False
 ) -> Axes:
-    """Draw the sample nearest to a time: agents with their obstacle zones, links within a, world, aliens.
+    """Draw one sample of a zone-based run: agents, obstacle zones, links within a, world, aliens.
 
     In the plane an obstacle zone is a triangle ahead of its agent; in space the heading stands for it. Of the
     conventional method the circular buffers are drawn instead. `snapshot` and films draw runs of ZoneFlocking so.

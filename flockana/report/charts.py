@@ -144,7 +144,7 @@ def _decades(low: float, high: float) -> list[tuple[float, str]]:
 
 
 def _path(x: FloatArray, y: FloatArray) -> str:
-    """Points as the data of a path in whole numbers, broken where they are not finite; those amid a level are left out.
+    """Return points as SVG path data in whole numbers, broken where they are not finite.
 
     Examples
     --------

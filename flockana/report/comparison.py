@@ -44,7 +44,7 @@ class ComparisonSection:
 
     @property
     def name(self) -> str:
-        """As that of the task that makes it."""
+        """Return the name of the task that makes the section."""
         return MANY_LAWS
 
 
@@ -71,7 +71,7 @@ def _row(outcome: Outcome) -> Row:
 
 
 def _reason(verdict: Verdict) -> str:
-    """Why a verdict is not plainly verified: what it refutes, what is open, or the hypothesis that is not met."""
+    """Return why a verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
     found = [claim for claim in verdict.claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
         return f"{', '.join(claim.name for claim in found)}: {found[0].detail}"

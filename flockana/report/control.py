@@ -1,4 +1,4 @@
-"""What a control engineer looks for in the report: step response, root locus, norms, and the state space as data."""
+"""Step response, root locus, norms and state-space data for the report."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def control_pictures() -> tuple[Picture, ...]:
 
 
 def state_space(flock: Linearisation, name: str, words: str) -> Download:
-    """A linearised flock as JSON: A by its entries, in the order (δq, δp), agent by agent."""
+    """Return a linearised flock as JSON: entries of A in the order (δq, δp), agent by agent."""
     matrix = flock.A_sparse.tocoo()
     kept = np.abs(matrix.data) > 0.0
     entries = [

@@ -1,4 +1,4 @@
-"""The figures of a run of averaged headings: the flock, and what its theorem speaks of."""
+"""Figures of a run of averaged headings."""
 
 from __future__ import annotations
 

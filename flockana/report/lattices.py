@@ -1,4 +1,4 @@
-"""The report's section on lattices and equilibria, made of what the verdicts hold; nothing is simulated again."""
+"""Report section on lattices and equilibria, made from the verdicts alone."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
 
 
 def _links(q: FloatArray, r: float) -> int:
-    """How many pairs are closer than r: of so few agents without the kernels, which take longer to load."""
+    """Return the number of pairs closer than r, without kernels."""
     return int(np.count_nonzero(lengths(q[:, None] - q) < r) - len(q)) // 2
 
 
@@ -76,7 +76,7 @@ def _end(name: str, verdict: Verdict) -> EndState | None:
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
-    """The number that the first verdict on a theorem computed for a claim; None if none did."""
+    """Return the number computed for a claim by the first verdict on a theorem, or None."""
     claims = (c for v in verdicts if v.theorem == theorem for c in v.claims if c.name == claim)
     return next((c.computed for c in claims if c.computed is not None), None)
 

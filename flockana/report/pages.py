@@ -1,4 +1,4 @@
-"""What a report is made of: results as they come, and the same as plain data that crosses processes cheaply."""
+"""Results of the report as plain data, cheap to send between processes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class FixedResult:
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict beside what its reader needs: the statement, its source, and what was expected."""
+    """Verdict with its statement, source and expected status."""
 
     verdict: Verdict
     title: str
@@ -56,7 +56,7 @@ class Finding:
 
     @property
     def as_expected(self) -> bool | None:
-        """Whether the verdict is the expected one; None where nothing was expected."""
+        """Return whether the verdict is as expected; None without an expectation."""
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
@@ -71,7 +71,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class ScenarioPage:
-    """All that the report says of a scenario, as plain data."""
+    """Page of a scenario, as plain data."""
 
     name: str
     title: str
@@ -85,14 +85,14 @@ class ScenarioPage:
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """What differs from the expected, a run that ended early included."""
+        """Return a line for each difference from the expected, including a run that ended early."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
         return (self.trouble, *surprises) if self.trouble else surprises
 
 
 @dataclass(frozen=True)
 class FixedPage:
-    """All that the report says of a theorem or erratum that needs no run."""
+    """Page of a theorem or erratum without a run."""
 
     finding: Finding
 
@@ -108,7 +108,7 @@ class FixedPage:
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """What differs from the expected."""
+        """Return a line for each difference from the expected."""
         return self.finding.surprises
 
 
@@ -116,7 +116,7 @@ Page = ScenarioPage | FixedPage
 
 
 def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
-    """Turn a result into plain data, its figures drawn."""
+    """Return a result as plain data, with its figures drawn."""
     if isinstance(result, FixedResult):
         return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
     scenario, run = result.scenario, result.trajectory
@@ -135,14 +135,14 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
 
 
 def _pictures(scenario: Scenario, run: Trajectory) -> tuple[Picture, ...]:
-    """Its figures; without them nothing that draws is imported."""
+    """Return the figures of a run, importing matplotlib only if they are drawn."""
     from flockana.report.figures import pictures
 
     return pictures(run, scenario.instants)
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """The run for the player, with the source's instants and those that the verdicts' claims point to.
+    """Return the player's data of a run, with instants of the source and of the claims marked.
 
     Empty where places or velocities are so large that the player's numbers have no room for them.
     """

@@ -54,7 +54,7 @@ class Row:
 
 @dataclass(frozen=True)
 class LinearisedFlocks:
-    """What the section shows whatever the verdicts are."""
+    """Pictures of linearised flocks, independent of the verdicts."""
 
     poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
     control: tuple[Picture, ...]  # step response, root locus and norms
@@ -62,7 +62,7 @@ class LinearisedFlocks:
 
     @property
     def name(self) -> str:
-        """As that of the task that makes it."""
+        """Return the name of the task that makes the section."""
         return LINEARISED
 
 
@@ -146,7 +146,7 @@ def _flocks() -> list[tuple[str, Linearisation]]:
 
 
 def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture, ...]:
-    """Poles and the three slowest modes of the shape of linearised flocks, given by the names of their laws."""
+    """Return pictures of the poles and the three slowest shape modes of linearised flocks, by law."""
     pictures = []
     for kind, flock in flocks:
         zero = ", ".join(mode.name for mode in flock.zero_modes)
@@ -190,14 +190,14 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
 
 
 class _Response(NamedTuple):
-    """What is drawn of a frequency response, without loading python-control for two curves of a known formula."""
+    """Frequency response of a known formula, drawn without python-control."""
 
     omega: npt.NDArray[np.float64]
     complex: npt.NDArray[np.complex128]
 
 
 def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
-    """The project's γ-agent, with the p_r that it hands over and with the true one; what its runs show."""
+    """Draw the response to the project's γ-agent with its printed and true p_r, and measured gains."""
     points, centres, words = {}, {}, []
     for name, verdict in verdicts:
         if verdict.theorem != "E12" or name not in scenarios():

@@ -14,14 +14,14 @@ _AT_ONCE = 10  # runs in one survey: about a second at most, so that all process
 
 @dataclass(frozen=True)
 class Survey:
-    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent."""
+    """Runs of one scenario to judge by its source's reports; names and numbers only, so it can be sent."""
 
     scenario: str
     seeds: tuple[int, ...]  # which runs
 
     @property
     def name(self) -> str:
-        """As progress shows it."""
+        """Return the name shown by progress."""
         return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
 
 
@@ -34,7 +34,7 @@ class SurveyResult:
 
     @property
     def name(self) -> str:
-        """As progress shows it."""
+        """Return the name shown by progress."""
         return self.survey.name
 
 
@@ -70,5 +70,5 @@ def make_survey(survey: Survey) -> SurveyResult:
 
 
 def request(name: str) -> Request:
-    """What is asked of every run: to be judged by what its source reports, and no more."""
+    """Return the request of every run: to be judged by the source's reports alone."""
     return Request(name, (SOURCE,), ())

@@ -15,7 +15,7 @@ from flockana.theorems import Tolerances, Verdict, verify
 
 @dataclass(frozen=True)
 class Enclosure:
-    """How to decide theorems about a run rigorously: a tube from its start, over its time.
+    """Settings for rigorous decisions about a run: a tube from its start over its time.
 
     Examples
     --------
@@ -34,7 +34,7 @@ class Enclosure:
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:
-        """The tube, and the basin or None; in lengths of ℓ, which σ₁ counts in: a basin is certified in no others."""
+        """Return the tube, and the basin or None, in lengths of ℓ (the unit of σ₁)."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose import enclose
         from flockana.equilibria.solve import find_equilibrium

@@ -1,4 +1,4 @@
-"""One flock under many laws: what a theorem promises of each, and what comes of the same start.
+"""One start under many laws: the theorem on each law, and the outcome.
 
 A further law is one more `Entry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
 its runs, and what that promises in a few words.
@@ -43,7 +43,7 @@ _STRENGTH, _CONSENSUS = 40.0, 1.0  # of Tanner's laws: forces of the size of k/d
 
 @dataclass(frozen=True)
 class Entry:
-    """A law for the common start, and what a theorem says of it."""
+    """Law for the common start, with a theorem about it."""
 
     name: str  # of the law, for people
     law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]  # ``law(q0, p0)`` builds it
@@ -54,7 +54,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of the start under one law."""
+    """Outcome of the start under one law."""
 
     entry: Entry  # the law and its theorem
     run: Trajectory
@@ -97,7 +97,7 @@ def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
 
 
 def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
-    """A γ-agent that starts at the flock's centre and moves as it does."""
+    """Return a γ-agent that starts at the flock's centre with its velocity."""
     place, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
     return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
 
@@ -108,7 +108,7 @@ def _net(q: FloatArray) -> tuple[tuple[int, int], ...]:
 
 
 def _informing(some: int, n: int) -> Gains:
-    """The default gains, those to the γ-agent for the first few agents only."""
+    """Return the default gains, with those to the γ-agent for the first agents only."""
     gains, felt = Gains(), np.arange(n) < some
     return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
 
@@ -181,7 +181,7 @@ ENTRIES: tuple[Entry, ...] = (
 
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
-    """The common start under each law, with the verdict of its theorem.
+    """Run the common start under each law, and check its theorem.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The flock about a state as x'' = −K x − D x' + w, and what is left of it once rigid motions are divided out."""
+"""Linear flock x'' = −K x − D x' + w about a state, and its quotient by rigid motions."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Blocks:
 
 
 def complement(basis: FloatArray) -> FloatArray:
-    """Orthonormal basis of what is orthogonal to an orthonormal basis.
+    """Return an orthonormal basis of the orthogonal complement.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def complement(basis: FloatArray) -> FloatArray:
 
 
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
-    """Sort a flock's rigid motions by what holds them.
+    """Classify a flock's rigid motions by the forces that hold them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Delayed interactions: how much delay the flock bears, and where its characteristic roots go.
+"""Delayed interactions: delay margins and characteristic roots.
 
 x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old, and so is its own state
 ("all": K₀ = D₀ = 0); or the terms between agents, its own state in them included ("pairs": the γ-terms act at once); or
@@ -39,7 +39,7 @@ class DelaySystem:
 
     @property
     def highest(self) -> float:
-        """No root crosses the imaginary axis above this frequency, since there s² outweighs the rest."""
+        """Return a frequency above which no root crosses the imaginary axis, as s² dominates there."""
         k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
@@ -187,7 +187,7 @@ def delay_margin(system: DelaySystem) -> DelayMargin:
 
 
 def _stable(system: DelaySystem) -> bool:
-    """Whether every root without delay decays by more than rounding could feign, but for neutral ones.
+    """Return whether every root without delay decays beyond rounding, neutral roots excepted.
 
     These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     """
@@ -247,7 +247,7 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:
-    """How far a refined root may be from the true one: what the characteristic matrix leaves over, and rounding.
+    """Return an error bound of a refined root, from the residual and rounding.
 
     Examples
     --------

@@ -50,7 +50,7 @@ _GRID = 10
 
 @dataclass(frozen=True)
 class GainProblem:
-    """The matrix of the design problem and its eigenvalues as functions of the gains.
+    """State matrix of the gain design problem, and its eigenvalues as functions of the gains.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class GainProblem:
         return kept, kept if self.speeds else np.eye(len(self.stiffness))
 
     def matrix(self, gains: FloatArray) -> FloatArray:
-        """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart."""
+        """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
         positions, velocities = self._kept
@@ -92,7 +92,7 @@ class GainProblem:
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """(eigenvalues, derivatives of their real parts in the gains), shapes (M,) and (M, 2 n).
+        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n).
 
         dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
         """
@@ -111,7 +111,7 @@ class GainProblem:
 
 @dataclass(frozen=True)
 class GainDesign:
-    """The best gains found, alike and per agent, with the eigenvalues that certify them.
+    """Best gains found, equal and per agent, with their eigenvalues.
 
     Parameters
     ----------
@@ -137,13 +137,13 @@ class GainDesign:
     starts: int
 
     def __repr__(self) -> str:
-        """One line: the arrays are for asking."""
+        """Return one line without the arrays."""
         rates = f"{self.rate_homogeneous:.4f} alike, {self.rate_heterogeneous:.4f} per agent"
         return f"<GainDesign of {self.problem.agents} agents: decay rates {rates}, ratio {self.ratio:.3f}>"
 
     @property
     def ratio(self) -> float:
-        """How much faster the heterogeneous flock is; a lower bound, as the search need not be global."""
+        """Ratio of decay rates, heterogeneous over equal gains; a lower bound."""
         return self.rate_heterogeneous / self.rate_homogeneous
 
     def gains(self, base: Gains, *, heterogeneous: bool = True) -> Gains:

@@ -28,7 +28,7 @@ _IMAGINARY = 1e-9  # of the largest eigenvalue: real parts below that are zero
 
 
 def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | None:
-    """From a force on each agent to the flock's deviations, a `control.StateSpace`; None where that is unbounded.
+    """Return a `control.StateSpace` from a force on each agent to the flock's deviations; None if unbounded.
 
     "shape" is the deviation from the nearest displaced and turned copy of the equilibrium, all rigid motions taken
     out; "deviations" is x_i − x_c, which still holds the turning. Nothing brings the orientation of a free flock back,
@@ -193,7 +193,7 @@ def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
 
 
 def _stable(a: FloatArray) -> bool:
-    """Whether every mode decays by more than rounding could feign."""
+    """Return whether every mode decays beyond rounding."""
     values, _, errors = eigen(a)
     return bool(np.all(values.real < -errors))
 

@@ -43,7 +43,7 @@ from flockana.symbolic.sums import (
 
 @dataclass(frozen=True)
 class EnergyIdentity:
-    """An energy, its rate along the flow as derived, the closed form claimed, and what is left between them.
+    """Energy, its derived rate along the flow, the claimed closed form, and their difference.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class EnergyIdentity:
 
     @property
     def holds(self) -> bool:
-        """Whether the residual vanishes identically."""
+        """Return whether the residual vanishes identically."""
         return bool(self.residual == 0)
 
     def latex(self) -> str:

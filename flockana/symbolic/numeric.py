@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NumericLaw:
-    """A law with numbers for parameters, evaluated from its symbolic expressions.
+    """Law with numeric parameters, evaluated from its symbolic expressions.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class NumericLaw:
 
 
 def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
-    """Return a function of z with its parameters fixed; sympy sees their names, or it would integrate."""
+    """Return a function of z with fixed parameters, hidden from sympy by name."""
     named = ALPHA_NAMED
     parameters = [named.h, named.a, named.b, named.c, named.d_alpha, named.r_alpha]
     function = sp.lambdify([Z, *parameters], scalar(Z, alpha=named), "mpmath")

@@ -1,4 +1,4 @@
-"""Where in a report a reference is shown: the scenario, the verdict on a theorem, or what a source reports."""
+"""Anchors of references in a report: scenarios, verdicts and source reports."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flockana.scenarios.given import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
-    """Id in the report by reference; of a theorem that is checked on several runs, that of the first.
+    """Return the ids in the report by reference; a theorem checked on several runs leads to the first.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The tables of what is held: a row is an item of a source, where it stands there, and what in flockana holds it."""
+"""Coverage tables: one row for each item of a source, with what in flockana covers it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Source:
-    """A source and its rows, in its order.
+    """Source with its coverage rows, in the source's order.
 
     Examples
     --------
@@ -64,12 +64,12 @@ class Source:
     rows: tuple[Row, ...]
 
     def count(self, standing: Standing) -> int:
-        """How many rows are so."""
+        """Return the number of rows with this standing."""
         return sum(row.standing == standing for row in self.rows)
 
 
 def coverage() -> tuple[Source, ...]:
-    """Every table beside this file, the longest first, and last what is in no source. No reference is looked up.
+    """Return all coverage tables, the longest first, items without a source last.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def read_table(path: str | os.PathLike[str]) -> Source:
 
 
 def faults(sources: Iterable[Source]) -> tuple[str, ...]:
-    """Every reference that leads nowhere, one line each, with its source and place; empty if all lead somewhere.
+    """Return a line for each reference that leads nowhere, with its source and place.
 
     Examples
     --------
