@@ -59,7 +59,7 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
 
 
 def report_folder(name: str | None) -> Path:
-    """Where a report goes unless told otherwise: one on a part takes no other's place that is on the whole catalogue.
+    """Return the folder of a report; a partial report never replaces one on the whole catalogue.
 
     Examples
     --------
@@ -70,13 +70,13 @@ def report_folder(name: str | None) -> Path:
 
 
 def _on_all(folder: Path) -> bool:
-    """Whether a folder has a report on the whole catalogue, or one of which that cannot be told."""
+    """Return whether a folder holds a report on the whole catalogue, or one that cannot be read."""
     there = _facts(folder)
     return there is not None and there.get("of") is None
 
 
 def _facts(folder: Path) -> dict[str, Any] | None:
-    """What the report of a folder tells of itself, None if there is none; one with damaged verdicts is whole."""
+    """Return the facts stored with a report, None without a report; damaged verdicts count as a whole report."""
     if not (folder / HTML).exists() and not (folder / JSON).exists():
         return None
     whole = {"complete": True, "of": None}
@@ -161,7 +161,7 @@ def _version(name: str) -> str:
 
 
 def page_environment() -> Environment:
-    """The templates with the filters that they use; figures are numbered anew, so it serves one page."""
+    """Return the template environment of one page; it numbers the page's figures."""
     environment = Environment(
         loader=PackageLoader("flockana.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )

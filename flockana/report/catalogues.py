@@ -1,4 +1,4 @@
-"""The catalogues in the terminal; nothing here draws, solves or integrates, so that a list is there at once."""
+"""Catalogues as terminal tables; nothing here draws, solves or integrates."""
 
 from __future__ import annotations
 

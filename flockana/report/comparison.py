@@ -22,63 +22,35 @@ _SETTLED = 1e-9  # of the start: what a table calls 0
 
 @dataclass(frozen=True)
 class Row:
-    """A law, its theorem and what happened, as text.
+    """A law, its theorem and what happened, as text."""
 
-    Parameters
-    ----------
-    name, theorem, promise : str
-        Of the law and the theorem.
-    status : str
-        Of the verdict.
-    reason : str
-        What is refuted or open, or the first unmet hypothesis; empty if there is none of these.
-    velocities, positions : str
-        Diameters at the end over those at the start.
-    groups, nearest : str
-        Components of the net at the end, and the least distance.
-    """
-
-    name: str
+    name: str  # name, theorem, promise: of the law and the theorem
     theorem: str
     promise: str
     status: str
-    reason: str
-    velocities: str
+    reason: str  # what is refuted or open, or the first unmet hypothesis; empty if there is none of these
+    velocities: str  # velocities, positions: Diameters at the end over those at the start
     positions: str
-    groups: str
+    groups: str  # groups, nearest: Components of the net at the end, and the least distance
     nearest: str
 
 
 @dataclass(frozen=True)
 class ComparisonSection:
-    """Rows and pictures of one start under many laws.
+    """Rows and pictures of one start under many laws."""
 
-    Parameters
-    ----------
-    rows : tuple of Row
-        One for each law.
-    pictures : tuple of Picture
-        Paths side by side, and velocity diameters.
-    """
-
-    rows: tuple[Row, ...]
-    pictures: tuple[Picture, ...]
+    rows: tuple[Row, ...]  # one for each law
+    pictures: tuple[Picture, ...]  # paths side by side, and velocity diameters
 
     @property
     def name(self) -> str:
-        """As that of the task that makes it."""
+        """Return the name of the task that makes the section."""
         return MANY_LAWS
 
 
 @cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge it; it takes seconds, once in a process.
-
-    Parameters
-    ----------
-    seed : int
-        Of the start.
-    """
+    """Run the start under every law and judge it; it takes seconds, once in a process."""
     outcomes = compare(seed=seed)
     return ComparisonSection(tuple(_row(outcome) for outcome in outcomes), _pictures(outcomes))
 
@@ -99,7 +71,7 @@ def _row(outcome: Outcome) -> Row:
 
 
 def _reason(verdict: Verdict) -> str:
-    """Why a verdict is not plainly verified: what it refutes, what is open, or the hypothesis that is not met."""
+    """Return why a verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
     found = [claim for claim in verdict.claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
         return f"{', '.join(claim.name for claim in found)}: {found[0].detail}"

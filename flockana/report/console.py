@@ -33,7 +33,7 @@ def _expectation(finding: Finding) -> Text:
 
 
 def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
-    """A row per verdict, grouped by what it was checked on; names are never cut, and a narrow table leaves out how."""
+    """Return a table of verdicts grouped by run; names are never cut."""
     pages = list(pages)
     longest = max((len(f.verdict.theorem) for page in pages for f in page.findings), default=0) + 2
     widths = {"theorem": longest, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
@@ -59,13 +59,13 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
 
 
 def titles(pages: Iterable[Page]) -> Table:
-    """What each theorem that was checked says, by its name."""
+    """Return the titles of the theorems checked, by name."""
     names = dict.fromkeys(finding.verdict.theorem for page in pages for finding in page.findings)
     return fact_table((name, theorem(name).title) for name in names if name in theorems())
 
 
 def statistics_table(section: StatisticsSection) -> Table:
-    """A row per claim: in which share of the seeds it is verified, and refuted, in per cent with intervals."""
+    """Return a table of the shares of seeds in which each claim is verified and refuted, with intervals."""
     table = headed_table(column("claim"), column("verified", right=True), column("refuted", right=True))
     for entry in section.entries:
         left_out = f", {entry.incomplete} incomplete" if entry.incomplete else ""
@@ -76,7 +76,7 @@ def statistics_table(section: StatisticsSection) -> Table:
 
 
 def details(verdict: Verdict) -> Group:
-    """A verdict in full: hypotheses and claims, each with its finding in words."""
+    """Return the hypotheses and claims of a verdict, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
     columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
@@ -90,7 +90,7 @@ def details(verdict: Verdict) -> Group:
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:
-    """How many verdicts of each kind, how many as expected, in what time."""
+    """Return the numbers of verdicts by status, of expected ones, and the time taken."""
     findings = [finding for page in pages for finding in page.findings]
     kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
     counts = ", ".join(f"{count} {status}" for status, count in kinds if count)
@@ -103,7 +103,7 @@ def summary(pages: Sequence[Page], seconds: float) -> str:
 
 
 def run_table(run: Trajectory) -> Table:
-    """The metrics of a run at its start and its end."""
+    """Return a table of a run's metrics at its start and end."""
     times = (column(f"t = {run.t[k]:g}", right=True) for k in (0, -1))
     table = headed_table(column("measure", wraps=True), *times)
     for name, series in run.metrics().items():

@@ -37,15 +37,7 @@ IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its pl
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look as an ``<svg>`` element.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes the figure.
-    size : (float, float)
-        Width and height in inches.
-    """
+    """A figure in flockana's look as an ``<svg>`` element."""
     with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
@@ -72,7 +64,7 @@ def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: floa
 
 
 def _page_s_own(text: str) -> str:
-    """matplotlib's SVG as part of a page: no prologue, ids of its own, colours by name, fewer digits."""
+    """Adapt matplotlib's SVG to the page: no prologue, own ids, named colours, fewer digits."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)
@@ -89,7 +81,7 @@ def _page_s_own(text: str) -> str:
 
 
 def _short(path: str) -> str:
-    """A path without what no eye can tell: of a long one the hundredths of a pixel, and points that repeat the last."""
+    """Shorten SVG path data: drop invisible digits and repeated points."""
     if len(path) > _LONG:
         path = re.sub(r"(\d+\.\d)\d+", r"\1", path)
     path = re.sub(r"(L \S+ \S+ ?)\1+", r"\1", path)
@@ -98,16 +90,6 @@ def _short(path: str) -> str:
 
 
 def named(source: str, caption: str, number: int) -> str:
-    """A figure as the page holds it: with ids that no other has, and what it shows for who cannot see it.
-
-    Parameters
-    ----------
-    source : str
-        What `svg` gave, or other SVG.
-    caption : str
-        What it shows.
-    number : int
-        Of the figure in its page.
-    """
+    """Return a figure with ids unique in the page and an accessible label."""
     label = escape(caption, quote=True)
     return source.replace(IDS, f"f{number}-").replace('class="drawn"', f'class="drawn" role="img" aria-label="{label}"')

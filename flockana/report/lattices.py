@@ -1,4 +1,4 @@
-"""The report's section on lattices and equilibria, made of what the verdicts hold; nothing is simulated again."""
+"""Report section on lattices and equilibria, made from the verdicts alone."""
 
 from __future__ import annotations
 
@@ -24,46 +24,25 @@ _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
 
 @dataclass(frozen=True)
 class EndState:
-    """The net of one run's last state.
-
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    kind : str
-        α-lattice, quasi-α-lattice or neither, with its strain.
-    links, crossings : str
-        Their numbers.
-    printed, extension : str
-        Statuses of "no two links cross", as printed of α-lattices, and extended to every net with distances above
-        r/√2.
-    """
+    """The net of one run's last state."""
 
     scenario: str
-    kind: str
-    links: str
+    kind: str  # α-lattice, quasi-α-lattice or neither, with its strain
+    links: str  # links, crossings: Their numbers
     crossings: str
+    # printed, extension: Statuses of "no two links cross", as printed of α-lattices, and extended to every net with
+    # distances above r/√2
     printed: str
     extension: str
 
 
 @dataclass(frozen=True)
 class LatticeSection:
-    """End states, spirals and pictures of lattices and equilibria, for the report.
+    """End states, spirals and pictures of lattices and equilibria, for the report."""
 
-    Parameters
-    ----------
-    ends : tuple of EndState
-        By scenario.
-    spirals : tuple of (int, int, int)
-        n, links of the hexagonal spiral, Harborth's number.
-    pictures : tuple of Picture
-        Collapse and barrier, where their verdicts are at hand.
-    """
-
-    ends: tuple[EndState, ...]
-    spirals: tuple[tuple[int, int, int], ...]
-    pictures: tuple[Picture, ...]
+    ends: tuple[EndState, ...]  # by scenario
+    spirals: tuple[tuple[int, int, int], ...]  # n, links of the hexagonal spiral, Harborth's number
+    pictures: tuple[Picture, ...]  # collapse and barrier, where their verdicts are at hand
 
 
 def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
@@ -83,7 +62,7 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
 
 
 def _links(q: FloatArray, r: float) -> int:
-    """How many pairs are closer than r: of so few agents without the kernels, which take longer to load."""
+    """Return the number of pairs closer than r, without kernels."""
     return int(np.count_nonzero(lengths(q[:, None] - q) < r) - len(q)) // 2
 
 
@@ -97,7 +76,7 @@ def _end(name: str, verdict: Verdict) -> EndState | None:
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
-    """The number that the first verdict on a theorem computed for a claim; None if none did."""
+    """Return the number computed for a claim by the first verdict on a theorem, or None."""
     claims = (c for v in verdicts if v.theorem == theorem for c in v.claims if c.name == claim)
     return next((c.computed for c in claims if c.computed is not None), None)
 

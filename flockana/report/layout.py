@@ -1,4 +1,4 @@
-"""Where the axes of a figure go, by what they carry around them: texts are measured, and nothing else is asked."""
+"""Layout of a figure's axes, from the measured sizes of their texts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Scales = dict[Any, tuple[PlainScale, ...]]
 
 @dataclass(frozen=True)
 class _Place:
-    """Axes in the grid of their figure, by their first and last column and row; shares of the columns and rows."""
+    """Axes with their columns and rows in the figure's grid."""
 
     ax: Any
     columns: tuple[int, int]
@@ -30,19 +30,10 @@ class _Place:
 
 
 def place_axes(figure: Any, renderer: Any, scales: Scales) -> None:
-    """Give the axes of one grid what room the texts around them leave; equal, but for the grid's own ratios.
+    """Place the axes of a grid in the room that their texts leave, by the grid's ratios.
 
     They are measured where usual margins would put them, then where that puts them, until that is room enough:
     numbers depend on the size of axes, and what a wide legend takes beside them does.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        A figure whose axes share one grid; each colour bar is part of its axes (`plots.style.colour_bar`).
-    renderer : object
-        What texts are measured with.
-    scales : dict
-        What `plots.scales.plain_scales` gave.
     """
     places = [_place(ax) for ax in figure.axes]
     if not places:
@@ -89,7 +80,7 @@ def _around(ax: Any, renderer: Any, scales: Scales) -> tuple[float, ...]:
 
 
 def _extents(ax: Any, renderer: Any, scales: Scales) -> tuple[float, ...]:
-    """Left, right, lower and upper end of axes with what they carry, in pixels; a title may stand out to the right."""
+    """Return the extents of axes with their texts, in pixels; a title may extend to the right."""
     if ax not in scales:  # axes of space
         box = ax.get_tightbbox(renderer, for_layout_only=True)
         return box.x0, box.x1, box.y0, box.y1
@@ -123,7 +114,7 @@ def _put(places: list[_Place], around: FloatArray, size: FloatArray) -> None:
 def _intervals(
     wanted: list[tuple[tuple[int, int], float, float]], ratios: FloatArray, length: float
 ) -> list[tuple[float, float]]:
-    """Where axes begin and end along one direction, as shares of the figure's length in inches.
+    """Return where axes begin and end along one direction, as shares of the figure's length.
 
     Examples
     --------

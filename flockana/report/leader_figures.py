@@ -1,4 +1,4 @@
-"""The figures of a run of the dead-zone law with leaders: those of any flock, the first in its own words."""
+"""Figures of a run of the dead-zone law with leaders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LAWS = (LedDeadZoneFlocking,)
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw what is drawn of any flock; its snapshots show who follows whom."""
+    """Draw the figures of any flock; captions of snapshots name the followers of each leader."""
     first, *others = flock_pictures(trajectory)
     caption = (
         "Start, middle and end. Stars are the leaders; links join agents within 1.1 d1, in contact or nearly. The "

@@ -1,4 +1,4 @@
-"""The figures of a run of the minimal model: those of any flock, and the two profiles of Jond's Fig. 10."""
+"""Figures of a run of the minimal model: those of any flock, and the profiles of Jond's Fig. 10."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LAWS = (MinimalFlocking, DiscreteMinimalFlocking)
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw what is drawn of any flock, and distances of all pairs, speeds and alignment, as Fig. 10 does."""
+    """Draw the figures of any flock, and distances, speeds and alignment as in Fig. 10."""
     caption = (
         "As in Fig. 10: distances of all pairs (greatest, median and least), which are said to come to rest; speeds "
         "of the agents; C = 1 where all move one way."

@@ -1,4 +1,4 @@
-"""The figures of a run of the MSN project's own map: those of any flock, and its curve of connectivity."""
+"""Figures of a run of the MSN project's map: those of any flock, and its connectivity curve."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SAMPLES = 271  # every other of the project's 540 iterations
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw what is drawn of any flock, and rank(A)/n over time."""
+    """Draw the figures of any flock, and rank(A)/n over time."""
     run = trajectory
     shown = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
     nets = [links(run.q[k], run.law.pair.range) for k in shown]

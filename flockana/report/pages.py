@@ -1,4 +1,4 @@
-"""What a report is made of: results as they come, and the same as plain data that crosses processes cheaply."""
+"""Results of the report as plain data, cheap to send between processes."""
 
 from __future__ import annotations
 
@@ -26,68 +26,37 @@ _VALUES = 24_000  # numbers of places and velocities of a run in the page: all r
 
 @dataclass(frozen=True)
 class ScenarioResult:
-    """A scenario that was run and verified.
+    """A scenario that was run and verified."""
 
-    Parameters
-    ----------
-    scenario : Scenario
-        What was run.
-    trajectory : Trajectory
-        The run.
-    verdicts : tuple of Verdict
-        What `Scenario.verify` found.
-    """
-
-    scenario: Scenario
+    scenario: Scenario  # what was run
     trajectory: Trajectory
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Verdict, ...]  # what `Scenario.verify` found
 
 
 @dataclass(frozen=True)
 class FixedResult:
-    """A theorem or erratum that was checked by itself.
+    """A theorem or erratum that was checked by itself."""
 
-    Parameters
-    ----------
-    theorem : Theorem
-        What was checked.
-    verdict : Verdict
-        The finding.
-    """
-
-    theorem: Theorem
+    theorem: Theorem  # what was checked
     verdict: Verdict
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict beside what its reader needs: the statement, its source, and what was expected.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    title, statement, source : str
-        Of the theorem.
-    expected : mapping of str to str
-        Expected status by theorem id and by ``"id:claim"``; empty if nothing is.
-    surprises : tuple of str
-        What differs from the expected, one line each.
-    references : tuple of str
-        Keys of the bibliography.
-    """
+    """Verdict with its statement, source and expected status."""
 
     verdict: Verdict
     title: str
     statement: str
     source: str
+    # expected status by theorem id and by ``"id:claim"``; empty if nothing is
     expected: Mapping[str, Status] = field(default_factory=dict)
-    surprises: tuple[str, ...] = ()
-    references: tuple[str, ...] = ()
+    surprises: tuple[str, ...] = ()  # what differs from the expected, one line each
+    references: tuple[str, ...] = ()  # keys of the bibliography
 
     @property
     def as_expected(self) -> bool | None:
-        """Whether the verdict is the expected one; None where nothing was expected."""
+        """Return whether the verdict is as expected; None without an expectation."""
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
@@ -102,52 +71,28 @@ class Finding:
 
 @dataclass(frozen=True)
 class ScenarioPage:
-    """All that the report says of a scenario, as plain data.
-
-    Parameters
-    ----------
-    name, title, source : str
-        Of the scenario.
-    facts : tuple of (str, str)
-        How it was run, by name.
-    findings : tuple of Finding
-        Its verdicts.
-    pictures : tuple of Picture
-        Its figures; empty if none were drawn.
-    trouble : str
-        Why the run ended early; empty if it did not.
-    references : tuple of str
-        Keys of the bibliography.
-    play : str
-        The run for the player, as text (`flockana.player`); empty if there are no figures.
-    """
+    """Page of a scenario, as plain data."""
 
     name: str
     title: str
     source: str
-    facts: tuple[tuple[str, str], ...]
+    facts: tuple[tuple[str, str], ...]  # how it was run, by name
     findings: tuple[Finding, ...]
-    pictures: tuple[Picture, ...] = ()
-    trouble: str = ""
-    references: tuple[str, ...] = ()
-    play: str = ""
+    pictures: tuple[Picture, ...] = ()  # its figures; empty if none were drawn
+    trouble: str = ""  # why the run ended early; empty if it did not
+    references: tuple[str, ...] = ()  # keys of the bibliography
+    play: str = ""  # the run for the player, as text (`flockana.player`); empty if there are no figures
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """What differs from the expected, a run that ended early included."""
+        """Return a line for each difference from the expected, including a run that ended early."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
         return (self.trouble, *surprises) if self.trouble else surprises
 
 
 @dataclass(frozen=True)
 class FixedPage:
-    """All that the report says of a theorem or erratum that needs no run.
-
-    Parameters
-    ----------
-    finding : Finding
-        Its verdict.
-    """
+    """Page of a theorem or erratum without a run."""
 
     finding: Finding
 
@@ -163,7 +108,7 @@ class FixedPage:
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """What differs from the expected."""
+        """Return a line for each difference from the expected."""
         return self.finding.surprises
 
 
@@ -171,7 +116,7 @@ Page = ScenarioPage | FixedPage
 
 
 def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
-    """Turn a result into plain data, its figures drawn."""
+    """Return a result as plain data, with its figures drawn."""
     if isinstance(result, FixedResult):
         return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
     scenario, run = result.scenario, result.trajectory
@@ -190,14 +135,14 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
 
 
 def _pictures(scenario: Scenario, run: Trajectory) -> tuple[Picture, ...]:
-    """Its figures; without them nothing that draws is imported."""
+    """Return the figures of a run, importing matplotlib only if they are drawn."""
     from flockana.report.figures import pictures
 
     return pictures(run, scenario.instants)
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """The run for the player, with the source's instants and those that the verdicts' claims point to.
+    """Return the player's data of a run, with instants of the source and of the claims marked.
 
     Empty where places or velocities are so large that the player's numbers have no room for them.
     """

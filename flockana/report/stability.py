@@ -37,23 +37,11 @@ _LONGER = (
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table of decay rates, as text.
+    """A row of the table of decay rates, as text."""
 
-    Parameters
-    ----------
-    name, mode : str
-        Of the equilibrium and its slowest mode.
-    n : str
-        Agents.
-    frequency, predicted, measured, error, difference, random_linear, random_measured : str
-        Its figures.
-    status : str
-        Of the verdict that it is from.
-    """
-
-    name: str
+    name: str  # name, mode: of the equilibrium and its slowest mode
     mode: str
-    n: str
+    n: str  # agents
     frequency: str
     predicted: str
     measured: str
@@ -61,30 +49,20 @@ class Row:
     difference: str
     random_linear: str
     random_measured: str
-    status: str
+    status: str  # of the verdict that it is from
 
 
 @dataclass(frozen=True)
 class LinearisedFlocks:
-    """What the section shows whatever the verdicts are.
+    """Pictures of linearised flocks, independent of the verdicts."""
 
-    Parameters
-    ----------
-    poles : tuple of Picture
-        Poles and modes of a flock under each algorithm.
-    control : tuple of Picture
-        Step response, root locus and norms.
-    downloads : tuple of Download
-        State spaces.
-    """
-
-    poles: tuple[Picture, ...]
-    control: tuple[Picture, ...]
-    downloads: tuple[Download, ...]
+    poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
+    control: tuple[Picture, ...]  # step response, root locus and norms
+    downloads: tuple[Download, ...]  # state spaces
 
     @property
     def name(self) -> str:
-        """As that of the task that makes it."""
+        """Return the name of the task that makes the section."""
         return LINEARISED
 
 
@@ -93,36 +71,16 @@ NO_FLOCKS = LinearisedFlocks((), (), ())
 
 @dataclass(frozen=True)
 class StabilitySection:
-    """Poles, decay rates, linear range and delay margins, for the report.
+    """Poles, decay rates, linear range and delay margins, for the report."""
 
-    Parameters
-    ----------
-    flocks : LinearisedFlocks
-        Pictures and data of flocks under the algorithms.
-    rows : tuple of Row
-        The decay table.
-    pictures : tuple of Picture
-        Linear range and Bode plot, where their verdicts are at hand.
-    margins : tuple of str
-        Findings on delays and gains.
-    """
-
-    flocks: LinearisedFlocks
+    flocks: LinearisedFlocks  # pictures and data of flocks under the algorithms
     rows: tuple[Row, ...]
-    pictures: tuple[Picture, ...]
-    margins: tuple[str, ...]
+    pictures: tuple[Picture, ...]  # linear range and Bode plot, where their verdicts are at hand
+    margins: tuple[str, ...]  # findings on delays and gains
 
 
 def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = None) -> StabilitySection | None:
-    """Gather the section from the verdicts; None if none of them is about the linearisation.
-
-    Parameters
-    ----------
-    pages : iterable of Page
-        With the verdicts.
-    flocks : LinearisedFlocks, optional
-        Made before; by default they are made here.
-    """
+    """Gather the section from the verdicts; None if none of them is about the linearisation."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
     decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]
@@ -188,7 +146,7 @@ def _flocks() -> list[tuple[str, Linearisation]]:
 
 
 def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture, ...]:
-    """Poles and the three slowest modes of the shape of linearised flocks, given by the names of their laws."""
+    """Return pictures of the poles and the three slowest shape modes of linearised flocks, by law."""
     pictures = []
     for kind, flock in flocks:
         zero = ", ".join(mode.name for mode in flock.zero_modes)
@@ -232,14 +190,14 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
 
 
 class _Response(NamedTuple):
-    """What is drawn of a frequency response, without loading python-control for two curves of a known formula."""
+    """Frequency response of a known formula, drawn without python-control."""
 
     omega: npt.NDArray[np.float64]
     complex: npt.NDArray[np.complex128]
 
 
 def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
-    """The project's γ-agent, with the p_r that it hands over and with the true one; what its runs show."""
+    """Draw the response to the project's γ-agent with its printed and true p_r, and measured gains."""
     points, centres, words = {}, {}, []
     for name, verdict in verdicts:
         if verdict.theorem != "E12" or name not in scenarios():

@@ -1,4 +1,4 @@
-"""The report's section on many seeds: in which share of them each claim holds, with intervals."""
+"""Report section on many seeds: shares of seeds in which claims hold, with intervals."""
 
 from __future__ import annotations
 
@@ -27,28 +27,20 @@ TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
 
 @dataclass(frozen=True)
 class Share:
-    """How often a claim came out in one way, of how many runs.
+    """Share of runs in which a claim had one outcome."""
 
-    Parameters
-    ----------
-    count, runs : int
-        Runs that did, and all that the claim was checked on.
-    low, high : float
-        Interval of the share.
-    """
-
-    count: int
+    count: int  # count, runs: Runs that did, and all that the claim was checked on
     runs: int
-    low: float
+    low: float  # low, high: Interval of the share
     high: float
 
     @property
     def share(self) -> float:
-        """Of the runs; NaN if the claim was checked on none."""
+        """Return the share of the runs; NaN without any."""
         return self.count / self.runs if self.runs else nan
 
     def __str__(self) -> str:
-        """As per cent: share and interval."""
+        """Return share and interval in per cent."""
         if not self.runs:
             return "—"
         return f"{100.0 * self.share:.1f} % [{100.0 * self.low:.1f}, {100.0 * self.high:.1f}]"
@@ -56,79 +48,39 @@ class Share:
 
 @dataclass(frozen=True)
 class Row:
-    """One claim over all seeds.
-
-    Parameters
-    ----------
-    theorem, claim : str
-        Its names.
-    text : str
-        What it says, in words.
-    verified, refuted : Share
-        Shares of the runs.
-    vacuous, inconclusive : int
-        Runs on which it says nothing, or that do not decide it.
-    expected : str
-        Status that the scenario expects for its usual seed; empty if none.
-    """
+    """Shares of one claim over all seeds."""
 
     theorem: str
     claim: str
-    text: str
-    verified: Share
+    text: str  # what it says, in words
+    verified: Share  # verified, refuted: Shares of the runs
     refuted: Share
-    vacuous: int
+    vacuous: int  # vacuous, inconclusive: Runs on which it says nothing, or that do not decide it
     inconclusive: int
-    expected: str = ""
+    expected: str = ""  # status that the scenario expects for its usual seed; empty if none
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One scenario over all seeds.
-
-    Parameters
-    ----------
-    scenario, title : str
-        Of the scenario.
-    settings : str
-        Whose they are: printed, recommended, …
-    options : str
-        Options that were given it, in words; empty if none.
-    runs, incomplete : int
-        All runs, and how many of them did not complete and count for nothing.
-    seconds : float
-        Mean time of a run.
-    rows : tuple of Row
-        Claims.
-    """
+    """Shares of one scenario's claims over all seeds."""
 
     scenario: str
     title: str
-    settings: str
-    options: str
-    runs: int
+    settings: str  # whose they are: printed, recommended, …
+    options: str  # options that were given it, in words; empty if none
+    runs: int  # runs, incomplete: All runs, and how many of them did not complete and count for nothing
     incomplete: int
-    seconds: float
-    rows: tuple[Row, ...]
+    seconds: float  # mean time of a run
+    rows: tuple[Row, ...]  # claims
 
 
 @dataclass(frozen=True)
 class StatisticsSection:
-    """Shares over many seeds of the scenarios that were surveyed.
+    """Shares over many seeds of the scenarios that were surveyed."""
 
-    Parameters
-    ----------
-    level : float
-        Confidence of every interval by itself.
-    entries : tuple of Entry
-        By scenario.
-    picture : Picture, optional
-        All shares.
-    """
-
-    level: float
-    entries: tuple[Entry, ...]
-    picture: Picture | None = None
+    level: float  # confidence of every interval by itself
+    entries: tuple[Entry, ...]  # by scenario
+    picture: Picture | None = None  # all shares
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -138,7 +90,7 @@ class StatisticsSection:
 def gather(
     asked: Sequence[Survey], made: Iterable[SurveyResult], *, level: float = 0.95, figures: bool = True
 ) -> StatisticsSection | None:
-    """The section of all scenarios whose surveys were all made; None if there is no such."""
+    """Return the section on the scenarios with complete surveys, or None."""
     records = {result.survey: result.records for result in made}
     entries = []
     for name in dict.fromkeys(survey.scenario for survey in asked):
@@ -151,7 +103,7 @@ def gather(
 
 
 def entry_of(name: str, records: Sequence[Record], level: float) -> Entry:
-    """The records of one scenario's runs, all with the same options; the shares are those of `flockana.shares`."""
+    """Return the shares of one scenario, from records of runs with the same options."""
     options = dict(records[0].job.options)
     item = scenario(name, records[0].job.seed, **options)
     labels = dict.fromkeys(label for record in records for label in record.claims)
@@ -168,7 +120,7 @@ def entry_of(name: str, records: Sequence[Record], level: float) -> Entry:
 
 
 def _row(item: Scenario, label: str, records: Sequence[Record], level: float) -> Row:
-    """One claim over the runs on which it was checked."""
+    """Return the shares of one claim over the runs on which it was checked."""
     name, _, claim = label.partition(":")
     statuses = Counter(record.claims[label][0] for record in records if label in record.claims)
     runs = statuses.total()
@@ -181,7 +133,7 @@ def _row(item: Scenario, label: str, records: Sequence[Record], level: float) ->
 
 
 def _text(item: Scenario, name: str, claim: str) -> str:
-    """What the source is reported to say, or the theorem's title."""
+    """Return the text of a source report, or the title of a theorem."""
     if name != SOURCE:
         return theorem(name).title
     return next((report.text for report in item.reports if report.name == claim), claim)

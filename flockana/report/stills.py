@@ -1,4 +1,4 @@
-"""A flock at single instants as SVG in the page's own colours: what the player shows, on paper and without scripts."""
+"""Snapshots of a flock as SVG in the page's colours, for print and without scripts."""
 
 from __future__ import annotations
 
@@ -20,15 +20,7 @@ _MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are 
 
 
 def stills(run: Trajectory, times: Sequence[float]) -> str:
-    """The samples nearest to some times, side by side, as HTML; all on one scale.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    times : sequence of float
-        Instants.
-    """
+    """The samples nearest to some times, side by side, as HTML; all on one scale."""
     samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
     around = world(run.law.continuous or run.law, run, samples)
     places = [_flat(run.q[k]) for k in samples]
@@ -65,7 +57,7 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
 
 
 def _flat(points: FloatArray) -> FloatArray:
-    """Points as they are drawn: those of a line on one height, those of space turned as the player first turns them."""
+    """Project points for drawing: on a line to one height, in space from the player's first view."""
     if points.shape[1] == 1:
         return np.column_stack([points, np.zeros(len(points))])
     if points.shape[1] == 3:
@@ -124,7 +116,7 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
 
 
 def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
-    """Of each wall in space a grid about the foot of the run's centre, as the player draws it."""
+    """Return a grid for each wall in space, about the foot of the run's centre."""
     walls = [solid for solid in solids if isinstance(solid, Wall) and solid.dimension == 3]
     if not walls:
         return ""

@@ -14,43 +14,27 @@ _AT_ONCE = 10  # runs in one survey: about a second at most, so that all process
 
 @dataclass(frozen=True)
 class Survey:
-    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent.
-
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    seeds : tuple of int
-        Which runs.
-    """
+    """Runs of one scenario to judge by its source's reports; names and numbers only, so it can be sent."""
 
     scenario: str
-    seeds: tuple[int, ...]
+    seeds: tuple[int, ...]  # which runs
 
     @property
     def name(self) -> str:
-        """As progress shows it."""
+        """Return the name shown by progress."""
         return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
 
 
 @dataclass(frozen=True)
 class SurveyResult:
-    """The records of a survey's runs.
+    """The records of a survey's runs."""
 
-    Parameters
-    ----------
-    survey : Survey
-        Which runs.
-    records : tuple of Record
-        One of each seed.
-    """
-
-    survey: Survey
-    records: tuple[Record, ...]
+    survey: Survey  # which runs
+    records: tuple[Record, ...]  # one of each seed
 
     @property
     def name(self) -> str:
-        """As progress shows it."""
+        """Return the name shown by progress."""
         return self.survey.name
 
 
@@ -86,5 +70,5 @@ def make_survey(survey: Survey) -> SurveyResult:
 
 
 def request(name: str) -> Request:
-    """What is asked of every run: to be judged by what its source reports, and no more."""
+    """Return the request of every run: to be judged by the source's reports alone."""
     return Request(name, (SOURCE,), ())

@@ -1,4 +1,4 @@
-"""The tables on the terminal: rows under headings, and facts with their names; as blocks where it is narrow."""
+"""Terminal tables: headed tables and tables of facts, as blocks on narrow terminals."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class WholeTable(Table):
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """The table, or its rows as blocks."""
+        """Yield the table, or its rows as blocks."""
         full = Measurement.get(console, options.update(max_width=_WIDE), self).maximum
         rows = [[_text(console, cell) for cell in row] for row in zip(*(c.cells for c in self.columns), strict=True)]
         heads = [_text(console, each.header) for each in self.columns]
@@ -59,7 +59,7 @@ class WholeTable(Table):
         yield from super(WholeTable, broken).__rich_console__(console, options)
 
     def _blocks(self, heads: list[Text], rows: list[list[Text]]) -> Iterable[RenderableType]:
-        """Each row as a name with its values under it."""
+        """Yield each row as a block: its name, with its values below."""
         yield Text()
         for name, *values in rows:
             shown = name.copy()
@@ -86,12 +86,12 @@ def _clamped(each: Column, width: int) -> int:
 
 
 def _indent(text: Text) -> int:
-    """How far a text is moved in under another."""
+    """Return the indentation of a text."""
     return len(text.plain) - len(text.plain.lstrip(" "))
 
 
 def _hang(text: Text) -> int:
-    """How far its further lines are: one that is moved in would look like two."""
+    """Return the indentation of a text's further lines."""
     return _indent(text) + 2 if _indent(text) else 0
 
 
@@ -127,13 +127,13 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
-    """A column that does not wrap unless told to; one with a width keeps it on a narrow terminal: others give way."""
+    """Return a column that does not wrap unless asked to; a given width holds on narrow terminals."""
     justify: Literal["left", "right"] = "right" if right else "left"
     return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow="fold")
 
 
 def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
-    """A row per fact: its name, and its value in words.
+    """Return a table of facts: name and value.
 
     Examples
     --------

@@ -23,7 +23,7 @@ _GAIN_OWNERS = {
 
 
 def show(value: Any) -> str:
-    """Write any value of a claim briefly: numbers to four digits, long sequences by their number of entries.
+    """Return a claim's value as short text: numbers to four digits, long sequences by length.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def show(value: Any) -> str:
 
 
 def markup(value: Any) -> Markup:
-    """A value for the page: as `show` writes it, but a table, folded, where it is a mapping of mappings or a long one.
+    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def _inner(value: Any) -> str:
 
 
 def deciding_claim(verdict: Verdict) -> Claim | None:
-    """The first claim that has the verdict's own status; None for a verdict without claims."""
+    """Return the first claim with the verdict's own status, or None."""
     return next((claim for claim in verdict.claims if claim.status == verdict.status), None)
 
 
@@ -120,7 +120,7 @@ def _describe(value: Any, law: Any) -> str:
 
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
-    """(name, value, meaning) of every threshold; the meanings are those of the class's own documentation.
+    """Return (name, value, meaning) of every threshold.
 
     Examples
     --------

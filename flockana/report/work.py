@@ -26,27 +26,14 @@ ERRATA = "errata"
 
 @dataclass(frozen=True)
 class Task:
-    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent.
+    """Scenario or theorem to verify, as names and numbers that can be sent to a process."""
 
-    Parameters
-    ----------
-    name : str
-        Of the scenario or the theorem.
-    fixed : bool
-        True for a theorem by itself.
-    seed : int
-        Of the scenario's random start.
-    only : tuple of str
-        Theorems to check on the scenario; empty for all of its own and what its source reports.
-    figures : bool
-        Draw the scenario's figures.
-    """
-
-    name: str
-    fixed: bool = False
-    seed: int = 0
+    name: str  # of the scenario or the theorem
+    fixed: bool = False  # true for a theorem by itself
+    seed: int = 0  # of the scenario's random start
+    # theorems to check on the scenario; empty for all of its own and what its source reports
     only: tuple[str, ...] = ()
-    figures: bool = True
+    figures: bool = True  # draw the scenario's figures
 
 
 Work = Task | Survey | Section
@@ -119,7 +106,7 @@ def check_all(
     jobs: int = 1,
     watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None,
 ) -> Iterator[Done]:
-    """Run and verify tasks in so many processes, giving each result as it is done; Ctrl-C stops what runs and raises.
+    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C.
 
     A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     """
@@ -135,7 +122,7 @@ def check_all(
 
 
 def _begun_apart(tasks: Sequence[Work]) -> list[Work]:
-    """Tasks in the order in which they are begun: one of a flow, all of maps, the other ones.
+    """Return tasks in the order of execution: one flow first, then maps, then the others.
 
     Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
     the other the loops of maps, and do not wait for each other (`flockana.kernels.turns`).

@@ -1,4 +1,4 @@
-"""The figures of a run of zone-based flocking: what Jond's figures 5 to 9 show, and what its claims speak of."""
+"""Figures of a run of zone-based flocking: Jond's figures 5 to 9 and the quantities of its claims."""
 
 from __future__ import annotations
 
@@ -57,13 +57,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
-    """Greatest, median and least distance of two agents over time.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """Greatest, median and least distance of two agents over time."""
     profile = pair_distance_profile(run.q)
     return tuple(
         Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))
@@ -71,7 +65,7 @@ def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
 
 
 def _middle(run: Trajectory) -> int:
-    """Where a flock, once together, is most split; else where it is nearest to an obstacle; else half way in time."""
+    """Return the sample where a connected flock is most split, or nearest to an obstacle, or the middle."""
     counts = component_counts(run)
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())

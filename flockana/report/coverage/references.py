@@ -1,4 +1,4 @@
-"""References such as ``theorem:os-1``: what kinds there are, and the file in which each finds what it names."""
+"""References such as ``theorem:os-1``: their kinds, and the file that each leads to."""
 
 from __future__ import annotations
 
@@ -23,19 +23,7 @@ _CHECKOUT = Path(__file__).resolve().parents[3]  # the folder that holds the pac
 
 @dataclass(frozen=True)
 class Reference:
-    """A name in flockana, and what it is the name of.
-
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
-    name : str
-        Such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``.
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such kind, or no name.
+    """Reference to a name in flockana, with its kind.
 
     Examples
     --------
@@ -43,8 +31,8 @@ class Reference:
     'flockana/theorems/slides/e04.py'
     """
 
-    kind: str
-    name: str
+    kind: str  # one of `KINDS`
+    name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS or not self.name:
@@ -57,20 +45,7 @@ class Reference:
 
 
 def locate(reference: Reference) -> str:
-    """The file that holds what a reference names, from the folder of the package on; nothing is run to find it.
-
-    Parameters
-    ----------
-    reference : Reference
-        What to look up.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is nothing of that name; the closest names are told.
-    FileError
-        Of a proof or a notebook, which stand beside the package, where there is no checkout.
-    """
+    """Return the file in the package that a reference leads to; nothing is run to find it."""
     return KINDS[reference.kind](reference.name)
 
 
@@ -88,7 +63,7 @@ def _plot(name: str) -> str:
 
 
 def _walked(kind: str, name: str) -> tuple[Any, Any]:
-    """(what a dotted name of the package means, what holds it)."""
+    """Return the object that a dotted name leads to, and its owner."""
     first, *parts = name.split(".")
     if first != flockana.__name__ or not parts:
         raise UnknownNameError(kind, name, [f"flockana.{known}" for known in dir(flockana)])
@@ -110,13 +85,13 @@ def _walked(kind: str, name: str) -> tuple[Any, Any]:
 
 
 def _names(holder: Any) -> list[str]:
-    """Public names in a module or class; of a package also its modules that nobody has imported yet."""
+    """Return the public names of a module or class, with a package's modules not yet imported."""
     within = {module.name for module in iter_modules(getattr(holder, "__path__", []))}
     return sorted(name for name in {*dir(holder), *within} if not name.startswith("_"))
 
 
 def _file(found: Any, holder: Any) -> str:
-    """Source file of a function, class, property or compiled function; of anything else, that of what holds it."""
+    """Return the source file of a function, class, property or kernel, or of the owner of anything else."""
     if isinstance(found, property):
         found = found.fget
     found = inspect.unwrap(getattr(found, "py_func", found))
@@ -155,7 +130,7 @@ def _scenario(name: str) -> str:
 
 
 def _report(name: str) -> str:
-    """What a source reports of a scenario: ``scenario/report``."""
+    """Return the file of a source report, named ``scenario/report``."""
     of, _, report = name.partition("/")
     path = _scenario(of)
     known = [f"{of}/{one.name}" for one in scenario(of).reports]
@@ -165,7 +140,7 @@ def _report(name: str) -> str:
 
 
 def is_erratum(name: str) -> bool:
-    """Whether a theorem's id is that of an erratum: they begin with a capital letter."""
+    """Return whether an id is an erratum's: those begin with a capital letter."""
     return name[:1].isupper()
 
 
