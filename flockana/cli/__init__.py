@@ -1,1 +1,1 @@
-"""The command line: one file per command; they load in no time, what they need with them."""
+"""Command line, one file per command; imports are deferred until needed."""

@@ -1,4 +1,4 @@
-"""What all commands do with their arguments before they begin: refuse empty paths, and tell what was given."""
+"""Checks of arguments common to all commands, and recording of the options given."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Command(TyperCommand):
 
 
 def _paths(command: Any) -> set[str]:
-    """The parameters of a command that are paths: typer's own records of their types differ between its versions."""
+    """Return the parameters of a command that are paths."""
     hints = get_type_hints(inspect.unwrap(command))
     return {name for name, kind in hints.items() if kind is Path or Path in get_args(kind)}
 

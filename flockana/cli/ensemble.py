@@ -1,4 +1,4 @@
-"""`flockana ensemble`: many runs of a scenario, the share of them in which each claim holds."""
+"""`flockana ensemble`: run a scenario over many seeds and print the share in which each claim holds."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def ensemble_command(
 
 
 def read_options(texts: list[str]) -> dict[str, Any]:
-    """Values by option: a number, a truth value or a text if there is one, a list of them if there are several.
+    """Parse options: numbers, truth values or texts, and lists of several.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str])
 
 
 def _telling(table: xarray.Dataset) -> list[str]:
-    """The claims whose share changes most with the parameter, as many as can be told apart, in their order."""
+    """Return the claims whose share varies most with the parameter, in their order."""
     import numpy as np
 
     share = table.share.sel(of="verified").fillna(0.0)
@@ -175,7 +175,7 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
 
 
 def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
-    """A row per claim, for every combination of the parameters: how often verified, refuted, and neither."""
+    """Return a table of the shares of each claim for every combination of parameters."""
     from itertools import product
 
     from rich.text import Text
@@ -205,6 +205,6 @@ def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
 
 
 def interval_text(entry: xarray.Dataset) -> str:
-    """A share and its interval in per cent."""
+    """Return a share and its interval in per cent."""
     share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
     return f"{share:.1f} [{low:.1f}, {high:.1f}]"

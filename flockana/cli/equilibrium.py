@@ -28,7 +28,7 @@ def equilibrium_command(
     picture: Drawing = None,
     as_json: AsJson = False,
 ) -> int:
-    """Find an equilibrium near a configuration by IPOPT, and say what kind of critical point it is.
+    """Find an equilibrium near a configuration with IPOPT, and classify it.
 
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-spiral:19 (see flockana
@@ -69,7 +69,7 @@ def equilibrium_command(
 
 
 def summary(equilibrium: Equilibrium, name: str) -> dict[str, Any]:
-    """The equilibrium and its kind, as plain data."""
+    """Return the equilibrium and its kind as plain data."""
     from flockana.equilibria.potential import Potential
     from flockana.measures.metrics import coincident_pairs
 

@@ -21,7 +21,7 @@ def explore_command(
     seconds: Annotated[float, typer.Option(help="How long a run may take; a longer one is refused.")] = 60.0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, open nothing.")] = False,
 ) -> int:
-    """Open a page where one chooses a flock, drags and changes it, and sees at once what it does.
+    """Open an interactive page for building, dragging and changing a flock.
 
     Only this machine and this user reach it: it listens on the loopback address, and its address holds a token, kept in
     ~/.flockana so that an open page finds the server again when it is started anew. Ctrl-C ends it. Needs

@@ -122,7 +122,7 @@ def _replay(path: Path) -> int:
 
 
 def known_false(theorem: str, claim: str) -> bool:
-    """Whether a claim is printed wrongly, or is no theorem: one of the catalogue's own runs is expected to break it."""
+    """Return whether the catalogue expects a claim to be refuted."""
     from flockana.scenarios import scenario, scenarios
 
     if "corrected" in theorem + claim:
@@ -160,7 +160,7 @@ def _show(search: Falsification) -> None:
 
 
 def claim_table(search: Falsification) -> Table:
-    """A row per claim: its margin at the scenario's start and at worst, the worst status, where it was judged."""
+    """Return a table of claims: margin at the start and at worst, worst status, number of runs judged."""
     import numpy as np
     from rich.text import Text
 

@@ -20,7 +20,7 @@ def read_flock(
     time: float | None = None,
     potential: bool = True,
 ) -> tuple[Any, FloatArray]:
-    """(law, q): the law of a scenario or a file, or Algorithm 1 or 2; a γ-agent is held where it is.
+    """Return the law of a scenario, file or name, and positions; the γ-agent is held in place.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
-    """Return the law, or raise if it is no continuous one, or has no potential where one is needed."""
+    """Return the law; raise if it is not continuous, or lacks a potential that is needed."""
     from flockana.base.errors import ArgumentError
     from flockana.equilibria.potential import ensure_flock_law
 
@@ -108,7 +108,7 @@ def _of_source(
 
 
 def _held(law: Any, t: float) -> Any:
-    """The law with its γ-agent held where it is at t: the same potential, and one that a file can hold."""
+    """Return the law with its γ-agent held where it is at time t."""
     from flockana.environment.targets import StaticTarget
 
     target = law.target

@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def prepare_home() -> None:
-    """Give matplotlib a private temporary folder, which processes inherit, if its own could not be made or written.
+    """Give matplotlib a private temporary folder if its own cannot be written; child processes inherit it.
 
     By itself it takes a new one each time, which costs seconds, and says so in three lines. What the user has chosen
     stays, and where there is no such folder either, matplotlib tells.
@@ -29,7 +29,7 @@ def prepare_home() -> None:
 
 
 def _folders() -> tuple[Path, Path]:
-    """Where matplotlib keeps settings and fonts."""
+    """Return the folders of matplotlib's settings and fonts."""
     home = Path(os.path.expanduser("~"))
     chosen = (
         os.environ.get("XDG_CONFIG_HOME") or home / ".config",
@@ -40,6 +40,6 @@ def _folders() -> tuple[Path, Path]:
 
 
 def _writable(folder: Path) -> bool:
-    """Whether a folder can be written, or made."""
+    """Return whether a folder can be written or created."""
     there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)

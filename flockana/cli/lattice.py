@@ -74,7 +74,7 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 
 
 def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str, Any]:
-    """Scale, links, crossings, rigidity and defects of a configuration, as plain data; None where there is none."""
+    """Return scale, links, crossings, rigidity and defects of a configuration as plain data."""
     from flockana.lattice import classify, harborth, is_complete, planar_bound
     from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance

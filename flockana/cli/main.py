@@ -1,4 +1,4 @@
-"""The command line: its commands, their errors in one line, and its exit status.
+"""Command line: commands, one-line errors and exit status.
 
 Heavy modules are imported inside the commands, so that ``--help`` and ``--version`` answer at once. Exit status: 0 all
 as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
@@ -68,7 +68,7 @@ def _flockana(
 
 
 def _app(asked: str) -> typer.Typer:
-    """The program with the command that is asked for, as to read the options of all takes time; else with all."""
+    """Return the program with the requested command only, or with all."""
     app = typer.Typer(
         name=_NAME,
         help="Do these flocks do what the theorems say?",
@@ -83,7 +83,7 @@ def _app(asked: str) -> typer.Typer:
 
 
 def _asked(arguments: Sequence[str]) -> str:
-    """The command that is asked for, or an option of the program's own, or nothing; raise on a command that is none."""
+    """Return the requested command or global option, or nothing; raise on an unknown command."""
     first = arguments[0] if arguments else ""
     if arguments and not first.startswith("-") and first not in _COMMANDS:
         raise UnknownNameError("command", first, _COMMANDS)

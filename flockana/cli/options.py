@@ -36,5 +36,5 @@ Drawing = Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG 
 
 
 def output(text: str, *, metavar: str = "FILE") -> Any:
-    """The option -o of a command, with what it says of the file or folder to write."""
+    """Return the option -o of a command, with its help text."""
     return typer.Option("--output", "-o", metavar=metavar, help=text)

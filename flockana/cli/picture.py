@@ -21,7 +21,7 @@ _DPI = 160
 
 
 def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
-    """Raise if no file of such a kind can be written there; before any work whose result it should hold."""
+    """Raise if a picture of this kind cannot be written there."""
     from flockana.report.build import ensure_directory
 
     if path is None:

@@ -1,4 +1,4 @@
-"""What commands print: a title with tables under it, the files that they wrote, or JSON."""
+"""Printing of results: tables under a title, files written, or JSON."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def show(title: str, *tables: RenderableType) -> Console:
 
 
 def show_files(**files: Path | None) -> None:
-    """Print where each file is that was written, by what it is."""
+    """Print the path of each file written, with its description."""
     for kind, path in files.items():
         if path is not None:
             typer.echo(f"{kind}: {path}")

@@ -1,4 +1,4 @@
-"""Where positions come from: a saved run, a CSV, an equilibrium's file, or a builder such as ``square:4x5``."""
+"""Sources of positions: saved runs, CSV files, equilibria, and builders such as ``square:4x5``."""
 
 from __future__ import annotations
 
@@ -37,31 +37,15 @@ _BUILDERS: dict[str, tuple[Callable[..., FloatArray], str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Positions, with the scale and the range that they are to be measured with.
+    """Positions with their scale and range."""
 
-    Attributes
-    ----------
-    name : str
-        What was asked for.
-    q : ndarray, shape (n, m)
-        Positions.
-    d, r : float
-        Scale and interaction range.
-    law : object or None
-        The law that came with the positions.
-    t : float
-        When they were taken.
-    max_ratio : float or None
-        Of a builder: largest κ at which its pattern is an α-lattice.
-    """
-
-    name: str
-    q: FloatArray
-    d: float
+    name: str  # what was asked for
+    q: FloatArray  # shape (n, m)
+    d: float  # d, r: Scale and interaction range
     r: float
-    law: Any = None
-    t: float = 0.0
-    max_ratio: float | None = None
+    law: Any = None  # the law that came with the positions
+    t: float = 0.0  # when they were taken
+    max_ratio: float | None = None  # of a builder: largest κ at which its pattern is an α-lattice
 
 
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
@@ -102,7 +86,7 @@ def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r:
 
 
 def integrated_law(law: Any) -> Any:
-    """The continuous law that a scheme integrates; any other law, and None, as it is.
+    """Return the continuous law behind a scheme; other laws and None unchanged.
 
     Examples
     --------
@@ -153,7 +137,7 @@ def ensure_source(name: str, more: tuple[str, ...] = ()) -> None:
 
 
 def builders() -> tuple[str, ...]:
-    """Every builder with the form of its size.
+    """Return every builder with the form of its size.
 
     Examples
     --------
@@ -164,7 +148,7 @@ def builders() -> tuple[str, ...]:
 
 
 def build(text: str, d: float) -> tuple[FloatArray, float]:
-    """Positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
+    """Return positions of a builder such as ``fcc:2x2x2``, and the largest κ at which they are an α-lattice.
 
     Examples
     --------
@@ -183,7 +167,7 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
 
 
 def read_csv(path: Path) -> FloatArray:
-    """Positions from a CSV: a row for each agent, one to three columns, a header or none."""
+    """Return positions from a CSV with a row per agent, one to three columns, with or without a header."""
     try:
         rows = csv.reader(StringIO(read_whole(path).removeprefix("\ufeff"), newline=""))
         lines = [(k, row) for k, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]

@@ -79,14 +79,14 @@ def stability_command(
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
-    """The slowest modes; of a large flock without its whole spectrum."""
+    """Return the slowest modes; of a large flock without the whole spectrum."""
     from flockana.stability import slowest_modes
 
     return linear.modes[:count] if linear.q.size <= DENSE else slowest_modes(linear, count).modes
 
 
 def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, Any]:
-    """What the linearisation says, as plain data."""
+    """Return the linearisation's results as plain data."""
     from flockana.stability.translational import CentreOfMass
 
     slow, (n, m) = tuple(slow), linear.q.shape
@@ -122,7 +122,7 @@ def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str,
 
 
 def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict: bool) -> dict[str, Any]:
-    """Delay margins and norms, where asked for, as plain data; None where there is no bound."""
+    """Return the requested delay margins and norms as plain data; None where unbounded."""
     from math import isfinite
 
     from flockana.stability.blocks import law_blocks
@@ -229,5 +229,5 @@ def _mode_table(slow: tuple[Mode, ...]) -> Table:
 
 
 def _follows(law: Any) -> bool:
-    """Whether the centre of mass follows a γ-agent by a linear equation of its own."""
+    """Return whether the centre of mass follows a γ-agent by its own linear equation."""
     return law.target is not None and law.splits

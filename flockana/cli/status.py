@@ -1,4 +1,4 @@
-"""How a command ends: its exit status, and what is wrong in one line."""
+"""Exit status of commands, and one-line errors."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ OK, BAD_INPUT, UNEXPECTED, INTERRUPTED = 0, 2, 3, 130
 
 
 def complain(message: object) -> None:
-    """Print what is wrong, in one line on the error stream."""
+    """Print an error in one line on the error stream."""
     typer.echo(f"flockana: {' '.join(str(message).split())}", err=True)

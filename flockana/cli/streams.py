@@ -1,4 +1,4 @@
-"""Where the output goes: terminals of any encoding, readers that leave, and devices that are full."""
+"""Output streams: any encoding, closed readers, full devices."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from flockana.base.errors import FileError
 
 
 class _Outlet(io.FileIO):
-    """The standard output; once its reader has left, what is written is dropped and the command goes on."""
+    """Standard output that drops text once its reader has left."""
 
     gone = False
 
     def write(self, data: Any) -> int:
-        """Write some bytes, or drop them all."""
+        """Write bytes, or drop them."""
         if not self.gone:
             try:
                 return super().write(data) or 0
@@ -31,7 +31,7 @@ class _Outlet(io.FileIO):
 
 
 def prepare_output() -> None:
-    """Make the standard output take every letter, and outlive its reader; a terminal and a test's stay as they are."""
+    """Make the standard output accept every letter and survive its reader."""
     stream = sys.stdout
     if stream is None or stream is not sys.__stdout__ or not isinstance(stream, io.TextIOWrapper):
         return
@@ -49,13 +49,13 @@ def prepare_output() -> None:
 
 
 def finish_output() -> None:
-    """Write what is still held back; raise if that fails, and leave nothing that fails again."""
+    """Flush the output; raise if that fails, once only."""
     if sys.stdout is not None:
         sys.stdout.flush()
 
 
 def in_output_encoding(text: str) -> str:
-    """JSON text, in which letters are escaped if the output's encoding lacks some of them.
+    """Return JSON text, escaping letters that the output's encoding lacks.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How many threads linear algebra starts with a command."""
+"""Number of threads of linear algebra in a command."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SAID = (_THREADS, "OMP_NUM_THREADS")
 
 @contextmanager
 def one_thread_for_matrices() -> Iterator[None]:
-    """OpenBLAS, if it is loaded meanwhile, starts one thread, unless the user has said how many.
+    """Limit OpenBLAS to one thread unless the user has set a number.
 
     The matrices of a small flock are done before a second thread has begun. Beside other work the two wait for each
     other: the eigenvalues of 150 agents take a hundred times as long.

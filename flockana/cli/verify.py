@@ -98,7 +98,7 @@ def verify_command(
 def _planned(
     name: str | None, seeds: int | None, seed: int, *, figures: bool
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
-    """All that is to be done, and the surveys among it."""
+    """Return all tasks, and the surveys among them."""
     from flockana.report.section import LINEARISED, MANY_LAWS, Section
     from flockana.report.surveys import surveys
     from flockana.report.work import plan
@@ -118,7 +118,7 @@ def _folder(report: Path | None, name: str | None) -> Path:
 def _gathered(
     results: Sequence[Done], many: Sequence[Survey], *, figures: bool
 ) -> tuple[list[Page], StatisticsSection | None]:
-    """Pages and shares of runs, from what was done."""
+    """Return pages and shares from the results."""
     from flockana.report.pages import Page
     from flockana.report.statistics import gather
     from flockana.report.surveys import SurveyResult
@@ -138,7 +138,7 @@ def _written(
     complete: bool,
     name: str | None,
 ) -> Path:
-    """Where the report is, written."""
+    """Write the report; return its path."""
     from flockana.report.build import write_report
     from flockana.report.comparison import ComparisonSection
     from flockana.report.stability import NO_FLOCKS, LinearisedFlocks
@@ -158,7 +158,7 @@ def _written(
 
 
 def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, FlockanaError | None]:
-    """(results in the order of the tasks, exit status, error): what was done before an error or Ctrl-C is kept."""
+    """Return results in task order, exit status and error; completed results survive an error or Ctrl-C."""
     from flockana.report.work import check_all
 
     results: dict[str, Done] = {}
