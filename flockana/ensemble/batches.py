@@ -1,4 +1,4 @@
-"""Hand work out in batches to whoever works: a few more than there are workers, results as they are done.
+"""Distribution of work in batches to executors, with results as they are done.
 
 Nothing is decided by which comes first, so results do not depend on who works. An item that ends its worker process
 (for want of memory, say) is found by trying those under suspicion one at a time; all others are worked on again.
@@ -105,12 +105,12 @@ def next_batches(
 
 
 def _under_way(pending: Pending) -> Batch:
-    """The items that workers have begun, or are about to."""
+    """Return the items that workers have begun or will begin next."""
     return tuple(item for future, batch in pending.items() if future.running() for item in batch)
 
 
 def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Crew) -> Batch:
-    """The items any of which may have ended a worker; raises if it was something else, or nothing can go on."""
+    """Return the items that may have ended a worker; raise if the failure has another cause."""
     if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
         return batch
     if isinstance(error, BrokenExecutor) and workers.renew is not None:

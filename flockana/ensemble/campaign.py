@@ -73,8 +73,6 @@ def ensemble(
     metrics : iterable of str or callable
         What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
-    tolerances : Tolerances, optional
-        Thresholds of the verdicts.
     executor : concurrent.futures.Executor, optional
         Who computes; it is left running. By default a pool of processes that is started for the purpose.
     cluster : str, optional
@@ -218,7 +216,7 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
 
 
 def _ensure_names(axes: Mapping[str, Any], fixed: Mapping[str, Any], metrics: Sequence[str]) -> None:
-    """Options and metrics become names in one dataset: none may come twice."""
+    """Raise if two options or metrics share a name in the dataset."""
     seen = {*RESERVED}
     for name in (*axes, *fixed, *(metric_name(metric) for metric in metrics)):
         if name in seen:
@@ -242,7 +240,7 @@ def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
 def _ensure_scenario(
     scenario: Any, axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seed: int
 ) -> str:
-    """The name of a scenario whose options are good: those of the catalogue are tried once each."""
+    """Return the name of a scenario after building it once with each option."""
     if isinstance(scenario, str):
         ensure_known("scenario", scenario, scenarios())
         for job in job_grid(axes, fixed, [seed]):
@@ -259,7 +257,7 @@ def _ensure_scenario(
 
 
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
-    """Key of each run; of a user's own functions the source is part of it, and must be known for a store."""
+    """Return the key of each run; the source of user functions is part of it."""
     shared = request.to_dict()
     own = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}

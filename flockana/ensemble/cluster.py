@@ -1,4 +1,4 @@
-"""A Dask cluster, by its address or of our own: every wait has a limit, and what fails is closed before it is told.
+"""Dask clusters, by address or local: every wait has a limit, and failures close the client.
 
 A client that is left open closes itself when it is collected, and waits for ever if Dask holds its own lock just then.
 """
@@ -26,7 +26,7 @@ _LOOK = 0.05  # seconds between looks for a first worker
 
 @contextmanager
 def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[], int]]]:
-    """The executor of a cluster, and a function that tells how many runs it can make at once, now."""
+    """Return the executor of a cluster, and a function for its current number of threads."""
     try:
         import distributed  # noqa: F401
     except ImportError as error:
@@ -101,7 +101,7 @@ def _client(target: Any, address: str) -> Any:
 
 
 def _opened(target: Any) -> Any:
-    """The client; if there is none within the limit, or no worker, it has been closed."""
+    """Return a client with a worker, or raise within the time limit after closing it."""
     from distributed import Client
 
     class LimitedClient(Client):  # type: ignore[misc]
@@ -127,12 +127,12 @@ def _opened(target: Any) -> Any:
 
 
 def _threads(client: Any, limit: float) -> int:
-    """How many runs the cluster can make at once, now: workers come and go."""
+    """Return the current number of threads of the cluster's workers."""
     return int(sum(client.sync(client.scheduler.ncores, callback_timeout=limit).values()))
 
 
 class _Width:
-    """How many runs the cluster can make at once, as long as there is a cluster."""
+    """Current number of runs that a cluster can make at once."""
 
     def __init__(self, client: Any) -> None:
         self.client, self.seen = client, time.monotonic()

@@ -27,7 +27,7 @@ RESERVED = (
 
 
 def job_grid(axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seeds: Sequence[int]) -> list[Job]:
-    """All runs of an ensemble, in the order of its dataset: parameters as given, seeds fastest.
+    """Return all runs of an ensemble in dataset order: parameters as given, seeds fastest.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def to_dataset(
 
 
 def metric_name(name: str) -> str:
-    """The variable of a measure: its own name, or the function's in a ``"module:function"``.
+    """Return the variable name of a measure, or of the function in ``"module:function"``.
 
     Examples
     --------
@@ -119,7 +119,7 @@ def _described(name: str) -> dict[str, str]:
 
 
 def _flags(names: Sequence[str]) -> dict[str, Any]:
-    """What codes mean, in the convention of CF; -1 stands for a claim or a run that is not there."""
+    """Return the meanings of status codes in the CF convention; -1 stands for a missing claim or run."""
     return {"flag_values": list(range(len(names))), "flag_meanings": " ".join(names)}
 
 
@@ -140,7 +140,7 @@ def ensure_ensemble(dataset: Any) -> None:
 
 
 def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
-    """In which share of the runs each claim is verified, and refuted, with the interval of Clopper and Pearson.
+    """Return the shares of runs in which each claim is verified and refuted, with Clopper-Pearson intervals.
 
     The share is of all complete runs on which the claim was checked, those on which it is vacuous or inconclusive
     included: what is not verified is not counted as if it were.

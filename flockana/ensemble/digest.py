@@ -1,4 +1,4 @@
-"""Under which key a run is stored, and the version of the mathematics that its numbers come from.
+"""Keys of stored runs, and the version of the mathematics behind their numbers.
 
 The version is no constant that somebody must remember to raise, or a stale number could be taken for a fresh one. It
 is a digest of all that decides the numbers: every source of the package up to the
@@ -51,13 +51,6 @@ def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
 
     To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
-
-    Parameters
-    ----------
-    sources : mapping of str to bytes
-        Files by name.
-    folder : Path
-        Where Python keeps what it compiled.
     """
     exact = hashlib.sha256(repr((sys.version, _libraries(), Path(__file__).read_bytes())).encode())
     for name, source in sorted(sources.items()):
@@ -88,7 +81,7 @@ def source_files(root: Path) -> list[Path]:
 
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
-    """Digest of files by name, of what Python makes of them: comments, layout and docstrings do not count.
+    """Return the digest of source files by name; comments, layout and docstrings do not count.
 
     Examples
     --------

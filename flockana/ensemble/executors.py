@@ -1,4 +1,4 @@
-"""Who works: this process, a pool of processes of our own, a Dask cluster, or any executor of the user's."""
+"""Executors: serial, process pool, Dask, custom."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.ensemble.processes import ProcessPool, cores
 
 
 class Serial(Executor):
-    """An executor that works at once, in the caller's own process and thread.
+    """Executor that runs each call at once in the caller's thread.
 
     Examples
     --------
@@ -34,24 +34,12 @@ class Serial(Executor):
 
 @dataclass
 class Crew:
-    """An executor and what must be known of it to keep it busy.
+    """Executor with its width and its way of failing."""
 
-    Parameters
-    ----------
-    executor : Executor
-        Who works.
-    width : callable
-        How many batches it can work on at once, now.
-    renew : callable, optional
-        Gives a new executor after a worker's death broke this one.
-    loses : bool
-        Whether a result may be lost with its worker, whatever error that then is: Dask's.
-    """
-
-    executor: Executor
-    width: Callable[[], int]
-    renew: Callable[[], Executor] | None = None
-    loses: bool = False
+    executor: Executor  # who works
+    width: Callable[[], int]  # how many batches it can work on at once, now
+    renew: Callable[[], Executor] | None = None  # gives a new executor after a worker's death broke this one
+    loses: bool = False  # whether a result may be lost with its worker, whatever error that then is: Dask's
 
 
 @contextmanager
@@ -75,7 +63,7 @@ def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: 
 
 
 def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
-    """Check who shall work, before anything is started."""
+    """Check the executor options before anything is started."""
     if executor is not None and not isinstance(executor, Executor):
         raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
     if executor is not None and (cluster is not None or jobs is not None):
@@ -90,7 +78,7 @@ def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
 
 @contextmanager
 def _pool(count: int) -> Iterator[Crew]:
-    """A process pool of our own, made anew when a worker dies."""
+    """Yield a process pool that is replaced when a worker dies."""
     pools = [ProcessPool(count)]
 
     def renew() -> Executor:

@@ -1,4 +1,4 @@
-"""In which phase a run ended: flocking, fragmentation, collapse, or none of them."""
+"""Phases in which runs end: flocking, fragmentation, collapse."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def cores() -> int:
 
 
 class ProcessPool(ProcessPoolExecutor):
-    """Spawned processes that never see Ctrl-C, use one thread each, and end when their parent does, however it ends.
+    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class ProcessPool(ProcessPoolExecutor):
             return super().submit(function, *arguments, **options)
 
     def stop(self) -> None:
-        """End all processes at once, with what they are doing, and wait until they are gone."""
+        """End all processes at once and wait until they are gone."""
         with interrupts_held():  # a second Ctrl-C must not leave half of them
             workers = list((getattr(self, "_processes", None) or {}).values())  # Python 3.14 has a public way
             manager = getattr(self, "_executor_manager_thread", None)
@@ -75,7 +75,7 @@ def _end_with(sentinel: int) -> None:
 
 @contextmanager
 def single_threaded_children() -> Iterator[None]:
-    """Processes started meanwhile use one thread for linear algebra: there are as many of them as cores."""
+    """Limit processes started inside to one thread of linear algebra each."""
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ |= dict.fromkeys(_ONE_THREAD, "1")
     try:

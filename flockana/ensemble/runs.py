@@ -15,7 +15,7 @@ _LONGEST_BATCH = 256
 
 
 def make_runs(request: Request, jobs: Sequence[Job], workers: Crew) -> Iterator[tuple[Record, ...]]:
-    """Make runs; records come as batches of them are done. One that ends its worker process is recorded as such."""
+    """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
         for done in work_through(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
             yield tuple(_died(job) if record is None else record for job, record in done)
@@ -33,6 +33,6 @@ def _died(job: Job) -> Record:
 
 
 def _batch_size(records: tuple[Record, ...]) -> int:
-    """How many runs make a batch of about half a second, by the last ones that were made."""
+    """Return the number of runs in a batch of about half a second, from recent timings."""
     each = sum(record.seconds for record in records) / len(records)
     return int(min(_LONGEST_BATCH, max(1.0, BATCH_SECONDS / max(each, 1e-6))))

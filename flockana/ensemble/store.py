@@ -51,12 +51,6 @@ class Store:
     path : path-like
         File; made, with its folders, if there is none.
 
-    Raises
-    ------
-    FileError
-        If the file cannot be written, is damaged, is no store, or holds runs of another version of the mathematics.
-        It is left as it was.
-
     Examples
     --------
     >>> import tempfile
@@ -99,7 +93,7 @@ class Store:
         return int(self._file.execute(f"PRAGMA {name}").fetchone()[0])
 
     def _prepare(self) -> None:
-        """Switch to a write-ahead log; SQLite does not wait for its turn here, so we do."""
+        """Switch SQLite to a write-ahead log, retrying while it is locked."""
         deadline = time.monotonic() + _PATIENCE
         while True:
             try:
@@ -153,7 +147,7 @@ class Store:
         return records
 
     def add(self, scenario: str, records: Mapping[str, Record]) -> None:
-        """Write runs, all of them or none; a run that is there already stays as it is."""
+        """Write runs in one transaction; runs already stored are kept."""
         rows = [
             (key, scenario, r.job.seed, json.dumps(dict(r.job.options)), r.status, r.to_json(key))
             for key, r in records.items()
