@@ -41,7 +41,7 @@ def falsify(
     executor: Executor | None = None,
     progress: bool = False,
 ) -> Falsification:
-    """Search initial states, and parameters of the law, for a run that refutes a claim, by minimising its margin.
+    """Search initial states and law parameters for a run that refutes a claim, by minimising its margin.
 
     CMA-ES (restarted with growing populations) in a box about the scenario's start. Where hypotheses are not met the
     search is led back by how far they are missed; a run that fails counts as worse than any other. That nothing is
@@ -72,8 +72,6 @@ def falsify(
     surrogate : callable, optional
         ``surrogate(trajectory, claim) -> float`` in [0, 1], lower the nearer to breaking: it orders runs of equal
         margins, which counts often have. Some claims have one of ours. None is asked where unmet hypotheses lead back.
-    tolerances : Tolerances, optional
-        Thresholds of the verdicts.
     deepen : bool
         Use up the budget after a counterexample is found, for a worse one.
     executor : concurrent.futures.Executor, optional
@@ -175,7 +173,7 @@ def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluatio
 
 
 class _Record:
-    """Statuses and margins of all evaluations, and the best of them."""
+    """Statuses and margins of all evaluations, and the worst case found."""
 
     def __init__(self) -> None:
         self.rows: list[dict[str, tuple[str, float]]] = []
@@ -201,10 +199,10 @@ class _Record:
 
 
 def _margin(claim: Claim) -> float:
-    """The margin of a claim; NaN if it is vacuous, when its margin has no meaning."""
+    """Return the margin of a claim; NaN if it is vacuous."""
     return float("nan") if claim.status == "vacuous" or claim.margin is None else float(claim.margin)
 
 
 def _worst(best: Evaluation) -> str:
-    """The worst claim so far and its status, beside the progress bar."""
+    """Return the worst claim so far and its status, for the progress bar."""
     return "all failed" if best.verdict is None else f"{best.claim} {best.verdict.claim(best.claim).status}"

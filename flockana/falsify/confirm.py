@@ -43,7 +43,7 @@ class Case(Protocol):
 
 
 def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
-    """The verdict, its refuted claims inconclusive unless a run at a thousandth of the tolerance refutes them too.
+    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too.
 
     A map has no tolerance: its verdict stays as it is.
     """

@@ -46,10 +46,6 @@ class Counterexample:
         The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
-    t_span : (float, float)
-        Start and end.
-    options : mapping
-        Keyword arguments of `simulate`.
     tolerances : Tolerances
         Thresholds of the verdict.
     margin, error : float
@@ -118,11 +114,6 @@ class Counterexample:
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON; numbers read back exactly, an existing file is replaced only when whole.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
 
         Raises
         ------
@@ -196,7 +187,7 @@ class Counterexample:
 
 
 def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> Verdict:
-    """Simulate a counterexample from its file and check its theorem anew.
+    """Simulate a saved counterexample and check its theorem again.
 
     Parameters
     ----------
@@ -227,7 +218,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Keyword arguments of `simulate`, none that it does not have."""
+    """Return keyword arguments of `simulate`; raise on unknown ones."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")
@@ -235,7 +226,7 @@ def _options(data: Any) -> dict[str, Any]:
 
 
 def _ensure_unharmed(data: Mapping[str, Any]) -> None:
-    """Raise unless the file is as it was written; one without a digest is of before there were any."""
+    """Raise if the file's digest does not match; older files have none."""
     unknown = sorted({*data} - {*_KEYS, SEAL})
     if unknown:
         raise ValueError(f"it holds {', '.join(unknown)}, which no counterexample has")

@@ -21,57 +21,30 @@ from flockana.theorems.theorem import Lead, unmet
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Grade, deciding claim and verdict of one point of the search space.
+    """Grade, deciding claim and verdict of one point of the search space."""
 
-    Parameters
-    ----------
-    grade : float
-        What the search minimises.
-    claim : str
-        The claim that decided it.
-    verdict : Verdict or None
-        None if the run, or its check, failed.
-    message : str
-        Why it failed.
-    """
-
-    grade: float
-    claim: str = ""
-    verdict: Verdict | None = None
-    message: str = ""
+    grade: float  # what the search minimises
+    claim: str = ""  # the claim that decided it
+    verdict: Verdict | None = None  # none if the run, or its check, failed
+    message: str = ""  # why it failed
 
     @property
     def found(self) -> bool:
-        """Whether the claim is refuted."""
+        """Return whether the claim is refuted."""
         return self.verdict is not None and self.verdict.claim(self.claim).status == "refuted"
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included.
-
-    Parameters
-    ----------
-    space : Space
-        The search space.
-    theorem : str or Theorem
-        The theorem.
-    tolerances : Tolerances
-        Thresholds.
-    claim : str or None
-        The claim whose grade counts; None for the least grade of all.
-    surrogate : callable or None
-        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`.
-    scales : mapping of str to float
-        Units of the margins by claim, 1 where none is given.
-    """
+    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included."""
 
     space: Space
     theorem: str | Theorem
     tolerances: Tolerances
-    claim: str | None = None
+    claim: str | None = None  # the claim whose grade counts; None for the least grade of all
+    # ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`
     surrogate: Lead | None = None
-    scales: Mapping[str, float] = field(default_factory=dict)
+    scales: Mapping[str, float] = field(default_factory=dict)  # units of the margins by claim, 1 where none is given
 
     def __call__(self, point: FloatArray) -> Evaluation:
         """Evaluate a point; an error becomes the grade of a failed run."""
@@ -82,7 +55,7 @@ class Problem:
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 
     def judged(self, case: Scenario) -> Evaluation:
-        """Run a case and grade its verdict; errors are the caller's."""
+        """Run a case and grade its verdict; errors are raised."""
         with np.errstate(all="ignore"):
             run = case.run()
             if run.status == "interrupted":
@@ -92,7 +65,7 @@ class Problem:
             return self.graded(run, self.verdict(case, run))
 
     def verdict(self, case: Scenario, run: Trajectory) -> Verdict:
-        """The verdict on a run of a case, its refutations confirmed by a much finer run."""
+        """Return the verdict on a case's run, refutations confirmed by a finer run."""
 
         def judge(again: Trajectory) -> Verdict:
             return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
@@ -122,6 +95,6 @@ class Problem:
 
 
 def units(verdict: Verdict) -> dict[str, float]:
-    """Units of margins: their sizes on a run, so that those of different claims can be compared."""
+    """Return the units of margins on a run, so that different claims can be compared."""
     sizes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
     return {name: size for name, size in sizes.items() if 0.0 < squash(size) < 1.0}

@@ -86,12 +86,12 @@ class Falsification:
 
     @property
     def margin(self) -> float:
-        """Margin of the claim on the worst run; NaN if it has none."""
+        """Margin of the claim on the worst run; NaN without one."""
         return _number(None if self._worst is None else self._worst.margin)
 
     @property
     def error(self) -> float:
-        """Numerical error of that margin; NaN if it has none."""
+        """Numerical error of `margin`; NaN without one."""
         return _number(None if self._worst is None else self._worst.error)
 
     @property
@@ -101,17 +101,17 @@ class Falsification:
 
     @property
     def found(self) -> bool:
-        """Whether a run refutes the claim: by more than its numerical error."""
+        """Return whether a run refutes the claim by more than its numerical error."""
         return self.status == "refuted"
 
     @property
     def evaluations(self) -> int:
-        """How many runs were made."""
+        """Number of runs made."""
         return len(self.statuses[self.claim])
 
     @property
     def failures(self) -> int:
-        """How many of them failed."""
+        """Number of runs that failed."""
         return self.statuses[self.claim].count("failed")
 
     @property
@@ -142,7 +142,7 @@ class Falsification:
 
     @property
     def broken(self) -> tuple[str, ...]:
-        """Every claim that some run of the search refutes, searched for or not."""
+        """Return every claim refuted by a run of the search."""
         return tuple(name for name in self.statuses if self.refuting(name))
 
     def worst_status(self, claim: str) -> str:
@@ -160,7 +160,7 @@ class Falsification:
         return self.case.run()
 
     def counterexample(self) -> Counterexample:
-        """The worst case as a counterexample of its own.
+        """Return the worst case as a `Counterexample`.
 
         Raises
         ------
@@ -190,11 +190,6 @@ class Falsification:
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON, for `replay`.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
 
         Raises
         ------

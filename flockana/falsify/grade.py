@@ -41,7 +41,7 @@ def grade(
 
 
 def missing(hypotheses: Iterable[Hypothesis]) -> float:
-    """How far hypotheses are from being met: the sum over the unmet ones, each below 1, or 1 if it has no margin.
+    """Return the total shortfall of unmet hypotheses, each between 0 and 1.
 
     Examples
     --------

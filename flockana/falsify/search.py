@@ -1,4 +1,4 @@
-"""CMA-ES in the unit cube, restarted from a random point with twice the population whenever it has converged."""
+"""CMA-ES in the unit cube, restarted with twice the population after convergence (IPOP)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 
 
 class Search:
-    """An optimiser that proposes points, a generation at a time, and learns from their grades (IPOP-CMA-ES).
+    """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The bounded search space: states about a scenario's start, and parameters of its law."""
+"""Bounded search space of initial states and law parameters."""
 
 from __future__ import annotations
 
@@ -124,12 +124,10 @@ def search_space(
 
 
 def law_parameter(law: Any, name: str) -> Any:
-    """The value of a law's parameter, by its dotted name.
+    """Return the value of a law's parameter by its dotted name.
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
-        The law.
     name : str
         Such as ``"gains.c1_alpha"``.
     """
