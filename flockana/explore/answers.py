@@ -1,4 +1,4 @@
-"""Everything that a page is told of a case, in the order in which it can be known."""
+"""Messages that answer a case of the page, in the order in which they are computed."""
 
 from __future__ import annotations
 
@@ -33,24 +33,7 @@ _SQUEEZED = 400  # agents up to which the collapse threshold is sought, in the p
 
 
 def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool]) -> None:
-    """Run a case and tell all about it; ends early where something is wrong, which is told.
-
-    Parameters
-    ----------
-    asked : Case or mapping
-        A case, or what a page sent.
-    send : callable
-        ``send(kind, content)`` with kinds form, run (bytes), ran, verdict, poles, threshold, error, done.
-    limit : float
-        Seconds that the run may take.
-    cancelled : callable
-        Whether to stop.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was cancelled.
-    """
+    """Run a case and send its results; stop at the first error, which is sent."""
     try:
         case = asked if isinstance(asked, Case) else Case.of(asked)
         parts = case.parts
@@ -75,15 +58,7 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
 
 
 def form(case: Case, parts: Start) -> dict[str, Any]:
-    """What a page lets one change, with the Python that does the same.
-
-    Parameters
-    ----------
-    case : Case
-        What is asked for.
-    parts : Start
-        Of it.
-    """
+    """Return the form of a start: its parameters, and the equivalent Python."""
     usual = {number.path: number.value for number in numbers(case.start().law)}
     listed = [
         {"path": each.path, "value": each.value, "usual": usual.get(each.path), "place": each.place}
@@ -105,13 +80,13 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
 
 
 def _idle(law: Any) -> tuple[str, ...]:
-    """Endings of paths that mean nothing to a law: gains of a γ-agent or of obstacles that it does not have."""
+    """Return paths of parameters without effect on a law, such as unused gains."""
     unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
     return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
 
 
 def _reporting(parts: Start) -> list[dict[str, str]]:
-    """The row of what the source reports, if it reports anything."""
+    """Return the row of the source's reports, if there are any."""
     return [] if parts.source is None else [{"id": SOURCE, "title": "What the source reports of this run"}]
 
 
@@ -133,13 +108,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
 
 
 def poles(run: Trajectory) -> dict[str, Any]:
-    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there."""
     law, q = run.law.continuous, run.q[-1]
     if law is None:
         return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
@@ -186,7 +155,7 @@ def _few(names: list[str]) -> list[str]:
 
 
 def _squeezed(law: Any) -> bool:
-    """Whether a γ-agent pulls on all alike, so that c1γ/c1α decides whether agents coincide (erratum E11)."""
+    """Return whether a γ-agent pulls all agents alike, so that c1γ/c1α decides on collapse (erratum E11)."""
     gains = getattr(law, "gains", None)
     follows = law.target is not None and getattr(law, "splits", False) and isinstance(law.pair, AlphaInteraction)
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)

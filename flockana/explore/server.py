@@ -80,20 +80,10 @@ class Process:
 
 @dataclass
 class Server:
-    """What all tabs share.
+    """State shared by all tabs."""
 
-    Parameters
-    ----------
-    token : str
-        Whoever does not know it is turned away.
-    first : dict
-        The case that a page begins with.
-    limit : float
-        Seconds that a run may take.
-    """
-
-    token: str
-    first: dict[str, Any]
+    token: str  # whoever does not know it is turned away
+    first: dict[str, Any]  # the case that a page begins with
     limit: float
     tabs: set[Any] = field(default_factory=set)
     spare: Process | None = None
@@ -117,7 +107,7 @@ class Server:
                 process.end()
 
     def admits(self, handler: RequestHandler) -> bool:
-        """Whether a request knows the token, and was sent to this machine by its own name."""
+        """Return whether a request has the token and addresses this machine by its own name."""
         host = handler.request.host.rpartition(":")[0]
         given = handler.get_query_argument("token", "")
         return host in (HOST, "localhost") and hmac.compare_digest(given.encode(), self.token.encode())
@@ -136,13 +126,13 @@ class _Page(RequestHandler):
         self.finish(page(server.first, nonce))
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """Say it in one line."""
+        """Write the error in one line."""
         wrong = "wrong or missing token: open the address that flockana explore printed"
         self.finish(wrong if status_code == 403 else f"{status_code}")
 
 
 class _Tab(WebSocketHandler):
-    """One tab: its questions go to its own process, and the answers to the newest come back."""
+    """Tab with its own process, which answers the newest question."""
 
     process: Process | None = None
     number, begun, asked = 0, 0, None
@@ -195,7 +185,7 @@ class _Tab(WebSocketHandler):
             process.pipe.send((self.number, self.asked))
 
     def _replace_unless_begun(self, number: int, at_once: bool) -> None:
-        """Solvers that do not hear of a newer question are left behind: at once, if another process is ready."""
+        """Replace a process that ignores a newer question, once another is ready."""
         spare = self.server.spare
         if at_once and not (spare is not None and spare.ready):
             return
@@ -204,7 +194,7 @@ class _Tab(WebSocketHandler):
             self._ask()
 
     def deliver(self, message: Any) -> None:
-        """What the process says, if it is of the newest question."""
+        """Send a message of the process if it answers the newest question."""
         if message is None:
             text = "the process of this run ended: too little memory, or an error that the terminal shows"
             self._say({"number": self.number, "kind": "error", "text": text})
@@ -242,7 +232,7 @@ class _Tab(WebSocketHandler):
 
 
 def kept_token() -> str:
-    """This user's token, made when it is first asked for; one for this time only where nothing can be kept."""
+    """Return this user's stored token, or a temporary one where nothing can be stored."""
     path = Path.home() / ".flockana" / "explore-token"
     try:
         path.parent.mkdir(mode=0o700, exist_ok=True)
@@ -258,22 +248,7 @@ def kept_token() -> str:
 
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
-    """Serve until cancelled.
-
-    Parameters
-    ----------
-    server : Server
-        Token, first case, limit.
-    port : int
-        On the loopback address; 0 for any that is free.
-    opened : callable
-        Told the address.
-
-    Raises
-    ------
-    ArgumentError
-        If another program has the port.
-    """
+    """Serve until cancelled."""
     routes = [("/", _Page), ("/socket", _Tab)]
     application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)

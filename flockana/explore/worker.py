@@ -1,4 +1,4 @@
-"""A process that answers the cases of one page: the newest alone, and what is under way is broken off for it."""
+"""Worker process of one page: answers the newest case and interrupts older ones."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Worker:
         self.changed = threading.Condition()
 
     def read(self) -> None:
-        """Note what comes, until the pipe closes."""
+        """Receive questions until the pipe closes."""
         while True:
             try:
                 question = self.pipe.recv()
@@ -46,7 +46,7 @@ class Worker:
                 _thread.interrupt_main()
 
     def answer_all(self) -> None:
-        """Answer, for ever."""
+        """Answer questions until the process ends."""
         from flockana.explore.answers import answer
 
         while True:
@@ -75,15 +75,7 @@ class Worker:
 
 
 def work(pipe: Connection, limit: float) -> None:
-    """Answer what comes until the pipe closes; what a process of the explorer does.
-
-    Parameters
-    ----------
-    pipe : Connection
-        To the server.
-    limit : float
-        Seconds that a run may take.
-    """
+    """Answer questions until the pipe closes."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = Worker(pipe, limit)
     _warm()
@@ -101,7 +93,7 @@ def _read_to_the_end(worker: Worker) -> None:
 
 
 def _warm() -> None:
-    """Load what every answer needs, and the kernels of the commonest laws: a run, without its verdicts."""
+    """Load the modules and kernels of common answers."""
     from flockana.explore.answers import answer
     from flockana.explore.case import Case
 
