@@ -23,24 +23,13 @@ __all__ = ["Player", "marks_of", "page", "scene", "script", "style"]
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """A run to watch: a notebook shows it, and keeps it when it is exported as HTML.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    height : int
-        Of the frame in a notebook, in pixels.
-    values : int
-        Numbers of places and velocities that are kept at most; of a longer run some samples are left out.
-    verdicts : sequence of Verdict
-        On the run: the instants that their claims point to are marked.
-    """
+    """Interactive player of a run in a notebook, kept in HTML exports."""
 
     trajectory: Trajectory
-    height: int = 760
+    height: int = 760  # of the frame in a notebook, in pixels
+    # numbers of places and velocities that are kept at most; of a longer run some samples are left out
     values: int = 240_000
-    verdicts: Sequence[Verdict] = ()
+    verdicts: Sequence[Verdict] = ()  # on the run: the instants that their claims point to are marked
 
     def __post_init__(self) -> None:
         for name in ("height", "values"):
@@ -48,7 +37,7 @@ class Player:
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number > 0")
 
     def __repr__(self) -> str:
-        """One line."""
+        """Return a one-line description."""
         return f"<Player of {self.trajectory!r}>"
 
     def html(self) -> str:
@@ -59,13 +48,7 @@ class Player:
         return scene(self.trajectory, values=self.values, marks=marks_of(self.trajectory, self.verdicts))
 
     def save(self, path: str) -> Path:
-        """Write that page; an existing file is replaced only when the new one is whole.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-        """
+        """Write the player as a page; an existing file is replaced only once the new one is complete."""
         target = Path(path)
         with replacing(target, remedy="choose another file") as partial:
             partial.write_text(self.html(), encoding="utf-8")
@@ -76,15 +59,10 @@ class Player:
         return f'<iframe title="A run" sandbox="allow-scripts" style="{look}" srcdoc="{escape(self.html())}"></iframe>'
 
     def widget(self) -> Any:
-        """It as a widget, whose ``time`` the notebook's code reads and sets; needs flockana[notebook].
+        """Return a widget whose ``time`` can be read and set; needs flockana[notebook].
 
         A notebook with it that is exported to HTML fetches what shows widgets from the network; of the player itself
         the export needs nothing.
-
-        Raises
-        ------
-        ArgumentError
-            If anywidget is not installed.
         """
         try:
             import anywidget

@@ -1,4 +1,4 @@
-"""Runs as compact bytes that a page can read: numbers of 32 bits, their differences in time, byte by byte, deflated.
+"""Compact encoding of runs for a page: 32-bit numbers, differences in time, deflated.
 
 ``b"FLK1"``, then one zlib stream: the length of a JSON header (4 bytes, little-endian), the header, and the arrays one
 after the other. An array of shape (T, …) is T rows of k whole numbers of 32 bits: the bits of float32, or
@@ -25,34 +25,14 @@ _STEPS = 2.0**30  # more of them in one array than this would not fit 32 bits
 
 @dataclass(frozen=True)
 class Packed:
-    """An array on its way into bytes.
+    """Array to be encoded."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (T, …)
-        Numbers; the first axis is time.
-    step : float
-        Resolution to which they are kept, > 0; or 0 for that of float32.
-    """
-
-    values: Any
-    step: float = 0.0
+    values: Any  # shape (T, …): numbers; the first axis is time
+    step: float = 0.0  # resolution to which they are kept, > 0; or 0 for that of float32
 
 
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
     """A header and arrays as bytes.
-
-    Parameters
-    ----------
-    header : mapping
-        Plain data for JSON, without a key ``"arrays"``.
-    arrays : mapping of str to Packed
-        Arrays by name.
-
-    Raises
-    ------
-    ArgumentError
-        If an array holds something that is not finite, beyond float32, or too large for its step.
 
     Examples
     --------
@@ -71,18 +51,7 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
 
 
 def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
-    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js.
-
-    Parameters
-    ----------
-    data : bytes
-        What `encode` gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is something else, or damaged.
-    """
+    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js."""
     try:
         if data[:4] != _MAGIC:
             raise ValueError("its first bytes are not FLK1")
@@ -103,7 +72,7 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
 
 
 def _whole(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
-    """Whole numbers of 32 bits that stand for an array, and what is taken off it first."""
+    """Return an array as 32-bit integers, with the offset subtracted first."""
     with np.errstate(over="ignore"):
         single = values.astype("<f4")
     if not np.isfinite(single).all():

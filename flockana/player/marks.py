@@ -1,4 +1,4 @@
-"""Instants to mark in a player: those that the claims of verdicts point to."""
+"""Marked instants of a player: the witnesses of claims."""
 
 from __future__ import annotations
 
@@ -15,18 +15,7 @@ Marks = list[tuple[float, str]]
 def marks_of(
     run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[float] = (), *, named: str = "as in the source"
 ) -> Marks:
-    """Instants of a run, in order, each once, with the claims whose witness it is.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    verdicts : iterable of Verdict
-        On it; a claim whose witness has a ``time`` within the run marks it.
-    instants : iterable of float
-        Others.
-    named : str
-        What these are called.
+    """Return the instants of a run in order, each with the claims that it witnesses.
 
     Examples
     --------
