@@ -1,4 +1,4 @@
-"""Put what a course consists of into a folder, where students may have answered already: nothing of theirs is lost."""
+"""Safe delivery of course files into a folder: nothing edited is overwritten."""
 
 from __future__ import annotations
 
@@ -16,35 +16,12 @@ _REMEDY = "choose another folder"
 
 
 def notebook_bytes(book: Any) -> bytes:
-    """A notebook as its file holds it.
-
-    Parameters
-    ----------
-    book : NotebookNode
-        Of `flockana.course.build.notebook`, for instance.
-    """
+    """Return a notebook as the bytes of its file."""
     return f"{nbformat.writes(book).rstrip()}\n".encode()
 
 
 def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
-    """Write files into a folder, unless one is there that differs: then none is written.
-
-    Parameters
-    ----------
-    folder : path
-        Made if need be.
-    files : mapping of str to bytes
-        What each is to hold, by its name in the folder.
-
-    Returns
-    -------
-    list of Path
-        Where they are.
-
-    Raises
-    ------
-    FileError
-        If a file is there that differs from what would be written, or one cannot be written.
+    """Write files into a folder, or none if one exists there with other content.
 
     Examples
     --------
@@ -71,7 +48,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
 
 
 def _is_there(path: Path, content: bytes) -> bool:
-    """Whether a file is as it would be written; raise if something else is there."""
+    """Return whether a file exists with this content; raise if its content differs."""
     if not os.path.lexists(path):
         return False
     try:

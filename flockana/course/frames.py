@@ -1,4 +1,4 @@
-"""Pictures that a slider or a film goes through, drawn beforehand: they move wherever a notebook or its HTML is shown.
+"""Precomputed pictures for sliders and films, usable in notebooks and their HTML.
 
 No kernel has to answer a slider, so that lectures run without widgets, headless too, and keep working when exported.
 """
@@ -42,40 +42,22 @@ if (button) button.onclick = () => {{
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Pictures, one for each value: a notebook shows them behind a slider.
+    """Slider over a sequence of pictures."""
 
-    Parameters
-    ----------
-    pictures : tuple of bytes
-        As PNG.
-    texts : tuple of str
-        The values, as they are shown.
-    name : str
-        What is moved.
-    title : str
-        What is to be seen, for those who cannot see it.
-    size : tuple of int
-        Width and height in pixels.
-    start : int
-        Which picture is shown first.
-    seconds : float
-        Of a film; 0 for a slider.
-    """
-
-    pictures: tuple[bytes, ...]
-    texts: tuple[str, ...]
-    name: str
-    title: str
-    size: tuple[int, int]
-    start: int = 0
-    seconds: float = 0.0
+    pictures: tuple[bytes, ...]  # as PNG
+    texts: tuple[str, ...]  # the values, as they are shown
+    name: str  # what is moved
+    title: str  # what is to be seen, for those who cannot see it
+    size: tuple[int, int]  # width and height in pixels
+    start: int = 0  # which picture is shown first
+    seconds: float = 0.0  # of a film; 0 for a slider
 
     def __repr__(self) -> str:
-        """One line."""
+        """Return a one-line description."""
         return f"<{len(self.pictures)} pictures of {self.title}, {self.name} from {self.texts[0]} to {self.texts[-1]}>"
 
     def html(self) -> str:
-        """The page that shows them, which needs neither network nor other files."""
+        """Return a self-contained page with the pictures."""
         sources = ["data:image/png;base64," + base64.b64encode(each).decode() for each in self.pictures]
         return _PAGE.format(
             title=escape(self.title),
@@ -99,7 +81,7 @@ class Frames:
 
 
 def _as_script(value: Any) -> str:
-    """As a literal of a script, in which nothing can end the script."""
+    """Return a JSON literal that cannot end its script."""
     return json.dumps(value).replace("<", "\\u003c")
 
 
@@ -113,30 +95,6 @@ def slider(
     start: int = 0,
 ) -> Frames:
     """A picture for each value, behind a slider.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes axes and a value, and draws.
-    values : sequence
-        At least two.
-    name : str
-        What the slider moves.
-    title : str
-        What is to be seen, for those who cannot see it.
-    size : tuple of float
-        Width and height in inches.
-    start : int
-        Which value is shown first.
-
-    Returns
-    -------
-    Frames
-
-    Raises
-    ------
-    ArgumentError
-        If there are fewer than two values, or no value `start`.
 
     Examples
     --------
@@ -155,24 +113,7 @@ def film(
     size: tuple[float, float] = (6.0, 3.6),
     seconds: float = 6.0,
 ) -> Frames:
-    """A picture for each value, one after another at the touch of a button.
-
-    Parameters
-    ----------
-    draw, values, name, title, size : object
-        As for `slider`.
-    seconds : float
-        From the first picture to the last.
-
-    Returns
-    -------
-    Frames
-
-    Raises
-    ------
-    ArgumentError
-        If there are fewer than two values, or `seconds` is not positive.
-    """
+    """A picture for each value, one after another at the touch of a button."""
     return _drawn(draw, values, name, title, size, 0, ensure_positive("seconds", seconds))
 
 
