@@ -16,7 +16,7 @@ _N = 12
 
 
 def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
-    """Twelve agents in the plane, with velocities that are drawn and then given the spread that is said."""
+    """Return twelve agents in the plane, with random velocities scaled to a given spread."""
 
     def build(seed: int = 0) -> Scenario:
         generator = np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""The simulations of Jond's bearing-distance paper, sections 5.1 and 5.2: by its letter, charitably, as recommended.
+"""Simulations of Jond's bearing-distance paper, sections 5.1 and 5.2: literal, charitable and recommended.
 
 The letter is Algorithm 1 as typeset with the printed parameters: what the paper leaves open is ours and said so. The
 charitable reading has the same parameters and starts and takes of every ambiguity the side that harms least. The
@@ -87,7 +87,7 @@ def _bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
-    """Numbers of components, and the first sample with several after a sample with one; -1 if there is none."""
+    """Return component counts, and the first sample that splits after a connected one; -1 without one."""
     counts = component_counts(run)
     together = np.flatnonzero(counts == 1)
     apart = np.flatnonzero(counts[together[0] :] > 1) if together.size else together
@@ -125,7 +125,7 @@ def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def passed(run: Trajectory) -> int:
-    """How many agents pass the narrow gap between the slab and the wall, upwards."""
+    """Return the number of agents that pass the gap between slab and wall upwards."""
     corners = np.array(_SLAB.vertices)
     x, y = run.q[:, :, 0], run.q[:, :, 1]
     inside = (x > corners[:, 0].max()) & (y > corners[:, 1].mean())
@@ -186,7 +186,7 @@ def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]
 
 
 def in_column(seed: int, n: int = 5) -> tuple[FloatArray, FloatArray]:
-    """A column of agents on its way up between the slab and the right wall."""
+    """Return a column of agents heading up between the slab and the right wall."""
     rng = np.random.default_rng(seed)
     height = 1.5 + 2.1 * np.arange(n)[::-1] + rng.uniform(-0.1, 0.1, n)
     q = np.column_stack([rng.uniform(47.5, 48.0, n), height])

@@ -32,7 +32,7 @@ def _chain(seed: int = 0) -> Scenario:
 
 
 def _pairs(seed: int = 0) -> Scenario:
-    """Two pairs without a link between them, which leave each other."""
+    """Return two unlinked pairs that move apart."""
     q = np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 0.9], [0.5, 0.9]])
     p = np.array([[0.3, -1.0], [-0.3, -1.0], [0.3, 1.0], [-0.3, 1.0]])
     return Scenario(

@@ -1,4 +1,4 @@
-"""The dead-zone paper's simulation, with what it leaves open filled in, and runs that show where its claims end."""
+"""Dead-zone paper's simulation with the missing parameters chosen, and runs at the limits of its claims."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: 
 
 
 def ours(law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False) -> str:
-    """Every parameter that the paper does not print, in words.
+    """Return a description of every parameter not printed in the paper.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The net is connected at the end of the run: the longest link that it takes to join all is shorter than r."""
+    """Report that the net is connected at the end of the run."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 

@@ -1,4 +1,4 @@
-"""Several leaders and pinned agents in the dead-zone law: what the paper's conclusion says, run (erratum L9)."""
+"""Dead-zone law with several leaders and pinned agents: the paper's conclusion, simulated (erratum L9)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _law(run: Trajectory) -> LedDeadZoneFlocking:
 
 
 def _slip(run: Trajectory) -> FloatArray:
-    """How far each agent's velocity is from its leader's at the end, over half of that at which the leaders part."""
+    """Return each agent's velocity error to its leader, relative to half the leaders' velocity difference."""
     law = _law(run)
     told = law.ties.led(float(run.t[-1]))[1]
     parting = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
@@ -34,7 +34,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _carried_off(run: Trajectory) -> int:
-    """Number of agents whose velocity is nearer to that of the other leader: they move with the wrong group."""
+    """Return the number of agents whose velocity is closer to the other leader's."""
     return int((_slip(run) > 1.0).sum())
 
 
@@ -87,7 +87,7 @@ _REPORTS = (
 
 
 def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
-    """Two groups in one box, or side by side with a gap between their boxes."""
+    """Return two groups in one box, or in two boxes side by side."""
     shift = max(0.0, _BOX + ensure_finite_scalar("gap", gap))
     generator, group = np.random.default_rng(seed), np.arange(_N) % 2
     q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))

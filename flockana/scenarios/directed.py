@@ -1,4 +1,4 @@
-"""Algorithm 1 in a flock that looks ahead only: a directed net, and what it does to momentum and energy."""
+"""Algorithm 1 on a directed net (agents that look ahead only): momentum and energy."""
 
 from __future__ import annotations
 

@@ -14,16 +14,7 @@ from flockana.theorems import Tolerances, Verdict, verify
 
 @dataclass(frozen=True)
 class Enclosure:
-    """How to decide theorems about a run rigorously: a tube from its start, over its time.
-
-    Parameters
-    ----------
-    theorems : tuple of str
-        Ids of the theorems; others are checked on the run.
-    limit : bool
-        Whether to certify the basin of the equilibrium next to the end: what claims about limits need.
-    options : mapping
-        Keyword arguments of `flockana.enclose`.
+    """Settings for rigorous decisions about a run: a tube from its start over its time.
 
     Examples
     --------
@@ -31,29 +22,18 @@ class Enclosure:
     False
     """
 
-    theorems: tuple[str, ...]
+    theorems: tuple[str, ...]  # ids of the theorems; others are checked on the run
+    # whether to certify the basin of the equilibrium next to the end: what claims about limits need
     limit: bool = False
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments of `flockana.enclose`
 
     def verdict(self, name: str, run: Trajectory, *, tolerances: Tolerances | None, subject: str) -> Verdict:
-        """Check a theorem on all that starts where a run does.
-
-        Parameters
-        ----------
-        name : str
-            One of `theorems`.
-        run : Trajectory
-            The run: its law, its first sample and its time are enclosed, whatever else it holds.
-        tolerances : Tolerances, optional
-            Thresholds.
-        subject : str
-            A name for the case.
-        """
+        """Check a theorem on all that starts where a run does."""
         tube, basin = run.remembered("enclosed", lambda: self._enclosed(run))
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:
-        """The tube, and the basin or None; in lengths of ℓ, which σ₁ counts in: a basin is certified in no others."""
+        """Return the tube, and the basin or None, in lengths of ℓ (the unit of σ₁)."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose import enclose
         from flockana.equilibria.solve import find_equilibrium

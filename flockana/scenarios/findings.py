@@ -1,4 +1,4 @@
-"""What scenario reports are made of: claims judged by a margin alone, and counts of components."""
+"""Building blocks of scenario reports: claims judged by margins, and component counts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def finding(
     error: float | None = None,
     witness: Any = None,
 ) -> Claim:
-    """A claim that is judged by its margin, without hypotheses.
+    """Return a claim judged by its margin alone.
 
     A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
 
@@ -51,7 +51,7 @@ def finding(
 def in_the_end(
     name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
 ) -> Claim:
-    """A report of what a flock comes to: verified by a certificate, and open as long as there is none, never refuted.
+    """Return a report on a limit: verified by a certificate, else open, never refuted.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def in_the_end(
 
 
 def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> tuple[Report, ...]:
-    """The same reports of a run in any units: judged in the units of their source, whose figures they compare with."""
+    """Return reports judged in the units of their source."""
 
     def converted(check: Check) -> Check:
         def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:

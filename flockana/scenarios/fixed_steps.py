@@ -1,4 +1,4 @@
-"""The paper's step: 0.01 to 0.03 and no scheme. The plainest scheme, and what the step decides."""
+"""Explicit Euler with the paper's steps of 0.01 to 0.03, and the effect of the step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How often Algorithm 1 flocks, and Algorithm 2: the paper's start of 40 agents, over many seeds."""
+"""Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _N, _SEEDS = 40, 200  # a tenth of a second each
 
 
 def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether the run ends as a flock: one component, whose velocities match."""
+    """Return whether the run ends connected, with matching velocities."""
     components = component_count(run)
     mismatch = velocity_mismatch(run.p[-1]) / (run.n * run.scales.energy)
     text = f"{components} component(s) at t = {run.t[-1]:g}, K̃ = {mismatch:.2g} of the square of the law's speed"

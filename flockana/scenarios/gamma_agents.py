@@ -1,4 +1,4 @@
-"""γ-agents that are systems: one leader with a motion of its own, and peers that each follow a copy of it."""
+"""γ-agents with dynamics of their own: one leader, and peers that each follow a copy."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _tells_the_truth(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Where the copies are against d'' = −(k + k₁) d − (b + k₂) d' for each one's distance from the mean."""
+    """Compare the copies with d'' = −(k + k₁) d − (b + k₂) d' for the distance d from their mean."""
     copies, t = run.law.copies, float(run.t[-1] - run.t[0])
     place, speed = (np.array(x) - np.mean(x, axis=0) for x in (copies.q, copies.p))
     k, b = copies.position_coupling, copies.velocity_coupling  # f_r = 0
@@ -52,7 +52,7 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _two_halves(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether the flock has parted as its copies have: the halves are out of range of each other."""
+    """Report that the flock has split into halves, as its copies have."""
     components = component_count(run)
     detail = f"{components} component(s) at t = {run.t[-1]:g}"
     return finding("apart", components - 1.5, detail, computed=components, stated="more than 1")
@@ -87,7 +87,7 @@ def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _start(seed: int) -> tuple[FloatArray, FloatArray]:
-    """Eight agents near a patch of the lattice, almost at rest, those ahead in y last."""
+    """Return eight agents near a lattice patch, almost at rest, sorted by y."""
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
     q = hexagonal_spiral(_N, d) + generator.uniform(-0.2, 0.2, (_N, 2))
     return q[np.argsort(q[:, 1])], generator.uniform(-0.3, 0.3, (_N, 2))

@@ -1,4 +1,4 @@
-"""What a scenario is given, checked before anything is run: its parts, and the options by which it is built."""
+"""Checks of a scenario's parts and options before anything is run."""
 
 from __future__ import annotations
 
@@ -58,39 +58,13 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
 
 
 def ensure_judged(names: Iterable[str]) -> None:
-    """Raise unless there are such theorems: asked before a run, as to list scenarios needs none of them.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Ids, of a scenario's expectations.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such theorem; the closest name is suggested.
-    """
+    """Raise unless all theorem ids exist."""
     for name in names:
         ensure_known("theorem", name, theorems())
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
-    """Raise unless a scenario has such options, of such kinds; the builder checks what values they may have.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
-    build : callable
-        Makes it.
-    options : mapping
-        Its keyword arguments.
-
-    Raises
-    ------
-    ArgumentError
-        On an option that there is not, a value not of its kind, or more agents than memory holds.
-    """
+    """Raise unless a scenario has these options, with values of the right kind."""
     known = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
     unknown = sorted(set(options) - set(known))
     if unknown:
@@ -100,7 +74,7 @@ def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, A
 
 
 def _ensure_like(default: Any, key: str, value: Any) -> None:
-    """Raise on an option that is not of the kind of its default."""
+    """Raise unless an option is of the kind of its default."""
     if isinstance(default, bool):
         if not isinstance(value, bool):
             raise ArgumentError(f"{key} = {value!r}: expected True or False")

@@ -38,7 +38,7 @@ def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArr
 
 
 def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether those out of everybody's reach, the last four, keep their mean velocity."""
+    """Report that the four agents out of everybody's reach keep their mean velocity."""
     mean = run.p[:, -4:].mean(axis=1)
     change = float(np.abs(mean[-1] - mean[0]).max()) / run.scales.speed
     text = f"the mean velocity of the four agents out of reach changes by {change:.2g} of the law's speed"
@@ -108,7 +108,7 @@ def _through(seed: int = 0) -> Scenario:
 
 
 def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """How far the centre stays behind a leader that circles: |a_r|/|c1 − ω² + iωc2|, once it has settled."""
+    """Compare the centre's lag behind a circling leader with |a_r|/|c1 − ω² + iωc2|."""
     gains, path = run.law.gains, run.law.target
     omega = 2.0 * pi * path.frequency
     lag = path.radius * omega**2 / abs(gains.c1_gamma - omega**2 + 1j * omega * gains.c2_gamma)
@@ -149,7 +149,7 @@ def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
 
 
 def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether all informed agents follow at the end."""
+    """Report that all informed agents follow at the end."""
     who = np.asarray(run.law.gains.c1_gamma) > 0.0
     count, of = int(following(run)[who].sum()), int(who.sum())
     text = (
@@ -159,7 +159,7 @@ def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether more than half of all agents follow at the end: what `shares` makes a share of runs of."""
+    """Report that more than half of all agents follow at the end."""
     count = int(following(run).sum())
     text = f"{count} of {run.n} agents move as the leader does"
     return finding("most-follow", count - run.n // 2 - 0.5, text, computed=count, stated=f"more than {run.n // 2}")
@@ -167,20 +167,6 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
     """n agents strewn over a square, of which some, the first, feel a leader of constant velocity.
-
-    Parameters
-    ----------
-    seed : int
-        Of the start.
-    informed : int
-        How many agents are informed, 1 to n.
-    n : int
-        How many there are.
-
-    Raises
-    ------
-    ArgumentError
-        If more are informed than there are, or none.
 
     Examples
     --------

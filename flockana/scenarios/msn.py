@@ -61,7 +61,7 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
-    """Expected statuses of a case: of the map only those of its reports, for the theorems are about continuous laws."""
+    """Return the expected statuses of a case; the theorems are about flows, so maps have reports only."""
     none: dict[str, Status] = {"alpha-flocking": "refuted", "alpha-flocking-strict": "refuted"}
     none["os-5-terminal:i"] = "vacuous"
     if not printed:
@@ -93,7 +93,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 
 
 def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: float = 0.0) -> Scenario:
-    """A case; of case 4 also with its γ-agent at so many times its speed and the flock so many radii to the right."""
+    """Build a case; for case 4 with scaled speed of the γ-agent and offset of the flock."""
     side, end = 50.0 if case <= 2 else 150.0, UPDATES * DT * max(1.0, 1.0 / ensure_positive("speed", speed))
     continuous = _law(case, speed)
     law: Law | DiscreteLaw = MSNDiscretisation(continuous, DT) if printed else continuous
@@ -126,7 +126,7 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
 
 
 def _shipped(case: int) -> dict[str, Status]:
-    """What other starts decide otherwise: the swing of case 2, and at times the width of case 3."""
+    """Return statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3."""
     return {2: {"source": "verified"}, 3: {"source:width": "refuted"}}.get(case, {})  # type: ignore[return-value]
 
 
@@ -141,7 +141,7 @@ def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
 
 
 def _static(seed: int = 0) -> Scenario:
-    """Erratum E16 on the project's own flock: α coefficients above those of γ, and a target at rest."""
+    """Build erratum E16 on the project's flock: α gains above those of γ, and a target at rest."""
     law = Algorithm2(_ALPHA, _STRONG, StaticTarget((75.0, 75.0)))
     start = np.random.default_rng(seed).uniform(0.0, 150.0, (_N, 2))
     return Scenario(

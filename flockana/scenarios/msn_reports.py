@@ -1,4 +1,4 @@
-"""What the MSN project reports of its four cases, judged.
+"""Reports of the MSN project on its four cases.
 
 Where it gives a figure, the spread from start to start was measured over twenty starts of the map and is allowed for.
 """
@@ -156,7 +156,7 @@ def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _width(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """About the same size: nearer to one period than to none or two."""
+    """Report that the flock is about one period wide, 0.5 to 1.5."""
     late = run.window(50 * DT, float(run.t[-1]))
     width = float(np.ptp(late.q[:, :, 0], axis=1).mean())
     ratio = width / _PERIOD
@@ -165,7 +165,7 @@ def _width(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
-    """Whether an agent that is fast was on its own: separated from the net, to be re-attached later."""
+    """Report that a fast agent was separated from the net."""
 
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         late = run.window(iteration * DT, float(run.t[-1]))

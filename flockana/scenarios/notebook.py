@@ -1,4 +1,4 @@
-"""The two runs of the R² notebook, with its tenfold push below 0.05 as an option."""
+"""Runs of the R² notebook, with its tenfold push below 0.05 as an option."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ _SWITCH: dict[Any, Any] = {
 
 
 def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
-    """A fixed step for the push: squeezed pairs slide along its jump at 0.05, where adaptive steps never end."""
+    """Return solver options: a fixed step with the push, whose jump at 0.05 stalls adaptive steps."""
     return {"method": "RK4", "dt": 0.005} if isinstance(law, PushedAlgorithm1 | PushedAlgorithm2) else {}
 
 
 def _other(run: Trajectory) -> Trajectory:
-    """The run from the same start with the push switched on if it was off, and off if it was on."""
+    """Run the same start with the push switched over."""
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
@@ -52,7 +52,7 @@ def _other(run: Trajectory) -> Trajectory:
 
 
 def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether the push keeps agents farther apart than they come without it; nothing is claimed where it never acts."""
+    """Report that the push keeps agents farther apart; vacuous where it never acts."""
     own = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
     if not own:  # then the run is the same with the push and without it
         closest = run.closest_approach().distance
@@ -73,7 +73,7 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The notebook prints |u_γ| of one agent shrinking to below 0.001 by the last of its 150 steps.
+    """Report the printed fall of one agent's ‖u_γ‖ to below 0.001 by the last of 150 steps.
 
     With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
     the end every agent has the γ-agent's velocity. Whether this run is long enough to see it is what is looked at.
@@ -86,7 +86,7 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The notebook calls n_ij a normalised direction vector: its length is ‖Δ‖/√(1 + ε‖Δ‖²), below 1/√ε."""
+    """Report that n_ij is a unit vector: its length ‖Δ‖/√(1 + ε‖Δ‖²) is below 1/√ε."""
     alpha = run.law.alpha
     lengths = link_lengths(run.q[0], links(run.q[0], alpha.r))
     n = lengths / np.sqrt(1.0 + alpha.eps * lengths**2)
@@ -99,7 +99,7 @@ def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The notebook has its agents move toward a common goal; with c1γ = 0 the place q_r is not in the law at all."""
+    """Report that agents move toward a common goal; with c1γ = 0 the law does not contain q_r."""
     place = run.law.target.position(0.0)
     first, last = (float(np.linalg.norm(run.q[k].mean(axis=0) - place)) for k in (0, -1))
     detail = (
@@ -110,7 +110,7 @@ def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The notebook prints u_α of one agent falling from about 5 to about 0.03; here its mean length over all agents."""
+    """Report the printed fall of u_α from about 5 to about 0.03, as a mean over all agents."""
     law = run.law
     first, last = (
         float(np.linalg.norm(law.terms[0].pair.forces(run.q[k], run.p[k], **_UNIT_FORCE)[0], axis=1).mean())
@@ -121,7 +121,7 @@ def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Whether the notebook's own steps follow the flow of the same law from the same start, to 1 % of d."""
+    """Report that the notebook's steps follow the flow of the same law to 1 % of d."""
     law, flow = (
         run.law.law,
         simulate(
@@ -223,7 +223,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
 
 
 def _map(number: int, dt: float) -> Callable[[int], Scenario]:
-    """A run of the notebook as it was published: its own steps, with its push."""
+    """Build the notebook's run as published: its own steps, with its push."""
 
     def build(seed: int = 0) -> Scenario:
         flow = (_algorithm1, _algorithm2)[number - 1](seed, push=True)

@@ -1,4 +1,4 @@
-"""What sources report of flocks among obstacles, as claims that a run is judged by."""
+"""Claims of sources about flocks among obstacles."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SEGMENT = 400  # points on the straight way to the γ-agent that are looked at
 
 
 def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """No agent enters: by the lower bound of all clearances; one that is inside at a point of its path refutes it."""
+    """Claim that no agent enters an obstacle, by the lower bound of clearances; a point inside refutes it."""
     least = run.clearance()
     rounding = ROUNDING * float(np.abs(run.q).max())
     margin = least.reached if least.reached < -rounding else least.lower
@@ -48,7 +48,7 @@ def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """One flock at the end of the run: open, for where agents are by then hangs on the last bit of their start."""
+    """Claim that the flock is connected at the end; open where this depends on rounding of the start."""
     counts = component_counts(run)
     apart = np.flatnonzero(counts > 1)
     detail = f"{counts[-1]} component(s) at t = {run.t[-1]:g}"
@@ -59,7 +59,7 @@ def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _passed_between(run: Trajectory) -> int:
-    """How many agents cross x = 150 between the two spheres of the gap."""
+    """Return the number of agents that cross x = 150 between the two spheres of the gap."""
     before = run.q[:-1, :, 0] < 150.0
     crossing = before & (run.q[1:, :, 0] >= 150.0)
     row, agent = np.nonzero(crossing)
@@ -118,7 +118,7 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """It comes to rest: hardly any speed is left, and hardly any force on agents at rest where they are.
+    """Claim that the flock comes to rest, with small speeds and small forces.
 
     With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is when.
     So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever. Near
@@ -140,7 +140,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
-    """How far the end is from a constrained α-lattice, relative to d and d' too, and in words."""
+    """Return the relative distance of the end from a constrained α-lattice, and its description."""
     law = run.law
     end = constrained_lattice(run.q[-1], law.obstacles, alpha=law.alpha, beta=law.beta)
     strain = max(end.alpha_error / law.alpha.d, end.beta_error / law.beta.d)

@@ -58,7 +58,7 @@ _BALLS = [Sphere((60.0, 0.0, 0.0), 15.0), Sphere((70.0, 30.0, 10.0), 10.0), Sphe
 def free_start(
     seed: int, n: int, centre: Sequence[float], spread: float, obstacles: Sequence[Obstacle], *, room: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The paper's random start about a centre, with agents too near an obstacle drawn again until none is.
+    """Return the paper's random start, with agents too near an obstacle drawn again.
 
     Examples
     --------
@@ -86,12 +86,12 @@ _MOVING: dict[str, Status] = {"energy": "verified", "energy:rate": "vacuous", "o
 
 
 def _reported(*names: str) -> dict[str, Status]:
-    """What a source reports and a run confirms."""
+    """Return reports of the source that a run confirms."""
     return dict.fromkeys((f"{SOURCE}:{name}" for name in names), "verified")
 
 
 def _large(end: float) -> dict[str, Any]:
-    """Options of the large runs: not every step is kept; their balance of energy stays within 2e-7."""
+    """Return the options of large runs: fewer stored steps, energy balance within 2e-7."""
     return {"rtol": 1e-7, "atol": 1e-9, "t_eval": np.linspace(0.0, end, round(20.0 * end) + 1)}
 
 

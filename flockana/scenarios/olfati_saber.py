@@ -87,7 +87,7 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """K̃ stays away from 0: in the second half of the run it never falls to a small share of what it was."""
+    """Report that K̃ never falls to a small share of its value in the second half."""
     series = run.metric("normalised_velocity_mismatch")
     late = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     share = float(late.min() / series[0])
@@ -101,7 +101,7 @@ def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """R grows all through the second half: what has parted does not come back."""
+    """Report that R grows throughout the second half."""
     radius = run.metric("cohesion_radius")
     late = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     rise = float(np.diff(late).min() / run.scales.length)
@@ -111,7 +111,7 @@ def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _links_settle(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Ẽ of the links that the fragments keep: each of them is a lattice of its own."""
+    """Report that the links kept by fragments relax: each fragment is a lattice."""
     deviation = run.metric("normalised_deviation_energy")
     detail = f"Ẽ goes from {deviation[0]:.3g} to {deviation[-1]:.2g}: the fragments keep links of length d"
     margin, end = tolerances.deviation - float(deviation[-1]), float(deviation[-1])
@@ -119,7 +119,7 @@ def _links_settle(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Place and velocity of the centre of mass go to those of the γ-agent, each in the law's own scale."""
+    """Report that the centre of mass converges to the γ-agent, in the law's scales."""
     target = [run.law.target.state(float(t)) for t in run.t]
     away, slip = (
         np.linalg.norm(x.mean(axis=1) - np.array([state[k] for state in target]), axis=1) / unit
@@ -187,7 +187,7 @@ def _following(
 
 
 def _fragmentation(seed: int = 0) -> Scenario:
-    """Fig. 12. No claim of Theorem 1 applies: the run itself breaks its hypothesis."""
+    """Build Fig. 12, whose run violates the hypothesis of Theorem 1."""
     return Scenario(
         "paper-fragmentation",
         "Fig. 12: 40 agents without a γ-agent fall apart",
@@ -216,7 +216,7 @@ def _fragmentation(seed: int = 0) -> Scenario:
 
 
 def _collapse(seed: int = 0) -> Scenario:
-    """Erratum E11: Theorem 3 holds, to the letter; what it converges to is no lattice."""
+    """Build the collapse of erratum E11: Theorem 3 holds, but the limit is no lattice."""
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0)
     return Scenario(
         "collapse",
@@ -247,7 +247,7 @@ def _collapse(seed: int = 0) -> Scenario:
 
 
 def _hexagon(seed: int = 0) -> Scenario:
-    """Theorem 1 with its hypotheses met: connected throughout, and H(0) < c*."""
+    """Build a run that meets the hypotheses of Theorem 1: connected throughout, H(0) < c*."""
     alpha, generator = AlphaInteraction(), np.random.default_rng(seed)
     ring = [(cos(k * pi / 3.0), sin(k * pi / 3.0)) for k in range(6)]
     q = alpha.d * np.array([(0.0, 0.0), *ring]) + generator.uniform(-0.2, 0.2, (7, 2))

@@ -1,4 +1,4 @@
-"""One flock under many laws: what a theorem promises of each, and what comes of the same start.
+"""One start under many laws: the theorem on each law, and the outcome.
 
 A further law is one more `Entry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
 its runs, and what that promises in a few words.
@@ -43,46 +43,22 @@ _STRENGTH, _CONSENSUS = 40.0, 1.0  # of Tanner's laws: forces of the size of k/d
 
 @dataclass(frozen=True)
 class Entry:
-    """A law for the common start, and what a theorem says of it.
+    """Law for the common start, with a theorem about it."""
 
-    Parameters
-    ----------
-    name : str
-        Of the law, for people.
-    law : callable
-        ``law(q0, p0)`` builds it.
-    theorem : str
-        Id of a theorem about its runs.
-    promise : str
-        What the theorem promises, in our words and few of them.
-    expected : {"verified", "refuted", "vacuous", "inconclusive"}, optional
-        Status that the theorem has from this start; None where nothing is expected.
-    """
-
-    name: str
-    law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]
-    theorem: str
-    promise: str
-    expected: Status | None = None
+    name: str  # of the law, for people
+    law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]  # ``law(q0, p0)`` builds it
+    theorem: str  # id of a theorem about its runs
+    promise: str  # what the theorem promises, in our words and few of them
+    expected: Status | None = None  # status that the theorem has from this start; None where nothing is expected
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of the start under one law.
+    """Outcome of the start under one law."""
 
-    Parameters
-    ----------
-    entry : Entry
-        The law and its theorem.
-    run : Trajectory
-        The run.
-    verdict : Verdict
-        Of the theorem on the run.
-    """
-
-    entry: Entry
+    entry: Entry  # the law and its theorem
     run: Trajectory
-    verdict: Verdict
+    verdict: Verdict  # of the theorem on the run
 
     @property
     def velocity_share(self) -> float:
@@ -108,11 +84,6 @@ class Outcome:
 def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
     """Ten agents near a patch of a lattice, at one speed, with headings about one direction: (q0, p0).
 
-    Parameters
-    ----------
-    seed : int
-        Of what chance adds.
-
     Examples
     --------
     >>> q, p = one_start()
@@ -126,7 +97,7 @@ def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
 
 
 def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
-    """A γ-agent that starts at the flock's centre and moves as it does."""
+    """Return a γ-agent that starts at the flock's centre with its velocity."""
     place, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
     return LinearTarget((place[0], place[1]), (velocity[0], velocity[1]))
 
@@ -137,7 +108,7 @@ def _net(q: FloatArray) -> tuple[tuple[int, int], ...]:
 
 
 def _informing(some: int, n: int) -> Gains:
-    """The default gains, those to the γ-agent for the first few agents only."""
+    """Return the default gains, with those to the γ-agent for the first agents only."""
     gains, felt = Gains(), np.arange(n) < some
     return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
 
@@ -210,19 +181,7 @@ ENTRIES: tuple[Entry, ...] = (
 
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
-    """The common start under each law, with the verdict of its theorem.
-
-    Parameters
-    ----------
-    names : iterable of str, optional
-        Laws by the names in `ENTRIES`; by default all.
-    seed : int
-        Of the start.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such law.
+    """Run the common start under each law, and check its theorem.
 
     Examples
     --------

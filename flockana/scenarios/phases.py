@@ -1,4 +1,4 @@
-"""One family of starts from flocking through fragmentation to collapse, by two numbers; ours."""
+"""Two-parameter family of starts from flocking through fragmentation to collapse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scenario is: a law, a start, a time span, where it was published, and what is expected of it."""
+"""Scenarios: law, start, time span, source and expected statuses."""
 
 from __future__ import annotations
 
@@ -24,21 +24,11 @@ from flockana.theorems.theorem import Status
 
 @dataclass(frozen=True)
 class Report:
-    """Something that the source reports of its run, and the function that judges whether it is so.
+    """Statement of a source about its run, and the function that judges it."""
 
-    Parameters
-    ----------
-    name : str
-        Short name.
-    text : str
-        What the source reports, in our words.
-    check : callable
-        ``check(trajectory, tolerances) -> Claim``.
-    """
-
-    name: str
-    text: str
-    check: Callable[[Trajectory, Tolerances], Claim]
+    name: str  # short name
+    text: str  # what the source reports, in our words
+    check: Callable[[Trajectory, Tolerances], Claim]  # ``check(trajectory, tolerances) -> Claim``
 
 
 @given_later("q0", "p0")
@@ -52,20 +42,12 @@ class Scenario:
         Name in the catalogue and one line.
     source : str
         Where it was published, and what is ours.
-    law : Law or DiscreteLaw
-        What moves the flock.
     q0, p0 : ndarray, shape (n, m)
         Start; what takes long to draw may be given as `flockana.scenarios.start.later`.
-    t_span : (float, float)
-        Start and end.
-    seed : int
-        Of the random start.
     expected : mapping of str to str
         Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
     reports : tuple of Report
         What the source says it saw; judged as one verdict under the id ``"source"``.
-    options : mapping
-        Keyword arguments of `simulate`.
     references : tuple of str
         Keys of the bibliography.
     seeds : int
@@ -142,20 +124,18 @@ class Scenario:
         return simulate(self.law, self.q0, self.p0, self.t_span, progress=progress, **self.options)
 
     def verify(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Check every theorem that applies, and what the source reports, on a run of this scenario.
+        """Check every applicable theorem and the source's reports on a run of this scenario.
 
         Parameters
         ----------
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         verdicts = tuple(self.verdict(name, trajectory, tolerances=tolerances) for name in self.theorems)
         return verdicts + self.reported(trajectory, tolerances=tolerances)
 
     def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
-        """Check one theorem on a run of this scenario, rigorously if it is one of those `enclosed`.
+        """Check one theorem on a run of this scenario, rigorously if it is among `enclosed`.
 
         Parameters
         ----------
@@ -163,22 +143,18 @@ class Scenario:
             Its id.
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         if self.enclosed is not None and name in self.enclosed.theorems:
             return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)
         return verify(name, trajectory, tolerances=tolerances, subject=self.name)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Check what the source reports, as one verdict; none if it reports nothing.
+        """Check the source's reports as one verdict, or return None without reports.
 
         Parameters
         ----------
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         if not self.reports:
             return ()
@@ -191,7 +167,7 @@ class Scenario:
         return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
-        """The same in other units (`flockana.rescale`); reports ask in their source's own units.
+        """Return the scenario in other units (`flockana.rescale`); reports are judged in the source's units.
 
         Parameters
         ----------
@@ -212,7 +188,7 @@ class Scenario:
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:
-        """What in a verdict differs from the expected, one line each; empty if nothing does.
+        """Return a line for each difference of a verdict from the expected.
 
         Parameters
         ----------
@@ -223,15 +199,7 @@ class Scenario:
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
-    """Where a verdict differs from expected statuses, keyed by theorem id and by ``"id:claim"``.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    expected : mapping of str to str
-        The expectation; what it does not name may be anything.
-    """
+    """Return the differences of a verdict from expected statuses, by theorem id and ``"id:claim"``."""
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
     return tuple(
         f"{key} is {statuses.get(key, 'missing')}, expected {status}"
@@ -242,7 +210,7 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 @cache
 def catalogue() -> dict[str, Callable[..., Scenario]]:
-    """How to build each scenario, by its name: the `SCENARIOS` of every module of this package."""
+    """Return the builders of all scenarios by name, from the `SCENARIOS` of every module."""
     builders: dict[str, Callable[..., Scenario]] = {}
     for module in modules("flockana.scenarios"):
         builders |= getattr(module, "SCENARIOS", {})

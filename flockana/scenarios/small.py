@@ -22,7 +22,7 @@ _REFERENCES = ("olfati-saber-2006", "flockana")
 
 
 def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
-    """Two agents on a line that approach each other, with a given share of c* as their energy."""
+    """Return two approaching agents on a line, with a given share of c* as energy."""
 
     def build(seed: int = 0) -> Scenario:
         law, q = Algorithm1(), np.array([[0.0], [apart]])

@@ -1,4 +1,4 @@
-"""What Jond's bearing-distance paper says in prose, each on a run: the informed, Remark 2, size, own weights, chance.
+"""Prose statements of Jond's bearing-distance paper, each on a run.
 
 None of these is simulated in the paper. Starts and settings are those of its section 5.1 or ours; each text says so.
 """
@@ -77,7 +77,7 @@ def _hazards(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _way(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Of each pair that meets head on, both go on in the direction of the one that heeds the other less."""
+    """Report that after a head-on meeting both agents follow the one with the smaller weight for the other."""
     end = run.p[-1, len(_HAZARD) :, 0].reshape(-1, 2)
     forward = np.array([1.0 if first < second else -1.0 for first, second in _GIVES_WAY])
     slowest = float((end * forward[:, None]).min()) / _SPEED
@@ -169,7 +169,7 @@ def _entry(
     settings: str = "recommended settings",
     as_it_is: tuple[Report, ...] = (),
 ) -> Scenario:
-    """One of them; reports that are judged in the units of the run, whatever they are, come first."""
+    """Return a scenario with its reports, those judged in the run's units first."""
     return Scenario(
         name,
         f"Bearing-distance flocking: {title}",
