@@ -1,4 +1,4 @@
-"""The flock about a state as x'' = −K x − D x' + w, and what is left of it once rigid motions are divided out."""
+"""Linear flock x'' = −K x − D x' + w about a state, and its quotient by rigid motions."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Blocks:
 
 
 def complement(basis: FloatArray) -> FloatArray:
-    """Orthonormal basis of what is orthogonal to an orthonormal basis.
+    """Return an orthonormal basis of the orthogonal complement.
 
     Examples
     --------
@@ -89,14 +89,13 @@ def complement(basis: FloatArray) -> FloatArray:
 
 
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
-    """Sort a flock's rigid motions by what holds them.
+    """Classify a flock's rigid motions by the forces that hold them.
 
     Parameters
     ----------
     stiffness, damping : ndarray, shape (n m, n m)
         K and D, such as those of a `Linearisation`, dense.
     q : ndarray, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -125,10 +124,7 @@ def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bloc
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q : array_like, shape (n, m)
-        Positions.
     t : float
         When: with per-agent gains the place of the γ-agent matters.
     strict : bool

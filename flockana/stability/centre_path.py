@@ -23,7 +23,7 @@ _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
-    """(the γ-agent's path, the factor of its p_r), unwrapped.
+    """Return the γ-agent's path and the factor of its p_r, unwrapped.
 
     Examples
     --------
@@ -37,26 +37,16 @@ def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
 
 @dataclass(frozen=True)
 class Motion:
-    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt).
+    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt)."""
 
-    Parameters
-    ----------
-    start, velocity, drift : ndarray, shape (m,)
-        Where it is at t = 0 but for the swing, how fast it travels, and what it says about that.
-    swing : complex ndarray, shape (m,)
-        Amplitudes.
-    omega : float
-        Angular frequency, 0 without a swing.
-    factor : float
-        p_r over dq_r/dt, of the swing.
-    """
-
+    # start, velocity, drift: shape (m,): where it is at t = 0 but for the swing, how fast it travels, and what it says
+    # about that
     start: FloatArray
     velocity: FloatArray
     drift: FloatArray
-    swing: ComplexArray
-    omega: float
-    factor: float
+    swing: ComplexArray  # shape (m,): amplitudes
+    omega: float  # angular frequency, 0 without a swing
+    factor: float  # p_r over dq_r/dt, of the swing
 
 
 def motion(target: Target) -> Motion:
@@ -89,7 +79,7 @@ def motion(target: Target) -> Motion:
 
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
-    """(constant lag behind the line, swing of the centre of mass) once the transient is gone."""
+    """Return the constant lag and the swing of the centre of mass after the transient."""
     ensure_one_gain(gains)
     c1, c2 = gains.c1_gamma, gains.c2_gamma
     if c1 == 0.0:
@@ -103,7 +93,7 @@ def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArra
 
 
 def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
-    """Largest ‖q_c − q_r‖ for ever after the transient: (of the line, of the swing).
+    """Return sup ‖q_c − q_r‖ after the transient: (of the line, of the swing).
 
     On a line the centre lags by c2γ ‖v − p_r‖/c1γ, by nothing if p_r is the true velocity; on a sine or circle of
     size A by |G(jω) − 1| A.
@@ -135,7 +125,7 @@ def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
 
 
 def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
-    """q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
+    """Return q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
 
     Examples
     --------
@@ -156,7 +146,7 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
 
 
 def transient(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArray) -> FloatArray:
-    """How an offset and a velocity left over die out, x'' = −c1γ x − c2γ x', shape (T, m)."""
+    """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
     since = since[:, None]
     decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
     root = np.sqrt(complex(square))

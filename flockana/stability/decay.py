@@ -1,4 +1,4 @@
-"""Does the linearisation tell the truth? Decay rates and paths that it predicts, against nonlinear runs."""
+"""Comparison of predicted decay rates and paths with nonlinear runs."""
 
 from __future__ import annotations
 
@@ -31,14 +31,12 @@ _SMALL = 3e-3  # deviation up to which the exponent is fitted
 
 @dataclass(frozen=True, eq=False)
 class Decay:
-    """How fast one small perturbation of a flock dies out, as predicted and as the nonlinear run shows it.
+    """Decay rates of one small perturbation, predicted and measured.
 
     Parameters
     ----------
     name, law : str
         Of the equilibrium, and of its law.
-    n, m : int
-        Agents, dimension.
     mode : Mode
         The slowest mode that K̃ sees.
     predicted, measured : float
@@ -67,12 +65,12 @@ class Decay:
 
     @property
     def difference(self) -> float:
-        """Of the measured rate from the predicted one, relative."""
+        """Relative difference of the measured rate from the predicted one."""
         return abs(self.measured / self.predicted - 1.0)
 
     @property
     def random_difference(self) -> float:
-        """The same from the random start, relative to the linear system's."""
+        """Relative difference of the random start's rate from the linear system's."""
         return abs(self.random_measured / self.random_linear - 1.0)
 
 
@@ -163,12 +161,10 @@ def decay_table(
 
 @dataclass(frozen=True, eq=False)
 class LinearRange:
-    """How far the linear prediction of the slowest mode holds.
+    """Range of validity of the linear prediction of the slowest mode.
 
     Parameters
     ----------
-    name : str
-        Of the equilibrium.
     amplitudes : ndarray, shape (K,)
         Largest initial displacement of an agent, in units of d.
     deviations : ndarray, shape (K,)
@@ -195,7 +191,7 @@ class LinearRange:
 
     @property
     def exponent_error(self) -> float:
-        """Standard error of `exponent`; infinite where two points leave none to tell by."""
+        """Standard error of `exponent`; infinite with two points."""
         return self._fit[1]
 
     @property
@@ -230,14 +226,12 @@ class LinearRange:
 def linear_range(
     flock: Linearisation, *, name: str = "", amplitudes: Sequence[float] = tuple(np.geomspace(1e-4, 0.3, 15).tolist())
 ) -> LinearRange:
-    """Compare nonlinear runs from perturbations along the slowest mode with its linear motion, as they grow.
+    """Compare nonlinear runs from growing perturbations along the slowest mode with its linear motion.
 
     Parameters
     ----------
     flock : Linearisation
         The linearised flock.
-    name : str
-        Of the equilibrium.
     amplitudes : sequence of float
         Largest displacements, in units of d, rising.
 
@@ -298,7 +292,7 @@ def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: Float
 
 
 def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
-    """Without the motion of the centre of mass, which nothing holds or which is a system of its own."""
+    """Remove the motion of the centre of mass."""
     free = flock.law.splits and flock.second_order.split.exact
     return x - x.mean(axis=1, keepdims=True) if free else x
 
@@ -319,7 +313,7 @@ def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
 
 
 def _margin(flock: Linearisation, mode: Mode, reach: float) -> float:
-    """Amplitude in units of d at which the first pair comes to the distance r, as its length swings to first order."""
+    """Return the amplitude in units of d at which the first pair reaches the distance r, to first order."""
     if not np.isfinite(reach):
         return inf
     i, j = np.triu_indices(len(flock.q), 1)

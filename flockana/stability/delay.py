@@ -1,4 +1,4 @@
-"""Delayed interactions: how much delay the flock bears, and where its characteristic roots go.
+"""Delayed interactions: delay margins and characteristic roots.
 
 x''(t) = −K₀ x(t) − D₀ x'(t) − K₁ x(t − τ) − D₁ x'(t − τ): all that an agent hears is τ old, and so is its own state
 ("all": K₀ = D₀ = 0); or the terms between agents, its own state in them included ("pairs": the γ-terms act at once); or
@@ -32,25 +32,15 @@ _LOWEST = 1e-4  # of the highest frequency at which roots can cross: the sweep b
 
 @dataclass(frozen=True)
 class DelaySystem:
-    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ).
+    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ)."""
 
-    Parameters
-    ----------
-    prompt : tuple of ndarray
-        (K₀, D₀), shape (N, N).
-    late : tuple of ndarray
-        (K₁, D₁).
-    neutral : int
-        Roots at s = 0, whatever the delay: of rigid motions that nothing holds.
-    """
-
-    prompt: tuple[FloatArray, FloatArray]
-    late: tuple[FloatArray, FloatArray]
-    neutral: int = 0
+    prompt: tuple[FloatArray, FloatArray]  # (K₀, D₀), shape (N, N)
+    late: tuple[FloatArray, FloatArray]  # (K₁, D₁)
+    neutral: int = 0  # roots at s = 0, whatever the delay: of rigid motions that nothing holds
 
     @property
     def highest(self) -> float:
-        """No root crosses the imaginary axis above this frequency, since there s² outweighs the rest."""
+        """Return a frequency above which no root crosses the imaginary axis, as s² dominates there."""
         k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
         return 0.5 * (d + float(np.sqrt(d * d + 4.0 * k)))
 
@@ -82,8 +72,6 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q : array_like, shape (n, m)
         Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
@@ -161,10 +149,6 @@ def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
     grid : int
         Frequencies, logarithmic.
 
-    Returns
-    -------
-    DelayMargin
-
     Examples
     --------
     >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.array([[4.0]]), np.array([[3.0]])))
@@ -210,7 +194,7 @@ def _angle(z: complex) -> float:
 
 
 def _stable(system: DelaySystem) -> bool:
-    """Whether every root without delay decays by more than rounding could feign, but for neutral ones.
+    """Return whether every root without delay decays beyond rounding, neutral roots excepted.
 
     These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     """
@@ -270,7 +254,7 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:
-    """How far a refined root may be from the true one: what the characteristic matrix leaves over, and rounding.
+    """Return an error bound of a refined root, from the residual and rounding.
 
     Examples
     --------

@@ -35,7 +35,6 @@ class DelayedRun:
     t : ndarray, shape (T,)
         Times, one step apart.
     q, p : ndarray, shape (T, n, m)
-        Positions and velocities.
     delay : float
         τ.
     """
@@ -59,8 +58,6 @@ def simulate_delayed(
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q0, p0 : array_like, shape (n, m)
         State at the start.
     t_span : (float, float)
@@ -106,7 +103,7 @@ def simulate_delayed(
     encounters = Encounters.of(law, len(q))
 
     def check_step(k: int, arriving: FloatArray) -> None:
-        """Raise if the flock leaps over an encounter between two steps, whether it is heard of already or not."""
+        """Raise if the flock skips an encounter between two steps."""
         before, after = State(qs[k], ps[k], us[k]), State(qs[k + 1], ps[k + 1], arriving)
         share = encounters.share(h, before, after)
         if share < 1.0:
@@ -149,7 +146,7 @@ def simulate_delayed(
 
 
 def _heard_of_others(term: PairTerm, q: FloatArray, p: FloatArray, q_old: FloatArray, p_old: FloatArray) -> FloatArray:
-    """What a pair term makes of an agent's own state now and of the others' as they were, shape (n, m)."""
+    """Return a pair term of an agent's current state and the others' delayed states, shape (n, m)."""
     n, u = len(q), np.zeros_like(q)
     apart = lengths(q_old[None, :, :] - q[:, None, :]) < term.pair.range
     i, j = np.nonzero(apart & ~np.eye(n, dtype=bool))

@@ -50,20 +50,7 @@ _GRID = 10
 
 @dataclass(frozen=True)
 class GainProblem:
-    """The matrix of the design problem and its eigenvalues as functions of the gains.
-
-    Parameters
-    ----------
-    stiffness : ndarray, shape (N, N)
-        c1α ∇²V, or zero in the simplified form.
-    damping : ndarray, shape (N, N)
-        c2α L̂.
-    apart : ndarray, shape (N, k)
-        Orthonormal motions that are projected out.
-    agents : int
-        n; each has N/n coordinates.
-    speeds : bool
-        Whether their velocities are projected out too, or their positions alone.
+    """State matrix of the gain design problem, and its eigenvalues as functions of the gains.
 
     Examples
     --------
@@ -74,11 +61,11 @@ class GainProblem:
     -1.0
     """
 
-    stiffness: FloatArray
-    damping: FloatArray
-    apart: FloatArray
-    agents: int
-    speeds: bool = True
+    stiffness: FloatArray  # shape (N, N): c1α ∇²V, or zero in the simplified form
+    damping: FloatArray  # shape (N, N): c2α L̂
+    apart: FloatArray  # shape (N, k): orthonormal motions that are projected out
+    agents: int  # n; each has N/n coordinates
+    speeds: bool = True  # whether their velocities are projected out too, or their positions alone
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
@@ -87,7 +74,7 @@ class GainProblem:
         return kept, kept if self.speeds else np.eye(len(self.stiffness))
 
     def matrix(self, gains: FloatArray) -> FloatArray:
-        """The state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), without what is set apart."""
+        """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
         positions, velocities = self._kept
@@ -105,7 +92,7 @@ class GainProblem:
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """(eigenvalues, derivatives of their real parts in the gains), shapes (M,) and (M, 2 n).
+        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n).
 
         dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
         """
@@ -124,7 +111,7 @@ class GainProblem:
 
 @dataclass(frozen=True)
 class GainDesign:
-    """The best gains found, alike and per agent, with the eigenvalues that certify them.
+    """Best gains found, equal and per agent, with their eigenvalues.
 
     Parameters
     ----------
@@ -150,13 +137,13 @@ class GainDesign:
     starts: int
 
     def __repr__(self) -> str:
-        """One line: the arrays are for asking."""
+        """Return one line without the arrays."""
         rates = f"{self.rate_homogeneous:.4f} alike, {self.rate_heterogeneous:.4f} per agent"
         return f"<GainDesign of {self.problem.agents} agents: decay rates {rates}, ratio {self.ratio:.3f}>"
 
     @property
     def ratio(self) -> float:
-        """How much faster the heterogeneous flock is; a lower bound, as the search need not be global."""
+        """Ratio of decay rates, heterogeneous over equal gains; a lower bound."""
         return self.rate_heterogeneous / self.rate_homogeneous
 
     def gains(self, base: Gains, *, heterogeneous: bool = True) -> Gains:
@@ -187,8 +174,6 @@ def gain_problem(
     ----------
     q : array_like, shape (n, m)
         A quasi-lattice.
-    alpha : AlphaInteraction
-        The pair law.
     gains : Gains
         c1α and c2α are used.
     form : {"full", "simplified"}

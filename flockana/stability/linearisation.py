@@ -28,8 +28,6 @@ class Linearisation:
 
     Parameters
     ----------
-    law : Law
-        The law.
     q, p : ndarray, shape (n, m)
         Where it is linearised; every agent has the velocity of the frame.
     t : float
@@ -86,7 +84,7 @@ class Linearisation:
 
     @property
     def coincident_pairs(self) -> int:
-        """Pairs of agents at exactly one place: their force on each other has no direction there."""
+        """Pairs of agents at the same place, where their force has no direction."""
         return pairs_at_one_place(self.q)
 
     @cached_property
@@ -116,7 +114,7 @@ class Linearisation:
 
     @property
     def semisimple(self) -> bool:
-        """Whether the zero modes have no Jordan block: every perturbation then stays bounded along them."""
+        """Return whether the zero modes have no Jordan block, so that perturbations along them stay bounded."""
         return self._dense.invariant.chains == 0
 
     @property
@@ -131,7 +129,7 @@ class Linearisation:
 
     @property
     def stable(self) -> bool:
-        """Whether every mode off the zero modes dies out, by more than rounding could feign; True if there is none."""
+        """Return whether every mode off the zero modes decays beyond rounding; True without such modes."""
         return all(mode.decays for mode in self.modes)
 
     @property
@@ -147,7 +145,7 @@ class Linearisation:
         return -self.decay_rate
 
     def limit(self, dq: Any, dp: Any) -> FloatArray:
-        """Where a small perturbation ends: its displacement along the manifold of equilibria, to first order.
+        """Return the limit of a small perturbation along the manifold of equilibria, to first order.
 
         The zero modes keep what their left eigenvectors measure, w·(D δq + δp); all else decays if `decay_rate` > 0.
         Under Algorithms 1 and 2 the manifold is the orbit of the equilibrium under its symmetries.

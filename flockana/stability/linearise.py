@@ -1,4 +1,4 @@
-"""Linearise a law about an equilibrium, once it is seen to be one and to stay one."""
+"""Linearise a law about an equilibrium, after checking that it is one."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def linearise(
     allow_residual: bool = False,
     zero: float | None = None,
 ) -> Linearisation:
-    """Linearise a law about an equilibrium, in the frame that moves with it.
+    """Linearise a law about an equilibrium, after checking that it is one.
 
     Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
     motion of the γ-agent, for the Jacobian depends on differences of positions alone, and the centre obeys the same
@@ -72,10 +72,6 @@ def linearise(
     zero : float, optional
         See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
         that lets go at r is as stiff as the solver left it).
-
-    Returns
-    -------
-    Linearisation
 
     Raises
     ------
@@ -123,7 +119,7 @@ def linearise(
 
 
 def _softest(equilibrium: Any, matrix: csr_array) -> float:
-    """What counts as zero: twice the stiffest of an equilibrium's soft modes, if that is beyond the usual."""
+    """Return the zero threshold: twice the stiffest soft mode, if larger than the default."""
     sizes = np.sort(np.abs(getattr(equilibrium, "hessian_eigenvalues", np.zeros(0))))
     soft, half = getattr(equilibrium, "zero_modes", 0), matrix.shape[0] // 2
     row = float(abs(matrix[half:, :half]).sum(axis=1).max())
@@ -163,7 +159,7 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
 
 
 def _length(q: FloatArray) -> float:
-    """The size of a flock; of one agent alone, how far it is from the origin, if it is."""
+    """Return the size of a flock; for one agent its distance from the origin."""
     return float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
 
 
@@ -194,7 +190,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
 
 
 def _default_links(law: Law, q: FloatArray) -> LinkArray:
-    """Pairs within the range of the law's pair interaction, if it has one."""
+    """Return the pairs within the law's interaction range, if it has one."""
     pair = law.pair
     if pair is None:
         return np.zeros((0, 2), dtype=np.int32)

@@ -1,4 +1,4 @@
-"""What a mode is called: translation, rotation, breathing where its shape is that, else a number."""
+"""Names of modes: translation, rotation, breathing, or a number."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
 
 
 def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
-    """Unit fields that give a mode its name: uniform expansion, translations, rotations."""
+    """Return the unit fields that name modes: uniform expansion, translations, rotations."""
     fields = [("breathing", (q - q.mean(axis=0)).ravel())]
     fields += [(f"translation {'xyz'[c]}", column) for c, column in enumerate(translations(*q.shape).T)]
     fields += _rotations(q)
@@ -55,7 +55,7 @@ def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
 
 
 def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
-    """Names and an orthonormal basis of a kernel: rigid motions first, by axis where they can be told apart."""
+    """Return names and an orthonormal basis of a kernel, rigid motions first."""
     names: list[str] = []
     basis = np.zeros((q.size, 0))
     for name, flow in pure_fields(q):
@@ -77,7 +77,7 @@ def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArra
 
 
 def _off(kernel: FloatArray, named: FloatArray) -> FloatArray:
-    """Orthonormal basis of what a kernel holds beyond `named`, which it contains."""
+    """Return an orthonormal basis of a kernel's complement to `named`."""
     if kernel.shape[1] == 0:
         return kernel
     basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)

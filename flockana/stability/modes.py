@@ -32,7 +32,7 @@ _ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed
 
 @dataclass(frozen=True)
 class Mode:
-    """One way in which a flock near equilibrium moves: Re(shape · exp(eigenvalue t)).
+    """Mode of a flock near equilibrium: Re(shape · exp(eigenvalue t)).
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Mode:
 
     @property
     def decays(self) -> bool:
-        """Whether it dies out, by more than rounding could feign."""
+        """Return whether the mode decays, beyond rounding."""
         return self.decay_rate > self.error
 
     @property
@@ -85,7 +85,7 @@ class Mode:
 
 
 class Split(NamedTuple):
-    """What the centre of mass feels if it moves by itself, by axis, and how far it is from doing so.
+    """Decoupling of the centre of mass: its own dynamics by axis, and the coupling's size.
 
     `errors` are those of stiffness and damping, which remain when the agents' pair terms have cancelled.
     """
@@ -97,7 +97,7 @@ class Split(NamedTuple):
 
     @property
     def exact(self) -> bool:
-        """Whether the linear dynamics of centre and shape do not touch each other."""
+        """Return whether centre and shape are decoupled."""
         return self.leak <= _SPLIT
 
 
@@ -123,7 +123,7 @@ def split(stiffness: Any, damping: Any, m: int) -> Split:
 
 
 class Invariant(NamedTuple):
-    """What is set apart: modes, and the invariant subspace that they span, right and left (2nm, r).
+    """Invariant subspace of separated modes, right and left (2nm, r).
 
     `chains` counts the zero modes along which a velocity persists (Jordan blocks), `drifting` names those that are
     a zero mode of their own.
@@ -170,17 +170,17 @@ class SecondOrder:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether K and D are symmetric but for rounding."""
+        """Return whether K and D are symmetric up to rounding."""
         return all(abs(part - part.T).max() <= _SYMMETRIC * abs(part).max() for part in (self.stiffness, self.damping))
 
     @cached_property
     def split(self) -> Split:
-        """The split into centre of mass and shape, or how far it is from one."""
+        """Return the split into centre of mass and shape, or the distance from one."""
         return split(self.stiffness, self.damping, self.q.shape[1])
 
     @cached_property
     def invariant(self) -> Invariant:
-        """What is set apart, by the whole kernel of K (dense)."""
+        """Return the separated modes from the whole kernel of K (dense)."""
         stiffness = self.stiffness.toarray()
         if self.split.exact:
             unit = translations(*self.q.shape)
@@ -196,7 +196,7 @@ class SecondOrder:
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
-        """What is set apart if no motions but rigid ones cost nothing (sparse)."""
+        """Return the separated modes if only rigid motions cost nothing (sparse)."""
         rigid = rigid_motions(self.q)
         if self.split.exact:
             unit = translations(*self.q.shape)
@@ -226,7 +226,7 @@ class SecondOrder:
 
     @cached_property
     def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
-        """Eigenvalues, displacements and rounding errors of what is not set apart.
+        """Return eigenvalues, displacements and rounding errors of the remaining modes.
 
         Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
         the user's choice of a time unit.
@@ -243,7 +243,7 @@ class SecondOrder:
         return values, real + 1j * imag, errors
 
     def named(self, values: Any, vectors: Any, errors: Any, others: tuple[Mode, ...]) -> tuple[Mode, ...]:
-        """Modes from eigenvalues and columns of displacements, with `others` among them, in order, named."""
+        """Return named modes from eigenvalues and displacements, with `others` among them, in order."""
         fields = pure_fields(self.q)
         modes = list(others)
         for value, vector, error in zip(values.tolist(), vectors.T, np.asarray(errors).tolist(), strict=True):
@@ -320,7 +320,7 @@ class SecondOrder:
 
 
 def _turn(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
-    """Multiply by Q, or its transpose, of which the first columns span the basis, from the left or the right.
+    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right.
 
     Q is never formed: a few reflections cost a few passes over what they act on.
     """

@@ -28,7 +28,7 @@ _IMAGINARY = 1e-9  # of the largest eigenvalue: real parts below that are zero
 
 
 def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | None:
-    """From a force on each agent to the flock's deviations, a `control.StateSpace`; None where that is unbounded.
+    """Return a `control.StateSpace` from a force on each agent to the flock's deviations; None if unbounded.
 
     "shape" is the deviation from the nearest displaced and turned copy of the equilibrium, all rigid motions taken
     out; "deviations" is x_i − x_c, which still holds the turning. Nothing brings the orientation of a free flock back,
@@ -193,32 +193,20 @@ def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
 
 
 def _stable(a: FloatArray) -> bool:
-    """Whether every mode decays by more than rounding could feign."""
+    """Return whether every mode decays beyond rounding."""
     values, _, errors = eigen(a)
     return bool(np.all(values.real < -errors))
 
 
 @dataclass(frozen=True)
 class NormTable:
-    """Norms of relaxed hexagonal flocks against their size.
-
-    Parameters
-    ----------
-    sizes : tuple of int
-        Numbers of agents.
-    h2, hinf : ndarray, shape (N,)
-        Norms from a force on each agent to the shape, in length over force.
-    peak : ndarray, shape (N,)
-        Frequency of the largest gain, in radians per time unit.
-    bounds : ndarray, shape (N, 2)
-        Closed-form bounds of `h2`.
-    """
+    """Norms of relaxed hexagonal flocks against their size."""
 
     sizes: tuple[int, ...]
-    h2: FloatArray
+    h2: FloatArray  # h2, hinf: shape (N,): norms from a force on each agent to the shape, in length over force
     hinf: FloatArray
-    peak: FloatArray
-    bounds: FloatArray
+    peak: FloatArray  # shape (N,): frequency of the largest gain, in radians per time unit
+    bounds: FloatArray  # shape (N, 2): closed-form bounds of `h2`
 
 
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:

@@ -1,4 +1,4 @@
-"""How far rounding may have moved an eigenvalue: what a rate is compared with before it is called a decay.
+"""Rounding errors of eigenvalues, the threshold for calling a rate a decay.
 
 An eigenvalue λ of A with unit left and right eigenvectors y, x moves by |Δλ| ≤ ‖ΔA‖/|yᴴx| to first order, and LAPACK's
 eigenvalues are those of some A + ΔA with ‖ΔA‖ a small multiple of eps ‖A‖. The linearised flock is not normal, so
@@ -65,7 +65,7 @@ def _together(values: ComplexArray, size: float) -> FloatArray:
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
-    """How far a root of λ² + damping λ + stiffness moves, of which the coefficients are known to errors only.
+    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def root_error(value: complex, stiffness: float, damping: float, errors: tuple[f
 
 
 def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: ComplexArray) -> FloatArray:
-    """How far rounding and what a search left over may have moved roots λ of (λ² + λD + K) v = 0, D and K symmetric.
+    """Return error bounds of roots λ of (λ² + λD + K) v = 0, from rounding and residuals; D and K symmetric.
 
     To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
     square root of the push.

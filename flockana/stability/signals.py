@@ -35,7 +35,7 @@ def _vector(name: str, m: int) -> list[str]:
 
 
 def _target_inputs(flock: Any) -> tuple[FloatArray, list[str]]:
-    """Columns of ∂u/∂(q_r, p_r) and their names; none for a law without a γ-agent."""
+    """Return the columns of ∂u/∂(q_r, p_r) and their names; none without a γ-agent."""
     size, m = flock.q.size, flock.q.shape[1]
     if (pull := flock.law.term(Navigation)) is None:
         return np.zeros((size, 0)), []

@@ -58,10 +58,6 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     count : int
         How many modes.
 
-    Returns
-    -------
-    SlowModes
-
     Raises
     ------
     ArgumentError
@@ -105,7 +101,7 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
 
 
 def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count: int) -> float:
-    """The largest of the rates up to which every mode has |λ| <= radius: 0 if none, NaN if nothing can be said.
+    """Return the largest rate up to which every mode has |λ| <= radius: 0 if none, NaN if unknown.
 
     Of the bounds K < a + b D one is looked for that serves the rate that matters, number `count`, or else the smallest;
     how far it goes beyond is found by bisection.
@@ -132,7 +128,7 @@ def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count:
 
 
 def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
-    """Whether K < a + b D: all pivots of a symmetric elimination are positive."""
+    """Return whether K < a + b D, by the pivots of a symmetric elimination."""
     from scipy.sparse import eye_array
 
     gap = a * eye_array(problem.q.size) + b * problem.damping - problem.stiffness
@@ -144,7 +140,7 @@ def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
 
 
 def _start(size: int) -> FloatArray:
-    """The same start every time: results do not change from run to run."""
+    """Return a fixed start vector, so that results are reproducible."""
     return np.random.default_rng(0).standard_normal(size)
 
 

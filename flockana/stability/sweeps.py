@@ -27,24 +27,12 @@ GAINS = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
 
 @dataclass(frozen=True)
 class Sweep:
-    """Branches of eigenvalues against one gain.
-
-    Parameters
-    ----------
-    name : str
-        The gain.
-    values : ndarray, shape (L,)
-        Its values.
-    eigenvalues : complex ndarray, shape (L, M)
-        One column per branch, joined by continuity.
-    neutral : int
-        Columns in front that stay at 0: rigid motions that nothing holds.
-    """
+    """Branches of eigenvalues against one gain."""
 
     name: str
-    values: FloatArray
-    eigenvalues: ComplexArray
-    neutral: int
+    values: FloatArray  # shape (L,)
+    eigenvalues: ComplexArray  # shape (L, M): one column per branch, joined by continuity
+    neutral: int  # columns in front that stay at 0: rigid motions that nothing holds
 
     @property
     def abscissa(self) -> FloatArray:
@@ -158,25 +146,15 @@ def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
 
 @dataclass(frozen=True)
 class MarginSweep:
-    """Delay margin against one gain.
-
-    Parameters
-    ----------
-    name : str
-        The gain.
-    values : ndarray, shape (L,)
-        Its values.
-    margins, frequencies : ndarray, shape (L,)
-        τ* and the frequency of the oscillation there; infinite and NaN where no delay does harm.
-    delayed : str
-        Which terms are delayed.
-    """
+    """Delay margin against one gain."""
 
     name: str
-    values: FloatArray
+    values: FloatArray  # shape (L,)
+    # margins, frequencies: shape (L,): τ* and the frequency of the oscillation there; infinite and NaN where no delay
+    # does harm
     margins: FloatArray
     frequencies: FloatArray
-    delayed: str
+    delayed: str  # which terms are delayed
 
 
 def margin_sweep(

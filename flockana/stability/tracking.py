@@ -1,4 +1,4 @@
-"""How the centre of mass follows a γ-agent in a run, against the closed form of `centre_path`."""
+"""Tracking of a γ-agent by the centre of mass in a run, against the closed form of `centre_path`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 
 
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
-    """(complex amplitude at ω, its error): least squares of A cos ωt + B sin ωt + C + D t on each coordinate of x.
+    """Return the complex amplitude at ω and its error, by least squares on each coordinate of x.
 
     The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
     """
@@ -62,12 +62,12 @@ def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
 
 
 def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
-    """Whether a run lasts for a period of its γ-agent at least."""
+    """Return whether a run lasts at least one period of its γ-agent."""
     return bool(float(run.t[-1] - run.t[0]) * path.frequency >= 1.0 - _WHOLE)
 
 
 def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
-    """What is still left of the start at these times, in closed form; of the map its flow's.
+    """Return the remaining transient at these times in closed form; of a map its flow's.
 
     Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     """
@@ -88,7 +88,7 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
 
 
 def response_ratio(run: Trajectory) -> tuple[float, float]:
-    """Ratio of the centre of mass's circle or sine to the γ-agent's, over the last whole periods, and its error.
+    """Return the ratio of the centre's swing to the γ-agent's over the last whole periods, and its error.
 
     At most half of the run is used, but at least one period: what precedes is transient. The error is the root mean
     square of what the fit leaves over, and the swing that what is left of the start would feign by itself, relative to
@@ -120,7 +120,7 @@ def response_ratio(run: Trajectory) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """One figure, as the linear system predicts it and as the run shows it.
+    """Quantity as predicted by the linear system and as measured.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Tracking:
-    """How a flock's centre of mass follows its γ-agent, predicted and measured.
+    """Tracking of a γ-agent by the centre of mass, predicted and measured.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ class Tracking:
         return next(item for item in self.quantities if item.name.startswith(name))
 
     def __str__(self) -> str:
-        """One line for each quantity: what it is, predicted, measured."""
+        """Return a line for each quantity: name, predicted, measured."""
         width = max((len(item.name) for item in self.quantities), default=0)
         return "\n".join(
             f"{item.name:<{width}}  predicted {item.predicted:10.6g}  measured {item.measured:10.6g}"
@@ -173,7 +173,7 @@ class Tracking:
 
 
 def tracking(run: Trajectory) -> Tracking:
-    """Compare a run of Algorithm 2, or of the MSN project's map of it, with the linear system of its centre of mass.
+    """Compare a run of Algorithm 2, or of the MSN project's map, with the linear system of its centre of mass.
 
     Ratio and phase for a sine or circle, the lag on a line, the turning points and the period where an underdamped
     flock swings about a target at rest, and under the continuous law the whole path.
@@ -231,7 +231,7 @@ def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quanti
 
 
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
-    """Turning points along the line through the start and the target: where they are, and how long between two."""
+    """Return turning points along the line from the start to the target, and the time between two."""
     target = run.law.target.position(0.0)
     t, *states, _ = run.path  # its own steps too: samples of one's own choice may miss a turn
     x, v, a = (series.mean(axis=1) for series in states)

@@ -1,4 +1,4 @@
-"""Algorithm 2's centre of mass as the linear second-order system that it is: transfer functions, poles, responses.
+"""Centre of mass of Algorithm 2 as a linear second-order system: transfer functions, poles, responses.
 
 Pair forces cancel in the sum over agents, so q_c'' = −c1γ (q_c − q_r) − c2γ (q_c' − p_r), exactly, whatever the flock
 does (Olfati-Saber 2006, section V). Every coordinate obeys the same scalar equation. With per-agent gains there is no
@@ -139,7 +139,7 @@ class CentreOfMass:
 
 
 def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
-    """|G(jω)|, the size of the flock's circle or sine over that of the γ-agent's.
+    """Return |G(jω)|, the size of the flock's circle or sine over that of the γ-agent's.
 
     Parameters
     ----------
