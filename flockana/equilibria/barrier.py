@@ -1,4 +1,4 @@
-"""The energy that it takes to bring two agents together, and the flock sizes beyond which no state is below c*.
+"""Energy needed to bring two agents together, and flock sizes beyond which no state is below c*.
 
 All energies here are those of V, to be multiplied by c1α.
 """
@@ -31,28 +31,15 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies of n agents that a search came to, with and without two agents at one place.
-
-    Parameters
-    ----------
-    n, m : int
-        Agents, dimension.
-    together : float
-        Lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate.
-    ground : float
-        Lowest V found at all.
-    state : ndarray, shape (n, m)
-        The configuration with a coincident pair.
-    solves : int
-        Successful solves behind the two figures.
-    """
+    """Lowest energies of n agents that a search came to, with and without two agents at one place."""
 
     n: int
     m: int
+    # lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate
     together: float
-    ground: float
-    state: FloatArray
-    solves: int
+    ground: float  # lowest V found at all
+    state: FloatArray  # shape (n, m): the configuration with a coincident pair
+    solves: int  # successful solves behind the two figures
 
     @property
     def height(self) -> float:
@@ -112,7 +99,7 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 
 
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
-    """Lengths between which a pair has ψ_α < ψ_α(r_α), so that it lowers V below that of pairs out of range.
+    """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V.
 
     They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
 
@@ -179,7 +166,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
 
 
 def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Least n from which on, provably, no state at all has V < c*, so that Theorem 1(iii) is empty; None if unknown.
+    """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown.
 
     Examples
     --------
@@ -191,7 +178,7 @@ def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
 
 
 def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Largest n of which an exact α-lattice has V < c*; None where κ is too large for these lattices, or m = 3.
+    """Return the largest n whose exact α-lattice has V < c*; None where κ is too large, or m = 3.
 
     Examples
     --------
@@ -210,13 +197,6 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
     Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
     pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
     upper one doubles the agent with the most links in a compact lattice.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n, m : int
-        Agents, dimension.
 
     Examples
     --------

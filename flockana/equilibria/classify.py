@@ -1,4 +1,4 @@
-"""What kind of critical point a configuration is, from the spectrum of its Hessian off the rigid motions."""
+"""Classification of critical points by the Hessian's spectrum off the rigid motions."""
 
 from __future__ import annotations
 
@@ -32,13 +32,6 @@ class Spectrum(NamedTuple):
 
 def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
     """Raise if the equilibrium of n agents would take many minutes.
-
-    Parameters
-    ----------
-    n, m : int
-        Agents and dimensions.
-    most : int
-        Largest n m.
 
     Examples
     --------
@@ -88,7 +81,7 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
-    """The direction (n, m), of unit length, in which the potential falls most steeply to second order, if it does.
+    """Return the unit direction (n, m) of steepest second-order descent, if there is one.
 
     Examples
     --------

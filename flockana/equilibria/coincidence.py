@@ -1,4 +1,4 @@
-"""How many agents a strict minimum of V needs at least if some of them stand at one place."""
+"""Least number of agents of a strict minimum of V with coincident agents."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> Float
 
 
 def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:
-    """No configuration of fewer agents, some of them coincident, is a local minimum of V.
+    """Return n such that no smaller configuration with coincident agents is a local minimum of V.
 
     Of c agents at one place the motions against each other feel c φ_α(0) I from within, negative, and one block per
     agent elsewhere. These blocks must outweigh it in every direction, hence in the trace: k > m c |φ_α(0)|/max tr.

@@ -1,4 +1,4 @@
-"""Whether two configurations are the same up to translation, rotation, reflection and the numbering of the agents."""
+"""Congruence of configurations up to isometries and renumbering."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def spectrum_of_distances(q: FloatArray) -> FloatArray:
 
 
 def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
-    """Whether an isometry and a renumbering take one configuration to the other.
+    """Return whether an isometry and a renumbering map one configuration to the other.
 
     Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
     a spectrum.
@@ -86,7 +86,7 @@ def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, to
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
-    """Whether the rotation, or reflection, that takes the frame to its image takes all of x to y.
+    """Return whether the isometry that maps the frame to its image maps all of x to y.
 
     The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
     """
@@ -96,7 +96,7 @@ def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...]
 
 
 def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:
-    """Whether as many agents go to each place as stand there (agents may coincide)."""
+    """Return whether each place receives as many agents as stand there."""
     from scipy.spatial import KDTree
 
     if np.unique(nearest).size == len(nearest):

@@ -1,4 +1,4 @@
-"""Signs of a potential's curvatures at a computed equilibrium, as far as rounding and the residual force leave them.
+"""Signs of a potential's curvatures at a computed equilibrium, given rounding and the residual force.
 
 Where a force ρ is left and the Hessian has the eigenvalue λ along v, the true critical point lies about ρ/|λ| away, and
 the curvature that counts is the one there. So λ has a sign only if the stiffness keeps half of |λ| within twice that
@@ -40,7 +40,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """A potential about a configuration: its Hessian off the rigid motions, and how much that changes nearby.
+    """Potential about a configuration: its Hessian off the rigid motions, and bounds of its change nearby.
 
     Parameters
     ----------
@@ -104,12 +104,12 @@ class Landscape:
 
     @cached_property
     def vectors(self) -> FloatArray:
-        """Their eigenvectors, as columns."""
+        """Eigenvectors of `values`, as columns."""
         vectors: FloatArray = np.linalg.eigh(self._matrix)[1][:, : self.values.size]
         return vectors
 
     def curvatures(self) -> Curvatures:
-        """The eigenvalues with their signs: 0 where the residual force or rounding leaves none."""
+        """Eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
         sizes = np.abs(self.values)
         decided = np.zeros(sizes.size, dtype=bool)
         left = np.flatnonzero(sizes > self.rounding)
@@ -139,14 +139,14 @@ class Landscape:
 
     @cached_property
     def distance(self) -> float:
-        """Bound of the way to the minimum beside this point, over all coordinates; infinite where there is none."""
+        """Bound of the distance to the nearby minimum, over all coordinates; infinite if unknown."""
         values, signs, rounding = self.curvatures()
         if not values.size:
             return 0.0
         return 2.0 * self.force / (float(values[0]) - rounding) if np.all(signs > 0) else float("inf")
 
     def holds(self, energy: float) -> bool:
-        """Whether a flock here with that kinetic energy stays beside the minimum, if its energy never rises.
+        """Return whether a flock with this kinetic energy stays near the minimum, if its energy never rises.
 
         Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4 from
         the minimum, which is lower than here by no more than ρ²/λ.
@@ -160,11 +160,11 @@ class Landscape:
         return self._keeps(reach, least)
 
     def _keeps_all(self, least: float) -> bool:
-        """Whether no eigenvalue of at least that size can change by half of it on the way to the critical point."""
+        """Return whether no eigenvalue of at least this size changes by half on the way to the critical point."""
         return self._keeps(2.0 * self.force / least, least)
 
     def _keeps(self, reach: float, least: float) -> bool:
-        """Whether the stiffness changes by less than half of `least` within `reach`, by the norm of the change."""
+        """Return whether the stiffness changes by less than half of `least` within `reach`."""
         if reach > _REACH * self.length:
             return False
         turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
@@ -185,7 +185,7 @@ class Landscape:
 
 
 def least_curvature(landscape: Landscape) -> tuple[float, float]:
-    """The smallest curvature over the largest in modulus, and its error from rounding and the residual force.
+    """Relative smallest curvature, and its error from rounding and the residual force.
 
     They are (NaN, ∞) where there is nothing but rigid motions, and (0, 0) where nothing is stiff at all.
     """

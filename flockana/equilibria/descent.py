@@ -34,7 +34,7 @@ _ENOUGH = 0.1  # of the fall of energy that a Newton step promises
 
 
 class Descent(NamedTuple):
-    """Where it ended, whether the force vanishes there, and in words what happened."""
+    """Result of a descent: end, whether the force vanishes there, and a message."""
 
     q: FloatArray
     converged: bool
@@ -43,15 +43,6 @@ class Descent(NamedTuple):
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """A minimum of the potential that is reached from q downhill, or a lower one if the net gives way on the way.
-
-    Parameters
-    ----------
-    potential : Potential
-        What is minimised.
-    q : ndarray, shape (n, m)
-        Start.
-    max_iter : int
-        Most Newton steps; of the cheap steps of the damped motion a hundred times as many.
 
     Examples
     --------
@@ -72,17 +63,6 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
     """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006).
-
-    Parameters
-    ----------
-    potential : Potential
-        U.
-    q : ndarray, shape (n, m)
-        Start.
-    steps : int
-        Most evaluations of the force.
-    tol : float
-        Relative force at which it ends.
 
     Examples
     --------
@@ -115,7 +95,7 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
 
 
 def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
-    """Whether neighbours at the start have moved against each other by more than the distance they are held at.
+    """Return whether neighbours at the start moved against each other by more than their distance.
 
     Examples
     --------
@@ -129,16 +109,7 @@ def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
 
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
-    """Langevin's equation from a temperature that shakes agents out of their places down to none.
-
-    Parameters
-    ----------
-    potential : Potential
-        U.
-    q : ndarray, shape (n, m)
-        Start.
-    warm : float
-        First temperature, in units of the law's force times its length.
+    """Simulate Langevin's equation while the temperature falls to zero.
 
     Examples
     --------
@@ -164,7 +135,7 @@ def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
 
 
 def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray, bool]:
-    """Newton's method downhill: where the Hessian is not positive, the moduli of its fronts' eigenvalues stand in.
+    """Minimise by Newton's method, with moduli of eigenvalues where the Hessian is not positive.
 
     A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
 
@@ -196,7 +167,7 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
 
 
 def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any, near: float) -> bool:
-    """Whether a step made good enough what it promised: the fall of energy, or near the end that of the force.
+    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end.
 
     The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
     """

@@ -1,4 +1,4 @@
-"""The curvatures that decide about a large flock: the smallest of its Hessian, counted by elimination, and the largest.
+"""Decisive curvatures of a large flock: the smallest, counted by elimination, and the largest.
 
 Lanczos' method finds eigenvalues and may miss one; the signs of an elimination's pivots count them all. So those found
 are held against the count, and more are asked for until what is not among them is surely positive.
@@ -22,7 +22,7 @@ _GAP = 1e-9  # of the largest row sum: eigenvalues between which there is no mor
 
 
 class LargeLandscape(Landscape):
-    """A `Landscape` whose `values` are its smallest eigenvalues and its largest: all that are not surely positive.
+    """`Landscape` that holds only its smallest eigenvalues and its largest.
 
     Examples
     --------
@@ -43,7 +43,7 @@ class LargeLandscape(Landscape):
 
     @cached_property
     def vectors(self) -> FloatArray:
-        """Their eigenvectors, as columns."""
+        """Eigenvectors of `values`, as columns."""
         return self._extremes[1]
 
     @cached_property
@@ -65,7 +65,7 @@ class LargeLandscape(Landscape):
         )
 
     def _count(self, bound: float) -> int:
-        """How many eigenvalues off the rigid motions are below a positive bound; the rigid motions are, being zero."""
+        """Return the number of eigenvalues off the rigid motions below a positive bound."""
         return Elimination(self._shifted(-bound), self.q, keep=False).negative - int(self.rigid.shape[1])
 
     def _shifted(self, by: float) -> Any:
@@ -74,12 +74,12 @@ class LargeLandscape(Landscape):
         return (self.here + by * eye_array(self.q.size)).tocsr()
 
     def _off(self, x: FloatArray) -> FloatArray:
-        """What is left of vectors off the rigid motions."""
+        """Project vectors off the rigid motions."""
         rest: FloatArray = x - self.rigid @ (self.rigid.T @ x)
         return rest
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Eigenvalues nearest to a little below zero, rising, by Rayleigh's quotient of their vectors."""
+        """Return eigenvalues nearest to a shift below zero, rising, by Rayleigh quotients."""
         shift = _BELOW * self.size
         solve = Elimination(self._shifted(shift), self.q).solve
         return self._lanczos(lambda x: self._off(solve(self._off(x))), count, "LM")

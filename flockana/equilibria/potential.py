@@ -25,7 +25,7 @@ _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is 
 
 
 def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
-    """Return the law if it is a sum of terms whose forces are gradients, without jumps, in m dimensions.
+    """Return the law; raise unless its forces are gradients without jumps in m dimensions.
 
     Examples
     --------
@@ -51,13 +51,6 @@ class Potential:
     """Σ U^T over the terms of a law at one time: V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2),
     V_α + V_β + V_γ (Algorithm 3), c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
 
-    Parameters
-    ----------
-    law : SumOfTerms
-        The law, from `ensure_flock_law`.
-    t : float
-        When: a γ-agent may move.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -65,17 +58,17 @@ class Potential:
     [0.0, 0.0]
     """
 
-    law: SumOfTerms
-    t: float = 0.0
+    law: SumOfTerms  # the law, from `ensure_flock_law`
+    t: float = 0.0  # when: a γ-agent may move
 
     @property
     def pinned(self) -> bool:
-        """Whether a translation of the flock changes the potential."""
+        """Return whether translations of the flock change the potential."""
         return any(term.invariance != "rigid motions" for term in self.law.terms)
 
     @property
     def force_scale(self) -> float:
-        """The force scale of the law; of a law without scales, that of its pairs."""
+        """Force scale of the law, or of its pairs."""
         own = self.law.scales
         return self.gain * self.pair.strength if own is None else own.force
 
@@ -91,7 +84,7 @@ class Potential:
 
     @property
     def gain(self) -> float:
-        """Factor of the pair potential: c1α; 1 for the dead zone, which carries its own."""
+        """Factor of the pair potential: c1α, or 1 for the dead zone."""
         return self.pairs.stiffness
 
     @property
@@ -101,7 +94,7 @@ class Potential:
 
     @property
     def target(self) -> FloatArray | None:
-        """q_r(t), None under a law without γ-agent."""
+        """Return q_r(t), or None without a γ-agent."""
         return None if self.law.target is None else np.asarray(self.law.target.state(self.t)[0], dtype=float)
 
     @property
@@ -160,12 +153,12 @@ class Potential:
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:
-    """Whether an agent is inside an obstacle, where ψ_β falls again and keeps nobody out."""
+    """Return whether an agent is inside an obstacle, where ψ_β falls again."""
     return not np.isfinite(q).all() or any(bool(obstacle.contains(q).any()) for obstacle in law.obstacles)
 
 
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
-    """Skew matrices that map every obstacle's axis (its centre from q_r, its normal) to zero: they move none.
+    """Return the skew matrices that leave every obstacle in place.
 
     A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
     """

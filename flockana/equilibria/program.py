@@ -48,7 +48,7 @@ class _Value(ca.Callback):
 
 
 class _Derivatives(ca.Callback):
-    """Gradient and upper triangle of the Hessian from the law's kernels, where there is no formula to generate them."""
+    """Gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
 
     def __init__(self, program: Program, rows: Any, columns: Any) -> None:
         ca.Callback.__init__(self)
@@ -173,7 +173,7 @@ class Program:
         return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
 
     def _solver(self, tol: float, max_iter: int) -> Any:
-        """IPOPT with these options; made once."""
+        """Return IPOPT with these options (cached)."""
         if (tol, max_iter) not in self._solvers:
             options: Any = {
                 **_QUIET,
@@ -187,7 +187,7 @@ class Program:
         return self._solvers[tol, max_iter]
 
     def _derivatives(self, x: Any) -> tuple[Any, Any]:
-        """Gradient and upper triangle of the Hessian at x, in the program's units."""
+        """Gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
         (n, m), (i, j) = self.shape, self.pairs.T
         rows, columns, scatter = _scatter(n, m, i, j)
         if not has_form(self.potential.pair, self.potential.others):
@@ -227,7 +227,7 @@ def _matrix(rows: Any, columns: Any, values: Any, shape: tuple[int, int]) -> Any
 
 
 def _scatter(n: int, m: int, i: Any, j: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Any]:
-    """Where the blocks go: rows and columns of the upper triangle, and the matrix from block entries to them.
+    """Return rows and columns of the upper triangle, and the matrix from block entries to them.
 
     A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
     """

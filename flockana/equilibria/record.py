@@ -1,4 +1,4 @@
-"""Write an equilibrium and its law as JSON, and read it back with all its properties computed and compared."""
+"""JSON files of equilibria, whose properties are recomputed and compared on reading."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
-    """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
+    """Read an equilibrium; its properties are recomputed and must agree with the file."""
     data = _read(path)
     try:
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
@@ -58,7 +58,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
 
 
 def _read(path: str | Path) -> dict[str, Any]:
-    """What the file says, if it says that it is an equilibrium."""
+    """Return the data of a file that claims to be an equilibrium."""
     try:
         data = read_json(read_whole(path))
     except FlockanaError as error:
@@ -77,7 +77,7 @@ def _not_one(path: str | Path, reason: object) -> FileError:
 
 
 def _ensure_unharmed(data: dict[str, Any]) -> None:
-    """Raise unless the file is as it was written; one without a digest is of before there were any."""
+    """Raise if the file's digest does not match; older files have none."""
     unknown = sorted({*data} - {*_KEYS, SEAL})
     if unknown:
         raise ValueError(f"it holds {', '.join(unknown)}, which no equilibrium has")
@@ -86,7 +86,7 @@ def _ensure_unharmed(data: dict[str, Any]) -> None:
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
-    """Raise unless kind, links, modes, energy and spectrum are what the file says."""
+    """Raise unless kind, links, modes, energy and spectrum agree with the file."""
     exact = {"kind": equilibrium.kind, "links": len(equilibrium.links), "rigid_modes": equilibrium.rigid_modes}
     for name, value in exact.items():
         if data[name] != value:
@@ -104,7 +104,7 @@ def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
 
 
 def smallest_strained() -> Equilibrium:
-    """The smallest strict local minimum of V known to us with distinct agents that is no α-lattice, verified anew.
+    """Return the smallest known strict minimum of V with distinct agents that is no α-lattice, verified again.
 
     Thirteen agents, 24 links of 6.849 to 7.116 for d = 7: one more than a rigid net needs, so the lengths cannot all
     be d. Found from random starts of 15, by taking away what its stress does not need; no smaller one turned up.

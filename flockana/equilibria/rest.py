@@ -1,4 +1,4 @@
-"""A state of rest near a configuration, of a law that need not have a potential: Newton's method on its forces."""
+"""States of rest of laws without a potential, by Newton's method on the forces."""
 
 from __future__ import annotations
 

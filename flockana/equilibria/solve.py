@@ -48,12 +48,10 @@ _REACH = 1e-3  # of d: a polish that goes farther than that has left the point i
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A configuration at which the force on every agent vanishes, and what kind of critical point it is.
+    """Configuration at which the force on every agent vanishes, with its kind of critical point.
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
-        The law.
     q : ndarray, shape (n, m)
         Positions; under Algorithm 2 with one c1γ their centre is the γ-agent.
     energy : float
@@ -112,7 +110,7 @@ class Equilibrium:
 
     @property
     def curvature(self) -> float:
-        """Smallest eigenvalue off the rigid motions over the largest in modulus; NaN if there is none."""
+        """Smallest eigenvalue off the rigid motions over the largest in modulus; NaN without one."""
         values = self.hessian_eigenvalues
         return float(values[0] / np.abs(values).max()) if values.size and values.any() else float("nan")
 
@@ -152,10 +150,6 @@ def find_equilibrium(
     strict : bool
         Raise on failure; else return the last point with ``success=False`` and the reason.
 
-    Returns
-    -------
-    Equilibrium
-
     Raises
     ------
     ArgumentError
@@ -190,7 +184,7 @@ def find_equilibrium(
 
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
-    """The equilibrium at which a solver ended, refined by Newton's method and classified; an error if it is none.
+    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium.
 
     Examples
     --------
@@ -234,13 +228,13 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
 
 
 def _fixed_in_space(potential: Potential) -> bool:
-    """Whether the target acts through the potential, or not at all."""
+    """Return whether the target acts through the potential, or not at all."""
     pull = potential.law.term(Navigation)
     return potential.pinned or (pull is not None and pull.gains.c1_gamma == 0.0)
 
 
 def all_pairs(n: int) -> LinkArray:
-    """Every pair of n agents.
+    """Return all pairs of n agents.
 
     Examples
     --------

@@ -76,7 +76,7 @@ def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix
 
 
 def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
-    """Whether gradient and Hessian of a potential can be generated; else they are computed by the law's own kernels.
+    """Return whether gradient and Hessian of a potential can be generated from a formula.
 
     Examples
     --------

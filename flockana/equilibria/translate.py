@@ -27,7 +27,7 @@ _RELATIONS: dict[Any, Callable[[Any, Any], Any]] = {
 
 
 def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
-    """Translate a sympy expression, node by node; what has no symbols left becomes the nearest float.
+    """Translate a sympy expression to CasADi; constants become the nearest floats.
 
     Examples
     --------
