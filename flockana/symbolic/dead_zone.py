@@ -19,7 +19,7 @@ PSI = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, argind
 
 
 def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return 2k_r/rho^2 + k_delta, what acts below d_1.
+    """Return the repulsion below d_1, 2k_r/rho^2 + k_delta.
 
     Examples
     --------
@@ -30,7 +30,7 @@ def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
 
 
 def attraction(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return 2k_r/(r_d - rho)^2 + k_delta, what acts between d_2 and r.
+    """Return the attraction between d_2 and r, 2k_r/(r_d - rho)^2 + k_delta.
 
     Examples
     --------

@@ -77,7 +77,7 @@ class Derivation:
 
     @property
     def holds(self) -> bool:
-        """Whether every computed residual vanishes identically."""
+        """Return whether every computed residual vanishes identically."""
         return all(residual == 0 for residual in self.residuals)
 
     def latex(self) -> str:

@@ -43,7 +43,7 @@ from flockana.symbolic.sums import (
 
 @dataclass(frozen=True)
 class EnergyIdentity:
-    """An energy, its rate along the flow as derived, the closed form claimed, and what is left between them.
+    """Energy, its derived rate along the flow, the claimed closed form, and their difference.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class EnergyIdentity:
 
     @property
     def holds(self) -> bool:
-        """Whether the residual vanishes identically."""
+        """Return whether the residual vanishes identically."""
         return bool(self.residual == 0)
 
     def latex(self) -> str:
@@ -175,8 +175,6 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
 
     Parameters
     ----------
-    m : int
-        Dimension, 1, 2 or 3.
     gains : GainSymbols
         Gains; all symbolic if not given.
     kinetic_factor : sympy.Expr
@@ -218,8 +216,6 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
 
     Parameters
     ----------
-    m : int
-        Dimension, 1, 2 or 3.
     gains : GainSymbols
         Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
     lambda_ : sympy.Expr, optional

@@ -15,7 +15,7 @@ HALF = sp.Rational(1, 2)
 
 
 def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
-    """Return the falling half-cosine of the bump, without its range h <= z <= 1.
+    """Return the half-cosine of the bump on h <= z <= 1.
 
     Examples
     --------

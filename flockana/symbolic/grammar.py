@@ -1,4 +1,4 @@
-"""Formulas as text: read by a small grammar of their own, so that a file with a formula in it is data and no program.
+"""Grammar of formulas as text, so that a file with a formula contains data and no code.
 
 Known are names, numbers, + - * / ** and brackets, comparisons with the distance, ``Piecewise((value, condition), ...)``
 and the functions in `FUNCTIONS`. Nothing is evaluated as Python, and nothing that is written small can grow large.
@@ -41,21 +41,7 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
-    """The sympy expression that a text says, in the names given.
-
-    Parameters
-    ----------
-    text : str
-        At most 4000 characters.
-    symbols : mapping of str to sympy.Expr
-        What each name stands for; no other name is known, but pi and the functions.
-    where : str
-        What is read, for messages.
-
-    Raises
-    ------
-    ArgumentError
-        On anything outside the grammar, and on numbers that powers make too large.
+    """Return the sympy expression of a text, in the names given.
 
     Examples
     --------
@@ -84,11 +70,6 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 
 def write_formula(expression: sp.Expr) -> str:
     """The text that `read_formula` reads as the same expression, every number to the last bit.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        In plain symbols.
 
     Examples
     --------
@@ -121,7 +102,7 @@ class _Reader:
         self.names = {**_CONSTANTS, **symbols}
 
     def expression(self, node: ast.AST, depth: int) -> Any:
-        """What a node says."""
+        """Return the expression of a node."""
         if depth > DEPTH:
             raise ArgumentError(f"{self.where} is nested more than {DEPTH} deep: expected a simpler formula")
         if isinstance(node, ast.Constant):
@@ -181,14 +162,14 @@ class _Reader:
         return self._real(value, node)
 
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
-        """The value, if it is real and a number in it is of a size that floating point knows."""
+        """Return the value if it is real and its numbers fit floating point; raise otherwise."""
         unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
         if unreal or (value.is_number and not abs(complex(value.evalf(15))) < _GREATEST):
             raise ArgumentError(f"{self.where}: {_short(ast.unparse(node))} is no real number below {_GREATEST:g}")
         return value
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
-        """Refuse 9**9**9 before it is computed."""
+        """Raise on powers such as 9**9**9 before they are computed."""
         if power.is_number and not (power.is_Rational or power.is_Float):
             raise ArgumentError(f"{self.where}: a power {power} is no plain number; expected one such as 2 or 1/2")
         if power.is_number and abs(power) > LARGEST_POWER:

@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NumericLaw:
-    """A law with numbers for parameters, evaluated from its symbolic expressions.
+    """Law with numeric parameters, evaluated from its symbolic expressions.
 
     Parameters
     ----------
@@ -63,7 +63,6 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         flat = [float(u) for u in self._evaluate(0, q, p)]
         return np.array(flat).reshape(self.flock.n, self.flock.m)
@@ -74,7 +73,6 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         return float(self._evaluate(1, q, p))
 
@@ -84,13 +82,12 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         return float(self._evaluate(2, q, p))
 
 
 def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
-    """Return a function of z with its parameters fixed; sympy sees their names, or it would integrate."""
+    """Return a function of z with fixed parameters, hidden from sympy by name."""
     named = ALPHA_NAMED
     parameters = [named.h, named.a, named.b, named.c, named.d_alpha, named.r_alpha]
     function = sp.lambdify([Z, *parameters], scalar(Z, alpha=named), "mpmath")

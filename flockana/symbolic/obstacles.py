@@ -59,7 +59,7 @@ def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) 
 
 
 class GenericObstacle:
-    """One agent and one obstacle of a kind, by components.
+    """Agent and obstacle of one kind, by components.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class GenericObstacle:
         return (self.mu - 1) * (self.p.dot(self.p) - along) - along
 
     def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
-        """Return what the obstacle contributes to u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
+        """Return the obstacle's part of u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
         z = sigma_norm(self.gap)
         attraction = gains.c1_beta * PHI_BETA(z) * sigma_norm_gradient(self.gap)
         return attraction + gains.c2_beta * WEIGHT(z) * (self.rate - self.p)
@@ -162,18 +162,7 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
 
 @dataclass(frozen=True)
 class Braking:
-    """What an obstacle does to the kinetic energy, <p, p_hat - p>, and its sign.
-
-    Parameters
-    ----------
-    kind : str
-        The obstacle.
-    residual : sympy.Expr
-        <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0.
-    terms : tuple of sympy.Expr
-        The terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere).
-    inside : tuple of sympy.Expr
-        The same inside (mu = 1 + tau at a sphere; nothing changes at a wall).
+    """Effect of an obstacle on the kinetic energy, <p, p_hat - p>, and its sign.
 
     Examples
     --------
@@ -182,18 +171,19 @@ class Braking:
     """
 
     kind: str
-    residual: sp.Expr
+    residual: sp.Expr  # <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0
+    # the terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere)
     terms: tuple[sp.Expr, ...]
-    inside: tuple[sp.Expr, ...]
+    inside: tuple[sp.Expr, ...]  # the same inside (mu = 1 + tau at a sphere; nothing changes at a wall)
 
     @property
     def holds(self) -> bool:
-        """Whether the form is exact, and sympy proves every term of it nonpositive outside the obstacle."""
+        """Return whether the form is exact, and every term provably nonpositive outside the obstacle."""
         return bool(self.residual == 0) and all(term.is_nonpositive is True for term in self.terms)
 
     @property
     def holds_inside(self) -> bool:
-        """Whether every term is nonpositive inside too: at a wall it is, in a sphere the tangential one is not."""
+        """Return whether every term is nonpositive inside too: true at a wall, not in a sphere."""
         return all(term.is_nonpositive is True for term in self.inside)
 
 

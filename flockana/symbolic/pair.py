@@ -51,7 +51,7 @@ def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS
 def pair_force(
     q_i: sp.Matrix, p_i: sp.Matrix, q_j: sp.Matrix, p_j: sp.Matrix, *, gains: GainSymbols = GAINS
 ) -> sp.Matrix:
-    """Return what agent j contributes to u_i: c1_alpha phi_alpha n_ij + c2_alpha a_ij (p_j - p_i).
+    """Return agent j's part of u_i: c1_alpha phi_alpha n_ij + c2_alpha a_ij (p_j - p_i).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From a pair law's formula to its potential, force, weight and adjacency, step by step."""
+"""Derivation of potential, force, weight and adjacency from a pair law's formula, step by step."""
 
 from __future__ import annotations
 
@@ -10,12 +10,7 @@ from flockana.symbolic.pair_formula import EPS, PairFormula, S, Z
 
 
 def pair_derivation(formula: PairFormula) -> Derivation:
-    """What follows from a formula, with the residual of every equation that can be checked by computing.
-
-    Parameters
-    ----------
-    formula : PairFormula
-        As read.
+    """Derive the consequences of a formula, with the residual of every equation that can be checked.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A pair law's formula: which distance it is in, where its pieces meet, and what follows from it by derivation.
+"""Formulas of pair laws: their distance, pieces and derivatives.
 
 A formula is in the distance s or in the σ-norm z = (√(1 + εs²) − 1)/ε. It is cut where its pieces meet, at numbers;
 between two cuts it is smooth, and sympy derives there, in y = s² or y = z, what the sums over pairs need.
@@ -27,18 +27,7 @@ RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTION
 
 @dataclass(frozen=True)
 class PairFormula:
-    """A potential or a force, and an adjacency, as read from their texts.
-
-    Parameters
-    ----------
-    main : sympy.Expr
-        ψ, or ψ' where `forces`, as a function of the distance.
-    adjacency : sympy.Expr
-        a_ij, of the same distance.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is the derivative of the potential in the distance.
+    """Potential or force, and adjacency, parsed from text.
 
     Examples
     --------
@@ -47,10 +36,10 @@ class PairFormula:
     (s, k*(-2*d + 2*s)/2)
     """
 
-    main: sp.Expr
-    adjacency: sp.Expr
-    distance: sp.Symbol
-    forces: bool
+    main: sp.Expr  # ψ, or ψ' where `forces`, as a function of the distance
+    adjacency: sp.Expr  # a_ij, of the same distance
+    distance: sp.Symbol  # `S` or `Z`
+    forces: bool  # whether `main` is the derivative of the potential in the distance
 
     @property
     def derivative(self) -> sp.Expr:
@@ -59,22 +48,7 @@ class PairFormula:
 
 
 def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
-    """Read a pair law of which either the potential or its derivative is given.
-
-    Parameters
-    ----------
-    potential, force : str
-        One of them, the other empty.
-    adjacency : str
-        Of the same distance.
-    names : list of str
-        Parameters.
-
-    Raises
-    ------
-    ArgumentError
-        If both distances are used, a parameter is used nowhere, or has a name that means something else.
-    """
+    """Read a pair law from its potential or its force."""
     taken = sorted(RESERVED & {*names})
     if taken or not all(name.isidentifier() for name in names):
         bad = taken or [name for name in names if not name.isidentifier()]
@@ -98,13 +72,13 @@ def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> P
 
 
 def _in_fractions(expression: sp.Expr) -> sp.Expr:
-    """The same with 0.1 as 1/10: what cancels between derived terms cancels to the last digit."""
+    """Return the expression with decimals as fractions, so that derived terms cancel exactly."""
     return expression.xreplace({number: sp.Rational(repr(float(number))) for number in expression.atoms(sp.Float)})
 
 
 @dataclass(frozen=True)
 class Piece:
-    """What follows from a formula between two cuts, in y: s² or z, and the root √(1 + εs²) = 1 + εz beside z.
+    """Piece of a formula between two cuts, in y (s² or z) and the root √(1 + εs²) = 1 + εz.
 
     `potential` is None where the force was given.
     """
@@ -118,16 +92,7 @@ class Piece:
 
 
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
-    """Weight w of q_j − q_i, its slope dw/d(s²), adjacency and da/d(s²), of smooth expressions.
-
-    Parameters
-    ----------
-    main, adjacency : sympy.Expr
-        Without pieces.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is ψ'.
+    """Derive the weight w of q_j − q_i, dw/d(s²), adjacency a and da/d(s²) from smooth expressions.
 
     Examples
     --------
@@ -150,16 +115,7 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
 
 @dataclass(frozen=True)
 class Cut:
-    """A pair formula with numbers for its parameters, cut where its pieces meet.
-
-    Parameters
-    ----------
-    formula : PairFormula
-        As read.
-    numbers : mapping of sympy.Symbol to float
-        Of the parameters, r, d and their σ-norms.
-    end : float
-        The range, in the distance of the formula.
+    """Pair formula with numeric parameters, cut where its pieces meet.
 
     Examples
     --------
@@ -168,9 +124,9 @@ class Cut:
     (0.0, 2.0, 5.0)
     """
 
-    formula: PairFormula
-    numbers: Mapping[sp.Symbol, float]
-    end: float
+    formula: PairFormula  # as read
+    numbers: Mapping[sp.Symbol, float]  # of the parameters, r, d and their σ-norms
+    end: float  # the range, in the distance of the formula
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
@@ -180,7 +136,7 @@ class Cut:
         return (0.0, *sorted(x for x in meet if 0.0 < x < self.end), self.end)
 
     def _meeting(self, condition: Any) -> float:
-        """Where a condition begins or ceases to hold."""
+        """Return the places where a condition changes."""
         y, gap = self.formula.distance, condition.lhs - condition.rhs
         steep = sp.diff(gap, y)
         if gap.has(sp.Piecewise) or y in steep.free_symbols:
@@ -191,7 +147,7 @@ class Cut:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """What follows from the formula between each two marks."""
+        """Return the piece of the formula between each two marks."""
         return tuple(
             derive_piece(
                 self._chosen(self.formula.main, 0.5 * (left + right)),
@@ -203,7 +159,7 @@ class Cut:
         )
 
     def _chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """An expression without its pieces, those chosen that hold at a distance."""
+        """Return an expression with the pieces that hold at a distance."""
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
@@ -218,26 +174,14 @@ class Cut:
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """The value of an expression in parameters alone, to `DIGITS`.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Without a distance.
-        """
+        """The value of an expression in parameters alone, to `DIGITS`."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
             raise ArgumentError(f"{expression} has no value for these parameters: expected a finite number") from None
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
-        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of `SQUARE`, or of `Z` and `ROOT`.
-        """
+        """Return an expression as a function of y, to `DIGITS`; NaN where it is not real."""
         y = Z if self.formula.distance == Z else SQUARE
         expression = expression.subs(ROOT, 1 + EPS * Z)
         symbols = list(self.numbers)

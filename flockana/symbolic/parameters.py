@@ -43,7 +43,7 @@ def _fill(bundle: Any, derived: tuple[str, ...] = ()) -> None:
 
 
 def _require(condition: bool | None, message: str) -> None:
-    """Refuse what sympy can decide to be false; what it cannot decide is the caller's assumption."""
+    """Raise on a condition that sympy decides to be false; open ones are assumptions."""
     if condition is False:
         raise ArgumentError(message)
 

@@ -11,7 +11,7 @@ _WHOLE = 8  # powers up to it are products
 
 
 class Constants:
-    """What of some expressions no variable enters, by the place it gets among the parameters.
+    """Constant subexpressions, by their place among the parameters.
 
     Parameters
     ----------
@@ -34,17 +34,11 @@ class Constants:
 
     @property
     def values(self) -> list[sp.Expr]:
-        """The constants, in the order of their places."""
+        """Return the values of the constants, in the order of their places."""
         return list(self.places)
 
     def taken_out(self, expression: sp.Expr) -> sp.Expr:
-        """An expression with symbols for its constants.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of variables and parameters.
-        """
+        """Return an expression with symbols for its constants."""
         if not expression.free_symbols & self.variables:
             return self._named(expression)
         if isinstance(expression, sp.Add | sp.Mul):
@@ -63,7 +57,7 @@ class Constants:
 
 
 class _Code(PythonCodePrinter):
-    """Names of the scalar functions as the kernels know them, powers as products and roots."""
+    """Code printer with the kernels' scalar functions, powers as products and roots."""
 
     def _print_Pow(self, power: sp.Expr, rational: bool = False) -> str:  # noqa: N802  # sympy's name
         base, exponent = power.as_base_exp()
@@ -107,18 +101,7 @@ class _Code(PythonCodePrinter):
 
 
 def function_text(name: str, arguments: str, before: list[str], expressions: list[list[sp.Expr]], after: str) -> str:
-    """The text of a function of several results, of which each is one of some expressions: that of its piece.
-
-    Parameters
-    ----------
-    name, arguments : str
-        Of the function.
-    before : list of str
-        Lines that come first; they leave the piece's marks in ``m0``, ``m1``, …, the variable in ``y``.
-    expressions : list of lists of sympy.Expr
-        For every result, one for each piece.
-    after : str
-        What is returned, of the results ``v0``, ``v1``, ….
+    """Return the text of a function of several results, piecewise by expression.
 
     Examples
     --------
