@@ -1,4 +1,4 @@
-"""How close a run comes to obstacles, between its samples too, and how far a state is from a constrained α-lattice.
+"""Clearances of runs from obstacles, between samples too, and distances from constrained α-lattices.
 
 Between two samples a path is the quintic that matches position, velocity and acceleration at both ends; in Bernstein
 form it stays in the convex hull of its control points. The signed distance from a convex solid is convex, so it lies
@@ -32,29 +32,16 @@ _CHUNK = 50_000  # agent-intervals handled at once
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """The least clearance of a run.
+    """The least clearance of a run."""
 
-    Attributes
-    ----------
-    lower : float
-        Lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
-        and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles.
-    reached : float
-        Least signed distance reached on the interpolated paths: an estimate from above.
-    time : float
-        When it was reached.
-    agent, obstacle : int
-        By which agent, at which obstacle; -1 without obstacles.
-    lower_by_obstacle : ndarray, shape (K,)
-        The lower bound for each obstacle.
-    """
-
+    # lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
+    # and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles
     lower: float
-    reached: float
-    time: float
-    agent: int
+    reached: float  # least signed distance reached on the interpolated paths: an estimate from above
+    time: float  # when it was reached
+    agent: int  # agent, obstacle: by which agent, at which obstacle; -1 without obstacles
     obstacle: int
-    lower_by_obstacle: FloatArray
+    lower_by_obstacle: FloatArray  # shape (K,): the lower bound for each obstacle
 
 
 def clearance(
@@ -108,7 +95,7 @@ def clearance(
 
 
 def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
-    """Signed distances wherever they may be the least; elsewhere lower bounds, those of the ball about the obstacle."""
+    """Return signed distances where they may be the least, and lower bounds elsewhere."""
     centre, radius = obstacle.ball
     off = points - centre
     distance: FloatArray = np.sqrt(np.einsum("km,km->k", off, off)) - radius
@@ -120,7 +107,7 @@ def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
 
 
 class _Bound(NamedTuple):
-    """Of some curves: a lower bound, the least value found, its parameter, and which curve it was on."""
+    """Minimum over curves: a lower bound, the least value found, its parameter and curve."""
 
     lower: float
     value: float
@@ -137,7 +124,7 @@ class _Least:
         self.lower = self.reached = float(at_samples[k, self.agent])
 
     def update(self, bound: _Bound, t: FloatArray, interval: Any, agent: Any) -> None:
-        """Take in what was found on some agents' intervals."""
+        """Update the minimum with some agents' intervals."""
         self.lower = min(self.lower, bound.lower)
         if bound.value < self.reached:
             k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])
@@ -171,7 +158,7 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
 
 
 def at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
-    """(signed distance at a point of each curve's hull, lower bound of it over the hull), without halving."""
+    """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
     gap, _, here = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -193,21 +180,11 @@ def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True)
 class ConstrainedLattice:
-    """How far a configuration is from a constrained α-lattice: all links d long, all β-agents at d'.
+    """Distance of a configuration from a constrained α-lattice: links of length d, β-agents at d'."""
 
-    Attributes
-    ----------
-    alpha_error : float
-        Largest |‖q_j − q_i‖ − d| over links; NaN without links.
-    beta_error : float
-        Largest |‖q̂_ik − q_i‖ − d'| over β-neighbours (within r'); NaN without any.
-    links, beta_links : int
-        How many there are of each.
-    """
-
-    alpha_error: float
-    beta_error: float
-    links: int
+    alpha_error: float  # largest |‖q_j − q_i‖ − d| over links; NaN without links
+    beta_error: float  # largest |‖q̂_ik − q_i‖ − d'| over β-neighbours (within r'); NaN without any
+    links: int  # links, beta_links: how many there are of each
     beta_links: int
 
 

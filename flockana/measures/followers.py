@@ -13,17 +13,12 @@ FOLLOWS = 1e-2  # of the law's own speed: who differs from the leader's velocity
 
 
 def _has_leader(law: Any) -> bool:
-    """Whether the law has a γ-agent."""
+    """Return whether the law has a γ-agent."""
     return law.target is not None
 
 
 def following(run: Any) -> FloatArray:
-    """Which agents move as their leader does at the end of a run, within 1/100 of the law's speed, shape (n,).
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
+    """Return which agents match their leader's velocity at the end, within 1/100 of the law's speed, shape (n,).
 
     Examples
     --------

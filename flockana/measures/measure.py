@@ -1,4 +1,4 @@
-"""What is measured of any run, over time and as one number of it: a measure is one entry of one table.
+"""Table of measures of runs, over time and as one number.
 
 A file of this package that defines ``MEASURES`` adds to it: `Trajectory.metrics`, ensembles and plots then know them.
 What only the runs of one law have is in that law's `measures`.
@@ -19,18 +19,10 @@ from flockana.measures.metrics import nets
 
 @dataclass(frozen=True, eq=False)
 class Flock:
-    """A flock at several instants, under its law: what measures are taken of.
-
-    Attributes
-    ----------
-    law : LawOfMotion
-        The law.
-    q, p : ndarray, shape (T, n, m)
-        Positions and velocities.
-    """
+    """Flock at several instants, under its law."""
 
     law: Any
-    q: FloatArray
+    q: FloatArray  # q, p: shape (T, n, m)
     p: FloatArray
 
     @cached_property
@@ -42,7 +34,7 @@ class Flock:
 
 
 class Series(NamedTuple):
-    """A measure that a law takes of its own runs: taken, or to be taken by a function of nothing."""
+    """Measure that a law takes of its own runs: values, or a function that computes them."""
 
     text: str
     values: FloatArray | Callable[[], FloatArray]
@@ -50,55 +42,35 @@ class Series(NamedTuple):
 
 
 def any_law(law: Any) -> bool:
-    """Whether a measure makes sense for the law: always."""
+    """Return True: the measure is defined for every law."""
     return True
 
 
 def has_range(law: Any) -> bool:
-    """Whether the law has an interaction range, so that there is a net."""
+    """Return whether the law has an interaction range, and so a net."""
     return law.pair is not None
 
 
 def has_lattice(law: Any) -> bool:
-    """Whether the law has a lattice scale d and an interaction range r."""
+    """Return whether the law has a lattice scale d and an interaction range r."""
     return law.lattice is not None
 
 
 @dataclass(frozen=True)
 class Measure:
-    """One measure of runs.
+    """One measure of runs."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in `Trajectory.metrics` and in ensembles.
-    text : str
-        What it is, for people.
-    unit : str
-        Its unit.
-    over_time : callable, optional
-        ``over_time(flock) -> ndarray of shape (T,)``: its value at each instant of a `Flock`.
-    of_run : callable, optional
-        ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end.
-    of_run_text : str
-        What that is, where it is not the value at the end.
-    defined : callable
-        ``defined(law)``: whether it makes sense.
-    logarithmic : bool
-        Draw it on a logarithmic axis.
-    at_most_one : bool
-        It is a share or a cosine, so that its axis ends at 1.
-    """
-
-    name: str
-    text: str
+    name: str  # its name in `Trajectory.metrics` and in ensembles
+    text: str  # what it is, for people
     unit: str = "1"
+    # ``over_time(flock) -> ndarray of shape (T,)``: its value at each instant of a `Flock`
     over_time: Callable[[Flock], FloatArray] | None = None
+    # ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end
     of_run: Callable[[Any], float] | None = None
-    of_run_text: str = ""
-    defined: Callable[[Any], bool] = any_law
-    logarithmic: bool = False
-    at_most_one: bool = False
+    of_run_text: str = ""  # what that is, where it is not the value at the end
+    defined: Callable[[Any], bool] = any_law  # ``defined(law)``: whether it makes sense
+    logarithmic: bool = False  # draw it on a logarithmic axis
+    at_most_one: bool = False  # it is a share or a cosine, so that its axis ends at 1
 
     @property
     def label(self) -> str:
@@ -107,17 +79,11 @@ class Measure:
 
     @property
     def summary(self) -> str:
-        """What `number` is."""
+        """Description of `number`."""
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:
-        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law.
-
-        Parameters
-        ----------
-        run : Trajectory
-            The run.
-        """
+        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law."""
         if not self.defined(run.law):
             return nan
         if self.of_run is not None:
@@ -127,7 +93,7 @@ class Measure:
 
 @cache
 def measures() -> Mapping[str, Measure]:
-    """Every measure by name: those of all ``MEASURES`` in the files of this package.
+    """Return all measures by name, from the ``MEASURES`` of the files of this package.
 
     Examples
     --------

@@ -22,9 +22,6 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Examples
     --------
@@ -51,9 +48,6 @@ def connectivity(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Returns
     -------
@@ -74,9 +68,6 @@ def giant_share(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Examples
     --------
@@ -92,7 +83,6 @@ def cohesion_radius(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -108,9 +98,6 @@ def deviation_energy(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Returns
     -------
@@ -131,7 +118,6 @@ def velocity_mismatch(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -147,7 +133,6 @@ def inertia(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -163,7 +148,6 @@ def min_distance(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -200,7 +184,6 @@ def order(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -211,14 +194,13 @@ def order(p: Any) -> float:
 
 
 def coordination(p: Any) -> float:
-    """C of Jond: the mean over all pairs of the cosine between their velocities; agents at rest are left out.
+    """Return Jond's C, the mean cosine between velocities over all pairs of moving agents.
 
     NaN if fewer than two agents move.
 
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -229,12 +211,11 @@ def coordination(p: Any) -> float:
 
 
 def coincident_pairs(q: Any, tol: float) -> int:
-    """Number of unordered pairs closer than `tol`.
+    """Return the number of unordered pairs of coincident agents.
 
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     tol : float
         Distance below which two agents count as coincident.
 
@@ -248,12 +229,11 @@ def coincident_pairs(q: Any, tol: float) -> int:
 
 
 def pairs_at_one_place(q: Any) -> int:
-    """Number of unordered pairs at exactly the same place: no pair force parts them.
+    """Return the number of unordered pairs of coincident agents.
 
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -273,9 +253,6 @@ def nets(q: FloatArray, d: float, r: float) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
     """
     return np.array([_net_measures(x, d, r) for x in q]).T
 
@@ -286,7 +263,6 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
     radii: FloatArray = lengths(_centred(q)).max(axis=1)
     return radii
@@ -310,7 +286,6 @@ def min_distances(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
     if q.shape[1] < _TREE:
         distances: FloatArray = least_distances(q)
@@ -321,7 +296,7 @@ def min_distances(q: FloatArray) -> FloatArray:
 
 
 def diameters(x: FloatArray) -> FloatArray:
-    """`diameter` over time, unchecked: of all pairs those are looked at whose agents are far out.
+    """Return `diameter` over time, unchecked, from agents far from the centre.
 
     Parameters
     ----------
@@ -338,7 +313,6 @@ def orders(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     return lengths(centres(_headings(p)))
 
@@ -349,7 +323,6 @@ def coordinations(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once

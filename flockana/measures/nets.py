@@ -24,12 +24,11 @@ LinkArray = npt.NDArray[np.int32]
 
 
 def links(q: Any, r: float) -> LinkArray:
-    """Unordered pairs closer than r, each once with i < j, sorted.
+    """Return the unordered pairs closer than r, each once with i < j, sorted.
 
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     r : float
         Interaction range; strict.
 
@@ -48,13 +47,6 @@ def links(q: Any, r: float) -> LinkArray:
 def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     """Euclidean length of each link.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    pairs : int array, shape (M, 2)
-        Links.
-
     Examples
     --------
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
@@ -68,10 +60,7 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     pairs : int array, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -90,10 +79,7 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     pairs : int array, shape (M, 2)
-        Links.
     weights : ndarray, shape (M,), optional
         a_ij of each link; 1 by default.
 
@@ -118,13 +104,6 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
     With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
     for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links; with none the share is NaN.
-
     Examples
     --------
     >>> printed_edge_share(3, np.array([[0, 1]], dtype=np.int32))
@@ -141,15 +120,6 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
     """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8).
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
-    typeset : bool
-        The matrix that the code as typeset keeps: a unit diagonal but for the last agent, not a zero one.
 
     Examples
     --------

@@ -61,7 +61,7 @@ def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
 
 
 def out_tree_root(n: int, edges: Edges) -> int | None:
-    """The root of a rooted out-tree, or None if the graph is none: the root must reach every agent.
+    """Return the root of a rooted out-tree, or None if the graph is none.
 
     Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
     "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
@@ -78,7 +78,7 @@ def out_tree_root(n: int, edges: Edges) -> int | None:
 
 
 def is_connected(n: int, edges: Edges) -> bool:
-    """Whether the graph is connected when directions are forgotten.
+    """Return whether the graph is weakly connected.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def incidence(n: int, edges: Edges) -> FloatArray:
 
 
 def receivers(n: int, edges: Edges) -> FloatArray:
-    """D_in, shape (n, M): what is left of D if only those who receive are kept. The loop holds D_in Dᵀ, not D Dᵀ.
+    """Return D_in, shape (n, M): D with the entries of receivers only. The loop holds D_in Dᵀ, not D Dᵀ.
 
     Examples
     --------

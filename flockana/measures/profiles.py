@@ -1,4 +1,4 @@
-"""Distances of all pairs over time, by their quantiles: what a figure of all shows, for any number of agents."""
+"""Quantiles of all pair distances over time, for any number of agents."""
 
 from __future__ import annotations
 
@@ -16,18 +16,6 @@ QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
     """Quantiles of the distances of all pairs at each instant, shape (T, number of shares); NaN for one agent.
-
-    Parameters
-    ----------
-    q : array_like, shape (T, n, m)
-        Positions over time.
-    shares : sequence of float
-        Shares of the pairs, in [0, 1]: 0 is the least distance, 0.5 the median, 1 the largest distance.
-
-    Raises
-    ------
-    ArgumentError
-        If q has another shape, or a share is outside [0, 1].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Reynolds' rules inside Algorithm 1: flock centring, collision avoidance and velocity matching, told apart.
+"""Reynolds' rules inside Algorithm 1: flock centring, collision avoidance, velocity matching.
 
 The force between neighbours is a spring along the link, s_ij (q_j − q_i), of stress
 s_ij = φ_α(‖q_j − q_i‖_σ)/(1 + ε‖q_j − q_i‖_σ). Its sign parts the neighbours of an agent into positive friends F⁺
@@ -88,15 +88,10 @@ def reynolds(q: Any, p: Any, *, alpha: AlphaInteraction | None = None, gains: Ga
     Parameters
     ----------
     q, p : array_like, shape (n, m)
-        Positions and velocities.
     alpha : AlphaInteraction, optional
         The pair law; the paper's by default.
     gains : Gains, optional
         c1_alpha and c2_alpha are used.
-
-    Returns
-    -------
-    Reynolds
 
     Examples
     --------

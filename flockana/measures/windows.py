@@ -19,8 +19,6 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     nets : iterable of int array, shape (M, 2)
         Links at each instant.
 
@@ -57,7 +55,7 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
 
 
 def _root(leader: list[int], i: int) -> int:
-    """Whom agent i's group follows; the way there is halved for the next who asks."""
+    """Return the root of agent i's group, with path halving."""
     while leader[i] != i:
         leader[i] = leader[leader[i]]
         i = leader[i]
@@ -65,19 +63,9 @@ def _root(leader: list[int], i: int) -> int:
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
-    """Windows of a run's samples over which its nets are jointly connected.
+    """Return windows of a run's samples over which its nets are jointly connected.
 
     A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-
-    Raises
-    ------
-    ArgumentError
-        If the law has no net.
     """
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
