@@ -37,7 +37,6 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Pairs of different agents.
     limit : int, optional
@@ -82,7 +81,7 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
 
 
 class _Exact:
-    """The same decisions as the kernel's, in whole numbers; each agent is converted when it is first needed."""
+    """Exact arithmetic for the kernel's decisions, with agents converted on demand."""
 
     def __init__(self, q: FloatArray, links: LinkArray) -> None:
         self._q, self._links, self._m = q, links, q.shape[1]
@@ -106,7 +105,7 @@ class _Exact:
 
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
-    """Whether the way around `centre` from agent `first` to `second` is a left turn of less than a half, exactly.
+    """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly.
 
     Examples
     --------
@@ -154,7 +153,7 @@ def _meet_in_space(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...], d
 
 @dataclass(frozen=True)
 class Separation:
-    """How near two links without a common agent come.
+    """Least distance of two links without a common agent.
 
     Attributes
     ----------
@@ -174,7 +173,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Pairs of different agents.
     reach : float

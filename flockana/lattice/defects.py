@@ -21,10 +21,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -38,7 +35,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
 @dataclass(frozen=True, eq=False)
 class Defects:
-    """Neighbours of each agent, and who stands inside a triangulated part of the net.
+    """Return coordination numbers of a planar net, with interior and rim agents separate.
 
     Attributes
     ----------
@@ -57,18 +54,17 @@ class Defects:
 
     @property
     def counts(self) -> dict[int, int]:
-        """How many interior agents have 3, 4, 5 … neighbours."""
+        """Return the numbers of interior agents with 3, 4, 5 … neighbours."""
         sizes, numbers = np.unique(self.coordination[self.interior], return_counts=True)
         return {int(k): int(v) for k, v in zip(sizes, numbers, strict=True)}
 
 
 def defects(q: Any, links: Any) -> Defects:
-    """Coordination numbers of a planar net, told apart by whether an agent is inside the net or at its rim.
+    """Return coordination numbers of a planar net, with interior and rim agents separate.
 
     Parameters
     ----------
     q : array_like, shape (n, 2)
-        Positions.
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 

@@ -52,11 +52,6 @@ class Elimination:
     definite : bool
         Give up at the first front that is not positive definite: A is not either.
 
-    Raises
-    ------
-    SolverError
-        Without `least`, if a pivot is zero to rounding, so that it has no sign; with `definite`, if A is not.
-
     Examples
     --------
     >>> from scipy.sparse import csr_array
@@ -91,13 +86,7 @@ class Elimination:
                 self._fronts.append(front)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """A⁻¹ b of a vector, or of the columns of a matrix.
-
-        Parameters
-        ----------
-        b : ndarray, shape (n m,) or (n m, k)
-            Right-hand sides.
-        """
+        """A⁻¹ b of a vector, or of the columns of a matrix."""
         x = np.array(b[self._order], dtype=np.float64)
         for rows, boundary, t, coupling, signs in self._fronts:
             y = t @ x[rows]
@@ -111,7 +100,7 @@ class Elimination:
         return result
 
     def _eliminated(self, start: int, end: int, below: list[tuple[Indices, FloatArray]]) -> tuple[_Front, FloatArray]:
-        """Assemble one front from its rows and what is left below it; eliminate; hand on what that leaves."""
+        """Assemble one front, eliminate its rows, and return the Schur complement."""
         begin, stop = self._matrix.indptr[start], self._matrix.indptr[end]
         columns, values = self._matrix.indices[begin:stop], self._matrix.data[begin:stop]
         rows = np.repeat(np.arange(end - start), np.diff(self._matrix.indptr[start : end + 1]))
@@ -137,7 +126,7 @@ class Elimination:
         return _Front(slice(start, end), boundary, t, x, signs), left
 
     def _pivots(self, block: FloatArray, largest: float) -> tuple[FloatArray, FloatArray | None]:
-        """T and S with B⁻¹ = TᵀST: by Cholesky where B is positive definite, else by its eigenvalues."""
+        """Return T and S with B⁻¹ = TᵀST, by Cholesky or by eigenvalues."""
         from scipy.linalg.lapack import dpotrf, dtrtri
 
         if not len(block):
@@ -157,7 +146,7 @@ class Elimination:
 
 
 def _bottom_up(node: int, leaves: int) -> Iterator[int]:
-    """The nodes of a binary tree, 1 the root and 2k, 2k + 1 below k, each after those below it."""
+    """Return the nodes of a binary tree, children before parents (1 is the root, 2k and 2k + 1 are below k)."""
     if node < leaves:
         yield from _bottom_up(2 * node, leaves)
         yield from _bottom_up(2 * node + 1, leaves)
@@ -165,7 +154,7 @@ def _bottom_up(node: int, leaves: int) -> Iterator[int]:
 
 
 def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
-    """The node of each agent: a leaf, or the lowest of which it is in the separator."""
+    """Return the tree node of each agent: a leaf, or the lowest separator that holds it."""
     n, m = q.shape
     i, j = _agents_linked(matrix, m)
     node = np.ones(n, dtype=np.int64)
@@ -188,7 +177,7 @@ def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
 
 
 def _agents_linked(matrix: Any, m: int) -> tuple[Indices, Indices]:
-    """Pairs i < j of agents that a matrix couples, each once."""
+    """Return the pairs i < j of agents that a matrix couples."""
     from scipy.sparse import coo_array
 
     entries, n = matrix.tocoo(), matrix.shape[0] // m

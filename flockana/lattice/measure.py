@@ -1,4 +1,4 @@
-"""Links and their lengths against the lattice's scale: α-lattice, quasi-α-lattice, or neither?"""
+"""Classification of links against the lattice's scale: α-lattice, quasi-α-lattice, or neither."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GUARD = 1e-12  # relative: above the rounding of lattices of up to 1e6 agents ne
 
 
 def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
-    """Unordered pairs closer than r by more than a rounding, each once with i < j, sorted.
+    """Return the unordered pairs closer than r beyond rounding, each once with i < j, sorted.
 
     The neighbour relation is strict, so a pattern may be used up to the very ratio at which second neighbours stand at
     distance r. In floating point they may then stand an ulp closer: here ‖q_j − q_i‖ >= r (1 − guard) counts as r.
@@ -25,9 +25,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
     guard : float
         Relative difference from r up to which a distance counts as r; raise it for lattices far from the origin.
 
@@ -53,9 +50,6 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Returns
     -------
@@ -78,9 +72,6 @@ def strain(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Examples
     --------
@@ -91,14 +82,11 @@ def strain(q: Any, d: float, r: float) -> float:
 
 
 def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
-    """Whether every link has length d, up to rounding; False without links, as everywhere in flockana.
+    """Return whether every link has length d up to rounding; False without links.
 
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
     tol : float
         Largest |link − d|/d that counts as rounding.
 
@@ -111,7 +99,7 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
 
 
 def classify(strain: float, *, lattice: float, quasi: float) -> str:
-    """Name a configuration by its largest relative link error: α-lattice, quasi-α-lattice, or neither.
+    """Classify a configuration by its largest relative link error: α-lattice, quasi-α-lattice, or neither.
 
     Parameters
     ----------

@@ -19,11 +19,6 @@ _COMPILED = 3000  # links from which on the compiled search for an embedding is 
 def harborth(n: int) -> int:
     """Largest number of links of a planar α-lattice of n agents: ⌊3n − √(12n − 3)⌋   (Harborth 1974).
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-
     Examples
     --------
     >>> [harborth(n) for n in (1, 2, 3, 7, 19)]
@@ -37,11 +32,6 @@ def harborth(n: int) -> int:
 def planar_bound(n: int) -> int:
     """Largest number of links of a planar graph of n >= 3 agents, 3n − 6; for fewer, all there are (erratum E6).
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-
     Examples
     --------
     >>> [planar_bound(n) for n in (1, 2, 3, 4)]
@@ -52,12 +42,10 @@ def planar_bound(n: int) -> int:
 
 
 def is_complete(n: int, links: Any) -> bool:
-    """Whether every two of n agents are linked.
+    """Return whether all n agents are linked to each other.
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
         Links; one that comes twice counts once.
 
@@ -71,16 +59,13 @@ def is_complete(n: int, links: Any) -> bool:
 
 
 def is_planar(n: int, links: Any) -> bool:
-    """Whether the graph of n agents can be drawn in the plane without crossings, however its agents stand.
+    """Return whether the graph of n agents is planar.
 
     That a large graph can is proved by an embedding that is found and checked; that one cannot is for networkx to say.
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     See Also
     --------
@@ -115,17 +100,14 @@ class Kuratowski:
 
 
 def kuratowski(n: int, links: Any) -> Kuratowski | None:
-    """A subdivision of K5 or K3,3 in the graph; None if it is planar.
+    """Return a subdivision of K5 or K3,3 in the graph; None if it is planar.
 
     The links are thinned out in ever smaller parts as long as what remains is not planar, so that what is left at the
     end falls apart if any one link is taken.
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -198,7 +180,7 @@ def _planar(n: int, links: LinkArray) -> bool:
 
 
 def _embeds(links: LinkArray) -> bool:
-    """Whether an order of links around each agent is found, and is one of a drawing without crossings.
+    """Return whether a rotation system of links is found and is a planar embedding.
 
     Euler's formula proves it, however the order came about: over the connected components agents − links + faces falls
     short of two each by twice the number of handles.
@@ -217,12 +199,12 @@ def _embeds(links: LinkArray) -> bool:
 
 
 def _cycles(order: Any) -> int:
-    """How many cycles a permutation has."""
+    """Return the number of cycles of a permutation."""
     return _parts(np.column_stack([np.arange(len(order)), order]))
 
 
 def _parts(pairs: Any) -> int:
-    """How many connected components the graph of some pairs of 0, 1, … has."""
+    """Return the number of connected components of a graph given by pairs of 0, 1, …"""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -232,7 +214,7 @@ def _parts(pairs: Any) -> int:
 
 
 def ensure_plane(m: int) -> None:
-    """Refuse what has a meaning in the plane only.
+    """Raise unless positions are in the plane.
 
     Examples
     --------

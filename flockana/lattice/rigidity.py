@@ -19,7 +19,7 @@ DENSE_MAX = 800  # coordinates up to which singular values take less than a seco
 
 @dataclass(frozen=True)
 class Rigidity:
-    """How many ways there are to move without stretching a link, and to stress links in balance.
+    """Rank, flexes and self-stresses of a net.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Rigidity:
 
     @property
     def infinitesimally_rigid(self) -> bool:
-        """Whether only translations and rotations keep all lengths to first order."""
+        """Return whether only translations and rotations keep all lengths to first order."""
         return self.flexes == 0
 
 
@@ -54,7 +54,6 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Links; one of length zero has no direction, and a row of zeros.
 
@@ -91,9 +90,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
-        Links.
     tol : float
         Singular values below tol times the largest count as zero. Squared in the sparse way, so not below 1e-7. The
         softest true motion of a compact patch of n agents is at about 1/√n; a strip k agents long bends at about 1/k².
