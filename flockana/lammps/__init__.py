@@ -1,1 +1,1 @@
-"""A law, a start and a run for LAMMPS, whose domain decomposition goes beyond one machine; its runs, read back."""
+"""Export of runs to LAMMPS, and import of LAMMPS dumps."""

@@ -1,4 +1,4 @@
-"""A run that LAMMPS dumped, as a `Trajectory` that says how far it is from a law."""
+"""LAMMPS dumps as `Trajectory`, with their deviation from a law."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LARGEST = 2**53  # up to which every whole number is a float
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """One snapshot of a dump: step, time if it is there, and its columns by name, agents in the order of their ids."""
+    """Snapshot of a dump: step, time if present, and columns by name, agents sorted by id."""
 
     step: int
     time: float | None
@@ -33,7 +33,7 @@ class Snapshot:
 def read_lammps(
     path: str | os.PathLike[str], law: Any, *, start: float = 0.0, dt: float | None = None, m: int | None = None
 ) -> Trajectory:
-    """Read a text dump of style custom (id, x ..., vx ..., and fx ... if it is there) as a run of a law.
+    """Read a text dump of style custom (id, x ..., vx ..., optionally fx ...) as a run of a law.
 
     What LAMMPS integrated need not be the law, and the run says so: ``extra["force_residual"]`` is the largest
     difference between LAMMPS's forces and the law's inputs at a sample, relative to the largest input of the law in the
@@ -105,7 +105,7 @@ def read_lammps(
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    """∫ from the first sample, of the cubic spline through them."""
+    """Return the integral from the first sample, by a cubic spline."""
     from scipy.interpolate import CubicSpline
 
     if len(t) == 1:
@@ -146,7 +146,7 @@ def _dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
 
 
 def _stacked(snapshots: list[Snapshot], names: tuple[str, ...], m: int, path: object) -> FloatArray:
-    """One of q, p, u over time, (T, n, m), from the first of some names for its columns that is there."""
+    """Return one of q, p, u over time, (T, n, m), from the first set of columns present."""
     for name in names:
         axes = [name.replace("x", axis) for axis in _AXES[:m]]
         if all(axis in snapshots[0].columns for axis in axes):
@@ -182,7 +182,7 @@ def _snapshots(path: Path) -> list[Snapshot]:
 
 
 def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
-    """The snapshots of a dump, each a series of items that ends with its atoms."""
+    """Yield the snapshots of a dump."""
     step, time, count = None, None, None
     for line in file:
         if not line.startswith("ITEM:"):
@@ -214,7 +214,7 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
 
 
 def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str, FloatArray]:
-    """Columns by name, the agents in the order of their ids."""
+    """Return columns by name, agents sorted by id."""
     values = _numbers(file, count, len(names), path)
     columns = {name: values[:, k] for k, name in enumerate(names)}
     order = np.argsort(columns["id"], kind="stable")
@@ -231,7 +231,7 @@ def _whole(file: TextIO, name: str, least: int, path: Path) -> int:
 
 
 def _numbers(file: TextIO, rows: int, width: int | None, path: Path) -> FloatArray:
-    """The next lines as numbers, (rows, width), or an error that says what is wrong."""
+    """Return the next lines as numbers, (rows, width); raise on malformed ones."""
     lines = list(islice(file, rows))
     cells = [line.split() for line in lines]
     width = len(cells[0]) if width is None and cells else width

@@ -50,33 +50,18 @@ _LONGEST_LINE = 1000  # bytes; ours are shorter
 
 @dataclass(frozen=True)
 class LammpsExport:
-    """What `export_lammps` wrote.
+    """Result of `export_lammps`: files written and untranslated parts."""
 
-    Attributes
-    ----------
-    folder : Path
-        Where.
-    files : tuple of Path
-        Input script, data file, table, and a text on what they hold.
-    force_error, energy_error : float
-        Largest error of a pair's tabulated force and energy, as LAMMPS interpolates them.
-    exact, near, missing : tuple of str
-        What the script does of the law exactly, nearly, and not at all.
-    dt : float
-        Step of the script.
-    steps : int
-        How many.
-    """
-
-    folder: Path
-    files: tuple[Path, ...]
+    folder: Path  # where
+    files: tuple[Path, ...]  # input script, data file, table, and a text on what they hold
+    # force_error, energy_error: Largest error of a pair's tabulated force and energy, as LAMMPS interpolates them
     force_error: float
     energy_error: float
-    exact: tuple[str, ...]
+    exact: tuple[str, ...]  # exact, near, missing: what the script does of the law exactly, nearly, and not at all
     near: tuple[str, ...]
     missing: tuple[str, ...]
-    dt: float
-    steps: int
+    dt: float  # step of the script
+    steps: int  # how many
 
 
 def export_lammps(
@@ -104,8 +89,6 @@ def export_lammps(
         A sum of terms with a pair term, such as Algorithm 1, 2 or 3.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities.
-    t_span : (float, float)
-        Start and end.
     folder : path
         Folder to write to; it is made if it is not there. An export from before is replaced, another's file is not.
     points : int
@@ -119,10 +102,6 @@ def export_lammps(
         Snapshots to write, beside the start.
     consensus : {"missing", "nearest"}
         What to do with a velocity consensus that LAMMPS has no style for.
-
-    Returns
-    -------
-    LammpsExport
 
     Raises
     ------
@@ -164,7 +143,7 @@ def export_lammps(
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
-    """The continuous law and its pair term, or an error."""
+    """Return the continuous law and its pair term, or raise."""
     ensure_law(law)
     continuous = law.continuous
     term = None if continuous is None else continuous.term(PairTerm)
@@ -199,7 +178,7 @@ def _first_distance(term: PairTerm, q: FloatArray, inner: float | None) -> float
 
 
 def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -> Clock:
-    """Steps of equal length, none longer than dt, that end on time, with equally many between samples."""
+    """Return equal steps of at most dt that end on time, equally many between samples."""
     if dt is None and law.scales is None:
         raise ArgumentError(f"dt = None: {type(law).__name__} has no time of its own; give a step")
     longest = _STEP * law.scales.time if dt is None and law.scales is not None else ensure_positive("dt", dt)
@@ -208,7 +187,7 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:
-    """Raise if a file is there that no export wrote, such as a README.txt of the user's."""
+    """Raise if a file exists there that no export wrote."""
     for path in paths:
         if not os.path.lexists(path):
             continue

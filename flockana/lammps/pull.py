@@ -1,4 +1,4 @@
-"""The pull to a γ-agent as formulas of LAMMPS: variables of each agent, added to its force, and a viscous drag."""
+"""Pull to a γ-agent in LAMMPS: variables of each agent added to its force, and viscous drag."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Formulas = tuple[tuple[str, str], ...]  # (q_r, p_r) along each axis
 
 @singledispatch
 def path(target: Target) -> Formulas | None:
-    """(q_r, p_r) along each axis as formulas in the time; None for a path that no formula is known of.
+    """Return (q_r, p_r) along each axis as formulas in time; None without a known formula.
 
     Examples
     --------
@@ -76,12 +76,7 @@ def _line(q: float, p: float) -> str:
 
 
 def pull_commands(term: Navigation) -> list[str] | None:
-    """Commands that add the term to the forces, or None if LAMMPS has no formula of it.
-
-    Parameters
-    ----------
-    term : Navigation
-        The pull and the drag.
+    """Return commands that add the term to the forces, or None without a formula.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What LAMMPS does of a law, and does not: the input script, the data file, and the words that go with them."""
+"""LAMMPS input script, data file and notes on untranslated parts of a law."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SHELLS, _STEEPEST = 4000, 10.0  # distances at which a weight is fitted to an a
 
 @dataclass(frozen=True)
 class Clock:
-    """When a run starts, its step, how many there are, and how many lie between two samples."""
+    """Start, step, number of steps, and steps between samples of a run."""
 
     start: float
     dt: float
@@ -30,27 +30,19 @@ class Clock:
 
 @dataclass
 class Translation:
-    """What of a law is in the script.
+    """Translation of a law into a script."""
 
-    Attributes
-    ----------
-    fixes : list of str
-        Commands that add forces.
-    consensus : tuple of (gain, exponent) or None
-        A pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script.
-    exact, near, missing : list of str
-        What is the law's own, to the table's error and the step's; what is nearly; what is left out.
-    """
-
-    fixes: list[str] = field(default_factory=list)
+    fixes: list[str] = field(default_factory=list)  # commands that add forces
+    # a pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script
     consensus: tuple[float, float] | None = None
+    # exact, near, missing: what is the law's own, to the table's error and the step's; what is nearly; what is left out
     exact: list[str] = field(default_factory=list)
     near: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
 
 
 def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translation:
-    """Each term of a law in LAMMPS's terms; `nearest` puts a damping in place of a consensus that has no style."""
+    """Translate each term of a law; `nearest` replaces an untranslatable consensus by damping."""
     told = Translation()
     for term in law.terms:
         if isinstance(term, PairTerm):
@@ -71,7 +63,7 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
 
 
 def _is_empty(term: object) -> bool:
-    """Whether a term of obstacles has none."""
+    """Return whether a term of obstacles has none."""
     own = getattr(term, "field", None)
     return own is not None and not own.obstacles
 
@@ -189,7 +181,7 @@ first order in the timestep where this library's methods are of fourth or higher
 
 
 def readme_text(title: str, table: PairTable, clock: Clock, told: Translation) -> str:
-    """What is in the folder, what LAMMPS computes of the law, and how to read its run back."""
+    """Return the README of the folder: contents, what LAMMPS computes, how to read the run."""
     sections = [("Exact", told.exact), ("Nearly", told.near), ("Missing", told.missing)]
     listed = "".join(f"{head}:\n" + "".join(f"  - {text}\n" for text in texts) for head, texts in sections if texts)
     order = "" if told.consensus is None else _FIRST_ORDER
