@@ -1,1 +1,1 @@
-"""What surrounds a flock: γ-agents (targets)."""
+"""Surroundings of a flock: γ-agents, obstacles, aliens."""

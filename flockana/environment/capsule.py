@@ -18,7 +18,7 @@ from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 
 @register_jitable
 def _slide(q, p, par, foot, rate):  # type: ignore[no-untyped-def]
-    """The closest point of the segment, and its velocity; par = (a, b, R)."""
+    """Return the closest point of the segment, and its velocity; par = (a, b, R)."""
     m, length2, along, speed = q.size, 0.0, 0.0, 0.0
     for c in range(m):
         side = par[m + c] - par[c]

@@ -17,7 +17,7 @@ from flockana.environment.motion import Motion, accelerations, ensure_force, for
 
 @dataclass(frozen=True)
 class Copies:
-    """A copy of the γ-agent for each agent, each an estimate of its own that obeys f_r, coupled to the others or not.
+    """Copies of the γ-agent, one for each agent, each obeying f_r, coupled or not.
 
     q_i' = p_i, p_i' = f_r(q_i, p_i) + k₁ (q̄ − q_i) + k₂ (p̄ − p_i), with the mean q̄, p̄ of all copies. Without coupling
     (k₁ = k₂ = 0) copies that start alike stay alike, and any difference goes its own way: under f_r = 0 it grows with
@@ -83,7 +83,7 @@ class Copies:
         return len(self.q), len(self.q[0])
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the motion, which another process finds anew: what is pickled need not hold functions."""
+        """Return the state without the cached motion, which holds functions that cannot be pickled."""
         return {name: value for name, value in self.__dict__.items() if name != "_motion"}
 
     @cached_property
@@ -98,7 +98,7 @@ class Copies:
         return motion_from(np.array(self.q), np.array(self.p), self.time, acceleration)
 
     def in_units(self, length: float, time: float) -> Copies:
-        """The same motion in other units (`flockana.rescale`).
+        """Return the motion in other units (`flockana.rescale`).
 
         Parameters
         ----------
@@ -116,12 +116,6 @@ class Copies:
         )
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """Places and velocities of all copies, two arrays (n, m).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """Places and velocities of all copies, two arrays (n, m)."""
         both: FloatArray = self._motion.at(float(t)).reshape(2, *self.shape)
         return both[0], both[1]

@@ -1,4 +1,4 @@
-"""Motions q' = p, p' = f(q, p) that nobody acts on, integrated ahead of the times that are asked for.
+"""Autonomous motions q' = p, p' = f(q, p), integrated ahead of the requested times.
 
 No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
 """
@@ -24,7 +24,7 @@ _PIECE = 8.0  # of the system's own time, integrated at once
 
 
 class Motion:
-    """The solution of y' = F(y) through y(0), as far as it was asked for; pieces are kept."""
+    """Solution of y' = F(y) through y(0), extended on demand."""
 
     def __init__(self, rate: Callable[[FloatArray], FloatArray], start: FloatArray, units: FloatArray, time: float):
         self._rate, self._start, self._units, self._piece = rate, start, units, _PIECE * time
@@ -32,7 +32,7 @@ class Motion:
         self._lock = Lock()  # a piece begins where the one before ends: two threads must not add one each
 
     def at(self, t: float) -> FloatArray:
-        """y(t); raises SolverError at a time that is none, or that the motion does not reach."""
+        """Return y(t); raise SolverError at a bad time, or one that the motion does not reach."""
         if not isfinite(t):
             raise SolverError(f"the γ-agent's own motion was asked for at t = {t}: expected a finite time")
         ahead, k = t >= 0.0, int(abs(t) // self._piece)
@@ -67,14 +67,14 @@ class Motion:
 
 
 def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
-    """f_r of one place, or of each of several: a function of a user's own is asked for one at a time."""
+    """Return f_r at one place or at several, calling a user's function one place at a time."""
     if q.ndim == 1 or isinstance(force, Spring):
         return np.asarray(force(q, p), dtype=np.float64)
     return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
 
 
 def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) -> Motion:
-    """The motion of (q, p), of any shape, under an acceleration; its first value is checked."""
+    """Return the motion of (q, p) under an acceleration, whose first value is checked."""
     with np.errstate(all="ignore"):
         first = acceleration(q, p)
     if first.shape != q.shape or not np.isfinite(first).all():
@@ -104,7 +104,7 @@ def ensure_force(force: Any) -> None:
 
 
 def force_in_units(force: Any, length: float, time: float) -> Any:
-    """f_r in other units: by its table of powers, or a user's function of what it was."""
+    """Return f_r in other units, by its table of powers or around a user's function."""
     if is_dataclass(force):
         return rescale(force, length=length, time=time)
 

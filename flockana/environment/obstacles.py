@@ -52,7 +52,7 @@ class Obstacle(ABC):
     @property
     @abstractmethod
     def ball(self) -> tuple[FloatArray, float]:
-        """(centre, radius) of a ball that holds the obstacle; the radius is infinite if none does."""
+        """Return (centre, radius) of a bounding ball; the radius is infinite without one."""
 
     @property
     def dimension(self) -> int:
@@ -73,10 +73,6 @@ class Obstacle(ABC):
         q, p : array_like, shape (n, m)
             Positions and velocities of the agents.
 
-        Returns
-        -------
-        BetaAgents
-
         Raises
         ------
         ArgumentError
@@ -93,7 +89,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         q = ensure_points("q", q)
         return self.beta_agents(q, np.zeros_like(q)).clearance
@@ -104,7 +99,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
         return inside

@@ -45,7 +45,7 @@ _POLYGON = lift_obstacle(_onto_polygon, no_turn)
 
 @dataclass(frozen=True)
 class Polygon(Obstacle):
-    """A convex polygon; the velocity of its β-agents jumps where a corner takes over from an edge.
+    """Convex polygon; its β-agent's velocity jumps where a corner takes over from an edge.
 
     Parameters
     ----------

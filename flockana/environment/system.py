@@ -1,4 +1,4 @@
-"""A γ-agent that is a system, q_r' = p_r and p_r' = f_r(q_r, p_r). What it tells the flock is true: p_r is dq_r/dt."""
+"""γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flockana.environment.target import Target
 
 @dataclass(frozen=True)
 class SystemTarget(Target):
-    """A γ-agent that is a system, q_r' = p_r, p_r' = f_r(q_r, p_r), from (q, p) at t = 0   (Olfati-Saber 2006).
+    """γ-agents with dynamics q_r' = p_r, p_r' = f_r(q_r, p_r), so that p_r is dq_r/dt.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class SystemTarget(Target):
         _ = self._motion
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the motion, which another process finds anew: what is pickled need not hold functions."""
+        """Return the state without the cached motion, which holds functions that cannot be pickled."""
         return {name: value for name, value in self.__dict__.items() if name != "_motion"}
 
     @cached_property
@@ -68,7 +68,7 @@ class SystemTarget(Target):
         return motion_from(np.array(self.q), np.array(self.p), self.time, lambda q, p: accelerations(self.force, q, p))
 
     def in_units(self, length: float, time: float) -> SystemTarget:
-        """The same motion in other units (`flockana.rescale`).
+        """Return the motion in other units (`flockana.rescale`).
 
         Parameters
         ----------

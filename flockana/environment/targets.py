@@ -23,7 +23,7 @@ _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the
 
 
 def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:
-    """A path by its summands; those left out are zero."""
+    """Return a path from its summands; omitted ones are zero."""
     return Harmonic(np.array([np.broadcast_to(one, np.shape(a)) for one in (a, b, c, s, e)], dtype=np.float64), omega)
 
 
@@ -231,7 +231,7 @@ class CircleTarget(Target):
         return _harmonic(self.centre, c=c, s=s, omega=2.0 * pi * self.frequency)
 
     def _turned(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Where it starts on the unit circle, and which way it goes from there."""
+        """Return the starting point on the unit circle, and the direction there."""
         return (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
 
 
@@ -314,7 +314,7 @@ class CallableTarget(Target):
             raise ArgumentError(f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
 
     def in_units(self, length: float, time: float) -> CallableTarget:
-        """The same path in other units (`flockana.rescale`).
+        """Return the path in other units (`flockana.rescale`).
 
         Parameters
         ----------
@@ -342,12 +342,6 @@ class CallableTarget(Target):
         return self._call(t)
 
     def rate(self, t: float) -> FloatArray:
-        """dq_r/dt by central difference.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """dq_r/dt by central difference."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

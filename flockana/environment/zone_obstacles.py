@@ -1,4 +1,4 @@
-"""What zone-based flocking avoids: polygons of any simple shape, and the walls of a box.
+"""Obstacles of zone-based flocking: simple polygons and the walls of a box.
 
 Discs and balls are `flockana.environment.obstacles.Sphere`. A `SimplePolygon` need not be convex, so it has no
 β-agents and is no `Obstacle` of Algorithm 3.
@@ -81,7 +81,6 @@ class SimplePolygon:
         Parameters
         ----------
         q : array_like, shape (N, 2)
-            Points.
         """
         q = ensure_points("q", q)
         if q.shape[1] != 2:
@@ -95,7 +94,7 @@ class SimplePolygon:
         return signed
 
     def holds(self, point: FloatArray) -> bool:
-        """Whether one point is inside or on the boundary; to tell that needs no compiled code.
+        """Return whether a point is inside or on the boundary, without compiled code.
 
         Parameters
         ----------
@@ -198,7 +197,6 @@ class Box:
         Parameters
         ----------
         q : array_like, shape (N, m)
-            Points.
         """
         q = ensure_points("q", q)
         inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

@@ -113,12 +113,12 @@ class ZoneWorld:
 
     @property
     def dimension(self) -> int | None:
-        """m, or None for an empty world."""
+        """Return the dimension m, or None for an empty world."""
         return next(iter(self._dimensions()), None)
 
     @property
     def alien_starts(self) -> FloatArray:
-        """Where the aliens begin, shape (K, m); without any, (0, 0)."""
+        """Return the starts of the aliens, shape (K, m); (0, 0) without any."""
         return np.array([alien.start for alien in self.aliens]) if self.aliens else np.empty((0, 0))
 
     def arrays(self, m: int, *, buffer: bool = False) -> World:
@@ -150,18 +150,17 @@ class ZoneWorld:
         )
 
     def clearance(self, q: FloatArray) -> FloatArray:
-        """Signed distance of points from the nearest obstacle, ∞ without any, shape (N,).
+        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
 
         Parameters
         ----------
         q : ndarray, shape (N, m)
-            Points.
         """
         least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
         return least
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
-        """Signed distance from all obstacles at samples, and its lower bound on straight ways between some of them.
+        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
 
         Each obstacle is measured once at each sample. The bound is exact outside the obstacles. Shapes (T, n), (K, n).
 
@@ -189,7 +188,6 @@ class ZoneWorld:
         Parameters
         ----------
         q : ndarray, shape (n, m)
-            Positions.
         """
         if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
             i = int(np.argmin(inside))
