@@ -147,7 +147,7 @@ def animate(
 
 
 def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> Path:
-    """Raise unless a film of that name, length and rate can be written, before any work for it is done."""
+    """Raise unless a film of this name, length and rate can be written."""
     from matplotlib.animation import FFMpegWriter
 
     target = ensure_path(path, action="write")
@@ -192,7 +192,7 @@ def film_view(trajectory: Trajectory) -> FloatArray:
 
 
 def film_size(view: FloatArray) -> tuple[float, float]:
-    """Width and height in inches that suit the view, in even numbers of pixels, as MP4 wants them."""
+    """Return a figure size in inches that suits the view, in even numbers of pixels as MP4 requires."""
     extent = view[1] - view[0]
     if extent.size == 3:
         return 6.4, 5.6
@@ -201,7 +201,7 @@ def film_size(view: FloatArray) -> tuple[float, float]:
 
 
 def _hold(ax: Any, view: FloatArray) -> None:
-    """The same view in every frame."""
+    """Fix the view of the axes in every frame."""
     low, high = view
     if low.size == 3:
         ax.set_box_aspect(None, zoom=0.95)

@@ -1,4 +1,4 @@
-"""One start under many laws, side by side: where the agents went, and how their velocities came together."""
+"""Paths and velocity diameters of one start under many laws, side by side."""
 
 from __future__ import annotations
 

@@ -145,7 +145,7 @@ def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
 
 
 def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) -> Axes:
-    """Draw the delay margin over a gain; the flock is stable below its line.
+    """Draw the delay margin against a gain; below its line the flock is stable.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ _GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and th
 
 
 def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None = None, ax: Axes | None = None) -> Axes:
-    """Draw F over the distance of a pair (Fig. 2 of the paper): where it jumps, a dot on the end that it takes.
+    """Draw F against the distance of a pair (Fig. 2 of the paper); a dot marks the value taken at each jump.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
 def _led(
     law: LedDeadZoneFlocking, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool
 ) -> Axes:
-    """Each agent in the colour of its leader, a star; the pinned ringed; links join agents within 1.1 d1."""
+    """Draw each agent in its leader's colour, leaders as stars, pinned agents ringed, links within 1.1 d1."""
     q, t = trajectory.q[k], float(trajectory.t[k])
     p, contact = trajectory.p[k] if velocities else None, 1.1 * law.interaction.d1
     axes: Any = configuration(q, p, r=contact, ax=ax, title=f"t = {t:.4g}")

@@ -1,4 +1,4 @@
-"""How far a linearisation holds, and measured gains beside a Bode plot's."""
+"""Range of validity of a linearisation, and measured gains on a Bode plot."""
 
 from __future__ import annotations
 

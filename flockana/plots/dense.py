@@ -1,4 +1,4 @@
-"""A run between its samples and the solver's steps, so that a curve is drawn and not a polygon of steps."""
+"""Dense samples of a run, for smooth curves between the solver's steps."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _INSTANTS = 1500  # about as many as a figure has pixels across
 
 
 def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Times and velocities on each of the solver's steps: the cubic through velocities and accelerations at its ends."""
+    """Return times and velocities within the solver's steps, by cubics through velocities and accelerations."""
     t, _, p, u, _ = trajectory.path
     parts = -(-_INSTANTS // max(1, len(t) - 1))
     if isinstance(trajectory.law, DiscreteLaw) or len(t) < 2 or parts == 1:

@@ -1,4 +1,4 @@
-"""What theorems on averaging speak of: diameters of positions and velocities, and windows of joint connectivity."""
+"""Diameters of positions and velocities, and windows of joint connectivity."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FLOOR = 1e-12  # of the start: below it a difference is rounding
 
 
 def diameters(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the greatest distance and the greatest difference of velocities over time, each over its first value.
+    """Draw the position and velocity diameters over time, each relative to its first value.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ def share_against(
 
 
 def _geometric(places: FloatArray) -> bool:
-    """Whether numbers > 0 are spaced more evenly by their ratios than by their differences, over a decade or more."""
+    """Return whether positive numbers are spaced geometrically, over a decade or more."""
     if len(places) < 3 or not (places > 0.0).all() or places.max() < 10.0 * places.min():
         return False
     even, ratios = np.diff(np.sort(places)), np.diff(np.log(np.sort(places)))
@@ -134,7 +134,7 @@ def share_bars(
 def draw_bars(
     axes: Any, claims: Sequence[str], shares: Mapping[str, FloatArray], runs: Any, level: float, title: str = ""
 ) -> Axes:
-    """Draw rows of `share_bars`: shares, and the ends of their intervals, of claims verified and refuted, shape (3, M)."""
+    """Draw rows of `share_bars`: shares and the ends of their intervals, shape (3, M), by status."""
     rows = np.arange(len(claims))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
         share, low, high = shares[of]
@@ -219,7 +219,7 @@ def phase_diagram(
     title: str = "",
     labels: Sequence[str] = ("", ""),
 ) -> Axes:
-    """Draw in which phase runs ended over two parameters: each cell is divided by the shares of its seeds.
+    """Draw the phases in which runs ended over two parameters; each cell shows the shares of its seeds.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ def _several(counts: Any) -> str:
 
 
 def _finish(axes: Any, title: str) -> Axes:
-    """Legend above the axes in as many columns as its texts leave room for, the title above it."""
+    """Put the legend above the axes, in as many columns as fit, and the title above it."""
     labels = axes.get_legend_handles_labels()[1]
     columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, **LEGEND)

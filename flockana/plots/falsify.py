@@ -20,7 +20,7 @@ _WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarit
 
 
 def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
-    """Draw how a search went: the margin of its claim in each run, the least so far, and what is refuted.
+    """Draw a search: the margin of its claim in each run, the least margin so far, and refuted runs.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class Film:
         frame_count(self.seconds, self.fps)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the film; an existing file is replaced only when the new one is whole.
+        """Write the film; an existing file is replaced only once the new one is complete.
 
         Parameters
         ----------

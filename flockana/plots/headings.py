@@ -1,4 +1,4 @@
-"""Agents that average headings: how they are drawn, and their headings over time."""
+"""Snapshots and headings over time of agents that average headings."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ _CONFIDENCE = 0.95
 def informed_shares(
     runs: xarray.Dataset, *, agents: int = 60, majority: float = 0.5, ax: Axes | None = None, title: str = ""
 ) -> Axes:
-    """Draw the share of agents that follow, of each run, its mean, and how often a majority follows, with intervals.
+    """Draw the share of followers in each run, its mean, and how often a majority follows, with intervals.
 
     Agents of one run are not independent of each other, so an exact interval (Clopper and Pearson, 95 %) is of the
     share of runs in which more than a majority follows; the mean over runs has none.

@@ -1,4 +1,4 @@
-"""The minimal bearing-distance model: who perceives whom, coloured by how far each edge is off its desired length."""
+"""Perception graphs of the minimal bearing-distance model, coloured by the strain of their edges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Obstacles of any kind, drawn through their contract alone: the closest points of what lies around them.
+"""Drawing of obstacles of any kind through their closest points.
 
 The closest-point map of a convex solid takes any closed curve (or surface) around it onto its whole boundary, so the
 bounding ball's points trace the outline. An unbounded solid is traced as far as the view reaches.
@@ -47,7 +47,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
 
 
 def bounds(items: Iterable[Obstacle]) -> FloatArray:
-    """Corners of the boxes about the bounded ones among obstacles, shape (2 K, m): what a view must show."""
+    """Return corners of the bounding boxes of the bounded obstacles, shape (2 K, m)."""
     solids = tuple(items)
     balls = [solid.ball for solid in solids if np.isfinite(solid.ball[1])]
     corners = [centre + side * radius for centre, radius in balls for side in (-1.0, 1.0)]
@@ -78,7 +78,7 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
 
 
 def _trace(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
-    """(closest points of the solid, which of the given ones are inside and stay where they are)."""
+    """Return the closest points of the solid, and which of the given points are inside it."""
     foot = solid.beta_agents(around, np.zeros_like(around))
     inside = foot.clearance <= 0.0
     return np.where(inside[:, None], around, foot.q), inside

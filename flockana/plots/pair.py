@@ -39,7 +39,7 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
 
 
 def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw E and V of a pair over its distance, each in its value at 0: E jumps at r and has a corner at 0, V neither.
+    """Draw E and V of a pair against its distance, relative to their values at 0: E jumps at r, V is continuous.
 
     To the left of 0 one agent has passed through the other.
     """

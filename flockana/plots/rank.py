@@ -1,4 +1,4 @@
-"""The MSN project's connectivity over time, rank(A)/n, beside what tells whether a net is connected."""
+"""Connectivity of the MSN project, rank(A)/n, over time beside the correct rank(L)/(n − 1)."""
 
 from __future__ import annotations
 

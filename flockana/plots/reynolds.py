@@ -1,4 +1,4 @@
-"""Reynolds' three rules on a flock: who pulls, who pushes, and what each rule asks of every agent."""
+"""Reynolds' three rules on a flock: stresses of links, and the force of each rule on every agent."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
 
 
 def _arrows(ax: Any, points: FloatArray, part: FloatArray, longest: float, colour: str, name: str) -> None:
-    """One rule's arrows, where it acts at all."""
+    """Draw the arrows of one rule, at agents on which it acts."""
     acts = np.linalg.norm(part, axis=1) > 1e-3 * longest
     if acts.any():
         scale = {"angles": "xy", "scale_units": "width", "scale": longest / _ARROW, "width": 0.004, "zorder": 4}

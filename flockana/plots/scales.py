@@ -1,4 +1,4 @@
-"""Numbers, marks, grid lines and the name of one scale of axes of the plane, drawn at once.
+"""Fast drawing of the ticks, grid lines and label of one axis.
 
 matplotlib makes five artists of every tick, and asks each six times where it stands: most of what a figure costs. Here
 its own locators and formatters say where ticks stand and what their numbers are, and no artists are made of them.
@@ -41,7 +41,7 @@ def plain(text: str) -> str:
 
 
 def _typeset(text: str) -> bool:
-    """Whether a text has symbols in mathtext."""
+    """Return whether a text contains mathtext."""
     return text.count("$") > 1
 
 
@@ -58,12 +58,12 @@ class Ticks:
 
     @property
     def numbered(self) -> list[tuple[float, str]]:
-        """Places and numbers of those that have one."""
+        """Return the places and texts of the ticks that have a number."""
         return [(at, text) for at, text in zip(self.at.tolist(), self.numbers, strict=True) if text]
 
 
 class PlainScale(Artist):
-    """The scale of one axis of two-dimensional axes, in place of matplotlib's own drawing of it.
+    """Scale of one axis of two-dimensional axes, in place of matplotlib's own drawing.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class PlainScale(Artist):
         return Ticks(at[seen], shown, length * pixel, width, pad * pixel, bool(look["gridOn"]))
 
     def _look(self, key: str) -> Any:
-        """What the style says of the ticks of this scale."""
+        """Return the style's settings of the ticks of this scale."""
         look: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
         return look[f"{self.name}tick.{key}"]
 
@@ -118,7 +118,7 @@ class PlainScale(Artist):
         return pixels
 
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
-        """Pixels that it takes left of, right of, below and above its axes."""
+        """Return the pixels that the scale takes left of, right of, below and above its axes."""
         kinds, sizes, box = self._kinds(), self._sizes(renderer), self.ax.bbox
         k, ends = "xy".index(self.name), (0.0, 0.0)
         low, high = ((box.x0, box.x1), (box.y0, box.y1))[k]
@@ -138,7 +138,7 @@ class PlainScale(Artist):
         return self.ticks("major"), self.ticks("minor")
 
     def _power(self) -> str:
-        """The power of ten that the numbers share, as it was when they were last written."""
+        """Return the power of ten shared by the numbers, as last written."""
         return plain(self.scale.get_major_formatter().get_offset())
 
     @property
@@ -157,7 +157,7 @@ class PlainScale(Artist):
         return lambda text: self._size(renderer, text, font)
 
     def _size(self, renderer: Any, text: str, font: FontProperties) -> Size:
-        """Width, height and descent of a text, measured once."""
+        """Return width, height and descent of a text (cached)."""
         key = text, font.get_size_in_points()
         if key not in self._known:
             self._known[key] = renderer.get_text_width_height_descent(text, font, ismath=_typeset(text))
@@ -262,7 +262,7 @@ class PlainScale(Artist):
 
 
 def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
-    """Draw the scales of all axes of the plane in a figure so, colour bars included; returns them by their axes."""
+    """Replace the scales of all two-dimensional axes of a figure, colour bars included; return them by axes."""
     flat = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
     sizes: dict[tuple[str, float], Size] = {}
     return {ax: tuple(PlainScale(ax, name, sizes) for name in "xy") for ax in flat}

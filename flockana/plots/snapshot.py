@@ -94,7 +94,7 @@ def snapshot(
 
 
 def nearest_sample(t: FloatArray, time: float | None) -> int:
-    """The sample nearest to a time of the run; the last for none."""
+    """Return the index of the sample nearest to a time; the last by default."""
     if time is None:
         return len(t) - 1
     when, first, last = ensure_finite_scalar("time", time), float(t[0]), float(t[-1])
@@ -105,7 +105,7 @@ def nearest_sample(t: FloatArray, time: float | None) -> int:
 
 
 def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
-    """Circles at the range of the pair law, or at that of each agent."""
+    """Draw circles at the range of the pair law, or of each agent."""
     from matplotlib.collections import EllipseCollection
 
     if law.pair is None or not np.isfinite(law.pair.range) or q.shape[1] != 2:
@@ -138,7 +138,7 @@ def drawn_law(trajectory: Trajectory) -> Any:
 
 @singledispatch
 def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
-    """Draw sample k of a run; ``@draw_sample.register(Law)`` says how a law with a world of its own is drawn."""
+    """Draw sample k of a run; a law registers its own drawing with ``@draw_sample.register(Law)``."""
     pair, target = law.pair, law.target
     q, t = trajectory.q[k], float(trajectory.t[k])
     return configuration(
@@ -246,7 +246,7 @@ def _lengths(d: Any, pairs: Any) -> Any:
 
 
 def _multiplicities(ax: Any, x: FloatArray) -> None:
-    """Write ×k beside each place that k agents share: they are drawn as one."""
+    """Write ×k beside each place shared by k agents."""
     extent = float(np.ptp(x, axis=0).max())
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
     if len(near) == 0:
@@ -260,7 +260,7 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
-    """Draw links, coloured by strain up to that of a link about to break, at most that of one twice as long as d.
+    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1.
 
     Where agents have many, links are thin, and those near d lie above the others.
     """
@@ -306,7 +306,7 @@ def _beta_agents(ax: Any, points: FloatArray, field: ObstacleField, size: float)
 
 
 def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
-    """Draw velocities as arrows, the longest always as long; return what a title says of it, empty if none is drawn."""
+    """Draw velocities as arrows; return a note for the title on their scale, empty if none is drawn."""
     x, v = in_plane(ensure_points("q", q)), in_plane(ensure_points("p", p))
     fastest = float(np.linalg.norm(v, axis=1).max())
     extent = float(np.ptp(x, axis=0).max()) or 1.0

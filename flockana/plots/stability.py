@@ -43,7 +43,7 @@ _RING = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
 def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
-    """Draw eigenvalues in the complex plane; zeros as a ring with their number, growing ones as red triangles.
+    """Draw eigenvalues in the complex plane: zeros as a ring with their number, unstable ones as red triangles.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
 
 
 def mode_title(mode: Mode) -> str:
-    """Name and numbers of a mode, for its picture.
+    """Return the title of a mode's picture: its name, rate and frequency.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Symbols of labels, legends and titles in mathtext: written plainly in the code, typeset where they are drawn."""
+"""Typesetting of symbols in labels, legends and titles as mathtext."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _ANY = re.compile("|".join(f"(?P<r{k}>{pattern})" for k, (pattern, _) in enumera
 
 
 def typeset(text: str) -> str:
-    r"""A label with its symbols in mathtext; what is typeset already stays.
+    r"""Return a label with its symbols in mathtext; existing mathtext is kept.
 
     Examples
     --------

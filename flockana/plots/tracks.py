@@ -45,7 +45,7 @@ def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
-    """A path that is a point but for rounding is shown at the scale of the flock, not at that of the rounding."""
+    """Widen the view if a path is constant up to rounding."""
     size = float(np.ptp(trajectory.q.reshape(-1, trajectory.m), axis=0).max())
     if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * size:
         if trajectory.m == 2:
