@@ -94,7 +94,6 @@ def test_what_a_file_of_the_package_is_tested_by(path, first):
     assert mutation.nearest(f"flockana/{path}.py")[: len(first)] == first
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("number", "status"), [("1 + 2", 0), ("2", 1), ("1 +", 1), ("__import__('os')._exit(1)", 1)])
 def test_what_tests_say_of_a_mutant(project, tmp_path_factory, monkeypatch, number, status):
     copy = tmp_path_factory.mktemp("copy")
@@ -111,7 +110,6 @@ def test_what_tests_say_of_a_mutant(project, tmp_path_factory, monkeypatch, numb
     assert mutation.ask(project, 60.0) == status
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("test", "outcome", "code"), [("assert area(1) == 2", "killed", 0), ("", "survived", 3)])
 def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(
     project, tmp_path, monkeypatch, capsys, test, outcome, code

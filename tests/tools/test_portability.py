@@ -339,7 +339,6 @@ def test_what_is_claimed_is_changed_only_on_demand():
     assert chosen == ["definitions-halved", "definitions-doubled", "moved-1"]
 
 
-@pytest.mark.slow
 def test_a_moved_start_of_a_small_flock_changes_nothing(tmp_path, capsys):
     """From end to end: two agents that stay far from every threshold, and an erratum that needs no run."""
     told = tmp_path / "told.json"
