@@ -33,7 +33,7 @@ def _integral() -> Iterator[Step]:
     yield implication(
         "and y² = ‖v‖² has a bounded slope where speeds and accelerations are bounded: |d‖v‖²/dt| <= 2 ‖v‖ ‖v'‖",
         slope <= 2 * fast * hard,
-        *(0 <= speed, speed <= fast, 0 <= push, push <= hard, slope <= 2 * speed * push),
+        *(speed >= 0, speed <= fast, push >= 0, push <= hard, slope <= 2 * speed * push),
         latex=r"\Bigl|\tfrac{d}{dt}\|v\|^2\Bigr| \le 2\|v\|\,\|\dot v\| \le 2 S A \implies \|v\|^2 \to 0",
     )
 
@@ -44,8 +44,8 @@ def _algorithm_2() -> Iterator[Step]:
         yield Step(f"Algorithm 2, m = {m}: dH_λ/dt = -c2γ‖v‖² - c2α vᵀL̂v", structural_identity(m).holds)
     yield implication(
         "so H_λ falls at c2γ‖v‖² at least",
-        RATE <= -c2 * squared,
-        *(RATE == -c2 * squared - c2_alpha * consensus, c2_alpha >= 0, consensus >= 0, squared >= 0),
+        -c2 * squared >= RATE,
+        *(-c2 * squared - c2_alpha * consensus == RATE, c2_alpha >= 0, consensus >= 0, squared >= 0),
     )
     c1, c1_alpha = z3.Reals("c1_gamma c1_alpha")
     parts = (c1 > 0, c1_alpha >= 0, potential_lemma().then())
@@ -62,7 +62,7 @@ def _algorithm_2() -> Iterator[Step]:
         "a pair's force is below F and its adjacency at most 1, so ‖v_i'‖ <= (n-1)(c1α F + 2 c2α S) + c1γ R + c2γ S",
         u <= (n - 1) * (c1_alpha * force + 2 * c2_alpha * fast) + pull * far + c2 * fast,
         *(n >= 1, force >= 0, c1_alpha >= 0, c2_alpha >= 0, pull >= 0, c2 >= 0),
-        *(0 <= gap, gap <= 2 * fast, 0 <= x, x <= far, 0 <= v, v <= fast),
+        *(gap >= 0, gap <= 2 * fast, x >= 0, x <= far, v >= 0, v <= fast),
         u <= (n - 1) * (c1_alpha * force + c2_alpha * gap) + pull * x + c2 * v,
     )
 

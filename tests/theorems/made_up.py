@@ -7,8 +7,8 @@ import numpy as np
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.lattice import hexagonal_patch
-from flockana.theorems.observed import Observed
 from flockana.theorems import Tolerances, Verdict, theorem, verify
+from flockana.theorems.observed import Observed
 
 
 def made_up(law, q, p=None, t=None, u=None):

@@ -13,8 +13,8 @@ from flockana.theorems.basin import (
     barrier,
     connected_within,
     curvatures,
-    lipschitz_constant,
     excess,
+    lipschitz_constant,
 )
 
 

@@ -19,15 +19,14 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     alpha_gain,
     applied,
-    positive_room,
     common_gains,
     has_lattice,
     law_is,
     law_with_common_gains,
     positive,
+    positive_room,
 )
 from flockana.theorems.rounding import energy_error, frame_error, spread_error
-from flockana.theorems.theorem import Hypothesis
 
 getcontext().prec = 60
 

@@ -12,7 +12,6 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import changed
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify

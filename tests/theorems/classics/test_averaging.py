@@ -13,9 +13,9 @@ from flockana.theorems.classics.averaging import (
     averaging_matrix,
     blocks,
     contraction,
+    neighbourhoods,
     permanently_connected,
     permanently_separated,
-    neighbourhoods,
 )
 from flockana.theorems.classics.headings import _contraction
 

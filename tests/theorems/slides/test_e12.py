@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
 from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
