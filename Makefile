@@ -5,12 +5,15 @@ BIN := .venv/bin
 TESTS ?=
 NAME ?= hexagon
 
-.PHONY: verify test attack check bench proofs notebooks course coverage docs portability mutation lowest newest wheel clean
+.PHONY: verify test test-all attack check bench proofs notebooks course coverage docs portability mutation lowest newest wheel clean
 
 verify: .venv/.installed  ## run the catalogue, check every theorem, write report/index.html
 	$(BIN)/flockana verify
 
-test: .venv/.dev  ## the whole test suite
+test: .venv/.dev  ## every formula, theorem, law, file and command, in minutes
+	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow"
+
+test-all: .venv/.dev  ## the whole test suite, with what kills processes, waits, drives tools and attacks
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test

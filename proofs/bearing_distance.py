@@ -261,7 +261,7 @@ PROOF = Proof(
         "near M exponentially follows by the theorem on normally hyperbolic manifolds, cited"
     ),
     rigour="smt",
-    theorems=("zone-1-corrected", "J2", "J3", "J6"),
+    theorems=("zone-1-corrected", "J2", "J3"),
     steps=_steps,
     size=40,
 )

@@ -10,6 +10,7 @@ import os
 import secrets
 import signal
 from functools import cache
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -18,6 +19,13 @@ from hypothesis import HealthCheck, settings
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
+# Folders and files whose tests are all marked slow: `make test-all` and CI run them, `make test` does not.
+SLOW = (
+    *("adversarial", "benchmarks", "tools", "ensemble/test_cluster.py", "ensemble/test_processes.py"),
+    *("bad_input/test_faults.py", "bad_input/test_fuzz.py", "base/test_interrupts.py", "proofs"),
+    *("explore/test_server.py", "explore/test_worker.py", "kernels/test_turns.py", "kernels/test_compiling.py"),
+    *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
+)
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 
 settings.register_profile(
@@ -42,6 +50,9 @@ def pytest_configure(config):
 
     gc.set_threshold(SELDOM)  # as in the program itself: to look through all that is imported takes a tenth of a suite
     config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
+    config.addinivalue_line(
+        "markers", "slow: kills, waits, drives tools or attacks; not in `make test`"
+    )
     if examples := config.getoption("attack"):
         if config.option.hypothesis_seed is None:
             config.option.hypothesis_seed = str(secrets.randbelow(2**32))
@@ -68,7 +79,12 @@ def pytest_report_header(config):
     return None
 
 
+@pytest.hookimpl(tryfirst=True)  # before `-m` is read
 def pytest_collection_modifyitems(config, items):
+    slow = [Path(__file__).parent / name for name in SLOW]
+    for item in items:
+        if any(item.path.is_relative_to(one) for one in slow):
+            item.add_marker("slow")
     if not config.getoption("attack"):
         items[:] = [item for item in items if item.get_closest_marker("attack") is None]
 

@@ -9,6 +9,8 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar, real_array
 from flockana.base.errors import ArgumentError, told
 
+_MOST = 2.0**53  # up to which every whole number is a float
+
 
 def ensure_level(level: Any) -> float:
     """Return a confidence level as a float between 0 and 1."""
@@ -39,7 +41,7 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     Raises
     ------
     ArgumentError
-        On counts that are negative or exceed the trials, or a level outside of (0, 1).
+        On counts that are no whole numbers, are negative or exceed the trials, or a level outside of (0, 1).
 
     Examples
     --------
@@ -56,9 +58,9 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     except (TypeError, ValueError, OverflowError):
         both = f"successes = {told(successes)}, trials = {told(trials)}"
         raise ArgumentError(f"{both}: expected counts") from None
-    if not ((k >= 0.0) & (k <= n)).all():
+    if not ((k >= 0.0) & (k <= n) & (n <= _MOST) & (k == np.floor(k)) & (n == np.floor(n))).all():
         both = f"successes = {told(successes)}, trials = {told(trials)}"
-        raise ArgumentError(f"{both}: expected 0 <= successes <= trials")
+        raise ArgumentError(f"{both}: expected whole numbers 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))
     # the arguments are kept positive where the end is known without them
     low = np.where(k > 0.0, betaincinv(np.maximum(k, 1.0), n - k + 1.0, tail), 0.0)

@@ -10,6 +10,8 @@ from typing import Any
 
 from flockana.base.errors import FileError
 
+_MOST = 2**28  # bytes of a text that is read at once
+
 
 def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose another name") -> Path:
     """Return a path, or raise if it is none, or holds what no file's name can hold.
@@ -107,7 +109,7 @@ def write_whole(
 
 
 def read_whole(path: Any) -> str:
-    """The text of a regular file in UTF-8; raise on anything else, such as a device that never ends.
+    """The text of a regular file in UTF-8; raise on anything else, such as a device that never ends, or a huge file.
 
     What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
 
@@ -122,6 +124,8 @@ def read_whole(path: Any) -> str:
         if source.exists() and not source.is_file():
             reason = "it is a folder" if source.is_dir() else "it is no regular file"
             raise FileError(f"cannot read {source}: {reason}; expected a file")
+        if (size := source.stat().st_size) > _MOST:
+            raise FileError(f"cannot read {source}: it has {size} bytes; expected at most {_MOST}")
         return source.read_text(encoding="utf-8")
     except FileError:
         raise

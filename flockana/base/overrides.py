@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from types import FunctionType
+from typing import Any
+
+from flockana.base.errors import ArgumentError
 
 
 def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
@@ -21,3 +26,48 @@ def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
     ways = list(kind.__mro__)
     defined = next(k for k, base in enumerate(ways) if name in vars(base))
     return not any(other in vars(base) for base in ways[:defined] for other in others)
+
+
+def ensure_consistent(item: Any) -> None:
+    """Raise if a law or what it is made of was given a method anew that the integrators do not ask.
+
+    A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
+    that changes the former alone would be integrated without the change. So would a method set on an instance.
+
+    Examples
+    --------
+    >>> class Law:
+    ...     derives = {"flow": ("acceleration",)}
+    ...     def flow(self): ...
+    ...     def acceleration(self): ...
+    >>> class Noisy(Law):
+    ...     __module__ = "mine"
+    ...     def acceleration(self): ...
+    >>> ensure_consistent(Law())
+    >>> ensure_consistent(Noisy())
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: Noisy defines acceleration, but not flow, from which it follows: ...
+    """
+    kind = type(item)
+    derives: Mapping[str, tuple[str, ...]] = getattr(kind, "derives", {})
+    for source, derived in derives.items():
+        defined = next((k for k, base in enumerate(kind.__mro__) if source in vars(base)), 0)
+        for base in kind.__mro__[:defined]:
+            for name in () if base.__module__.startswith("flockana.") else derived:
+                if name in vars(base):
+                    raise ArgumentError(
+                        f"{base.__name__} defines {name}, but not {source}, from which it follows: the integrators ask "
+                        f"for {source}, so {name} would be ignored; define {source} anew instead"
+                    )
+    for name in vars(item) if hasattr(item, "__dict__") else ():
+        if isinstance(getattr(kind, name, None), FunctionType):
+            raise ArgumentError(
+                f"this {kind.__name__} was given its own {name}, which compiled code would not call: expected the "
+                "method of its class; derive a class that defines it anew"
+            )
+    if is_dataclass(item):
+        for field in fields(item):
+            value = getattr(item, field.name)
+            for part in value if isinstance(value, tuple) else (value,):
+                if hasattr(part, "derives"):
+                    ensure_consistent(part)

@@ -1,21 +1,34 @@
-"""Digests that saved data carry, by which one flipped bit is seen when they are read again.
+"""Seals: digests by which evidence is known to be what a computation returned, and a file to be what was saved.
 
-They guard against accidents, not against an adversary, who could write another digest.
+An object that is evidence (a run, a tube, a basin, an equilibrium, a counterexample) carries a digest of each of its
+fields, set by the function that computes it (`sealed`). Whatever rests on such an object asks for them first
+(`ensure_sealed`): one made or changed by hand has none, or others. A file carries the digest of its contents
+(`with_digest`), or the seal of the object in it. Both guard against accidents, not against an adversary.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
-from typing import Any
+import marshal
+from collections.abc import Collection, Mapping, Set
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+from functools import cached_property, partial
+from numbers import Number
+from types import CodeType, FunctionType, MethodType
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.errors import FileError
+from flockana.base.errors import ArgumentError, FileError
 
-SEAL = "digest"
+SEAL = "digest"  # the key of a file's digest
+_ATTRIBUTE = "_seal"  # no field: `dataclasses.replace` leaves it out
+_NUMBERS = {"b": "|b1", "i": "<i8", "u": "<u8", "f": "<f8"}  # however wide they are, and wherever
+
+_Evidence = TypeVar("_Evidence")
 
 
 def digest(data: Any) -> str:
@@ -29,43 +42,169 @@ def digest(data: Any) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 
-def checksum(values: npt.NDArray[Any]) -> str:
-    """SHA-256 of an array: its shape, its kind and every number to the bit.
+def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain data with their digest, as a file holds them.
 
     Examples
     --------
-    >>> checksum(np.array([0.0])) == checksum(np.array([-0.0]))
-    False
-    """
-    if values.dtype.kind not in "biuf":
-        return digest([values.shape, [str(value) for value in values.ravel()]])
-    numbers = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
-    total = hashlib.sha256(repr((numbers.shape, numbers.dtype.str)).encode())
-    total.update(numbers.data)  # without a copy
-    return total.hexdigest()
-
-
-def sealed(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The same plain data with their digest.
-
-    Examples
-    --------
-    >>> opened(sealed({"x": 1.5}))
+    >>> without_digest(with_digest({"x": 1.5}), keys=["x"])
     {'x': 1.5}
     """
     return {**data, SEAL: digest(dict(data))}
 
 
-def opened(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The data without their digest; raise unless they are those that were sealed.
+def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = None) -> dict[str, Any]:
+    """The data of a file without their digest; raise if it is missing or another, or if a key is not among those known.
 
     Examples
     --------
-    >>> opened({**sealed({"x": 1.5}), "x": 2.5})
+    >>> without_digest({**with_digest({"x": 1.5}), "x": 2.5})
     Traceback (most recent call last):
-    flockana.base.errors.FileError: its digest is not that of its contents (after a change on purpose, take it out)
+    flockana.base.errors.FileError: its digest is not that of its contents: something in it was changed
     """
     rest = {key: value for key, value in data.items() if key != SEAL}
-    if data.get(SEAL) != digest(rest):
-        raise FileError("its digest is not that of its contents (after a change on purpose, take it out)")
+    unknown = sorted({*rest} - {*keys}) if keys is not None else []
+    if unknown:
+        raise FileError(f"it holds {', '.join(unknown)}: expected {', '.join(keys or ())} and {SEAL}, nothing else")
+    if SEAL not in data:
+        raise FileError(f"it has no {SEAL}, which every file is written with: something was taken out")
+    if data[SEAL] != digest(rest):
+        raise FileError("its digest is not that of its contents: something in it was changed")
     return rest
+
+
+def checksum(value: Any) -> str:
+    """SHA-256 of any value: numbers to the bit, parameter objects and results field by field, functions by their code.
+
+    Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
+    field that takes no part in comparisons counts for nothing.
+
+    Examples
+    --------
+    >>> checksum(np.array([0.0])) == checksum(np.array([-0.0])), checksum((1.0, 2.0)) == checksum(np.array([1.0, 2.0]))
+    (False, True)
+    """
+    total = hashlib.sha256()
+    _feed(total, value, ())
+    return total.hexdigest()
+
+
+def sealed(evidence: _Evidence) -> _Evidence:
+    """The same object, a frozen dataclass, with a seal: for the functions that compute it or read it from a file.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Bound:
+    ...     radius: float
+    >>> bound = sealed(Bound(1.0))
+    >>> is_sealed(bound), is_sealed(replace(bound, radius=100.0)), is_sealed(Bound(1.0))
+    (True, False, False)
+    """
+    object.__setattr__(evidence, _ATTRIBUTE, seal_of(evidence))
+    return evidence
+
+
+def seal_of(evidence: Any) -> dict[str, str]:
+    """The checksum of every field of a dataclass."""
+    return {field.name: checksum(getattr(evidence, field.name)) for field in fields(evidence)}
+
+
+def is_sealed(evidence: Any) -> bool:
+    """Whether a dataclass carries a seal, and holds what was sealed."""
+    return vars(evidence).get(_ATTRIBUTE) == seal_of(evidence)
+
+
+def changed(evidence: _Evidence, **changes: Any) -> _Evidence:
+    """The same dataclass with other fields, sealed anew if it was sealed: for the library's own transformations."""
+    made = replace(evidence, **changes)  # type: ignore[type-var]
+    return sealed(made) if is_sealed(evidence) else made
+
+
+def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
+    """Raise unless a dataclass carries the seal of what it holds; the message tells which fields were changed.
+
+    Examples
+    --------
+    >>> from flockana.base.scales import Scales
+    >>> ensure_sealed("scales", Scales(1.0, 2.0), "those of a law", "take law.scales")
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: scales: this Scales was made or changed by hand: expected those of a law; take ...
+    """
+    seal = vars(evidence).get(_ATTRIBUTE)
+    if seal is None:
+        fault = "was made or changed by hand"
+    else:
+        other = [key for key, value in seal_of(evidence).items() if seal.get(key) != value]
+        if not other:
+            return
+        fault = f"was changed by hand since ({', '.join(other)})"
+    raise ArgumentError(f"{name}: this {type(evidence).__name__} {fault}: expected {source}; {remedy}")
+
+
+def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
+    """Add a value to a hash; `within` are the objects that it is a part of."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, np.ndarray | list | tuple):
+        numbers = _numbers(value)
+        if numbers is not None:
+            total.update(f"array {numbers.shape if numbers.size else 0} {numbers.dtype.str}".encode())
+            total.update(numbers.data)  # without a copy
+            return
+        items = value.tolist() if isinstance(value, np.ndarray) else value
+        total.update(f"sequence {len(items)}".encode())
+        for item in items:
+            _feed(total, item, within)
+        return
+    kind = type(value)
+    parts: Mapping[Any, Any] | None = None
+    text = f"{kind.__module__}:{kind.__qualname__}"
+    if value is None or isinstance(value, Number | str | bytes | Enum):
+        text += f" {value!r}"
+    elif isinstance(value, type | FunctionType):
+        text += f" {value.__module__}:{value.__qualname__}"
+        parts = {"code": getattr(value, "__code__", None)}
+    elif isinstance(value, CodeType):
+        text += marshal.dumps(value, 2).hex()  # the version without references, which is always the same
+    elif isinstance(value, MethodType):
+        parts = {"self": value.__self__, "function": value.__func__}
+    elif isinstance(value, partial):
+        parts = {"function": value.func, "arguments": value.args, "keywords": value.keywords}
+    elif kind.__module__.partition(".")[0] == "flint":
+        parts = {"entries": value.entries()} if hasattr(value, "entries") else None
+        ball = hasattr(value, "rad") and value.is_finite()  # to the bit
+        text += str((value.mid().man_exp(), value.rad().man_exp())) if ball else "" if parts else value.repr()
+    elif isinstance(value, Mapping):
+        parts = value
+    elif isinstance(value, Set):
+        text += " ".join(sorted(map(checksum, value)))
+    elif is_dataclass(value):
+        parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init and field.compare}
+    else:
+        text += getattr(value, "__name__", "")
+        parts = _public(value)
+    total.update(f"{len(text)} {text}".encode())
+    if parts is not None and id(value) not in within:
+        for key in sorted(parts, key=str):
+            total.update(f"{key!s} =".encode())
+            _feed(total, parts[key], (*within, id(value)))
+
+
+def _numbers(value: Any) -> npt.NDArray[Any] | None:
+    """A sequence of numbers as an array; None of anything else."""
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError, OverflowError):
+        return None
+    if array.dtype.kind not in _NUMBERS:
+        return None
+    return np.ascontiguousarray(array, dtype=_NUMBERS[array.dtype.kind])
+
+
+def _public(value: Any) -> dict[str, Any]:
+    """Attributes of another object: neither private ones nor kept results."""
+    own = getattr(value, "__dict__", {})
+    kept = {key for key in own if isinstance(getattr(type(value), key, None), cached_property)}
+    return {key: item for key, item in own.items() if key[:1] != "_" and key not in kept}

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError, FileError
+from flockana.base.errors import ArgumentError, FileError, told
 from flockana.base.modules import modules
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
@@ -95,18 +95,31 @@ def from_data(data: Any) -> Any:
 
 
 def read_json(text: str) -> Any:
-    """What a JSON text says; one nested too deeply to read raises ValueError, as one that is no JSON does.
+    """What a JSON text says; one nested too deeply or with a key given twice raises ValueError, as one that is no JSON.
 
     Examples
     --------
     >>> read_json("[" * 100_000)
     Traceback (most recent call last):
     ValueError: it is nested too deeply
+    >>> read_json('{"a": {"x": 1, "x": 2}}')
+    Traceback (most recent call last):
+    ValueError: the key 'x' is given twice
     """
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=_without_twins)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object whose keys differ."""
+    data: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in data:
+            raise ValueError(f"the key {told(key)} is given twice")
+        data[key] = value
+    return data
 
 
 def _own_class(module: str, qualname: str) -> Any:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from math import frexp, ldexp
+
 import numpy as np
 
 from flockana.base.checks import FloatArray
+
+_SQUARED = 2.0**-400, 2.0**400  # between which the largest number may be squared, and be small against it what is lost
 
 
 def lengths(x: FloatArray) -> FloatArray:
@@ -34,3 +38,21 @@ def centres(x: FloatArray) -> FloatArray:
         return means
     along: FloatArray = np.ascontiguousarray(x.swapaxes(0, 1)).mean(axis=0)
     return along
+
+
+def near_one(x: FloatArray, *others: float) -> tuple[FloatArray, tuple[float, ...], float]:
+    """Numbers of one unit over a power of two, and that power: 1 unless squares of the largest overflow or underflow.
+
+    Examples
+    --------
+    >>> x, (r,), unit = near_one(np.array([3.0, 4.0]) * 2.0**600, 2.0**599)
+    >>> x.tolist(), r, unit == 2.0**602
+    ([0.75, 1.0], 0.125, True)
+    >>> near_one(np.array([3.0]), 2.0)[2]
+    1.0
+    """
+    top = max(float(x.max(initial=0.0)), -float(x.min(initial=0.0)), *others)
+    if _SQUARED[0] < top < _SQUARED[1] or not 0.0 < top < np.inf:
+        return x, others, 1.0
+    unit = ldexp(1.0, frexp(top)[1] - 1)
+    return x / unit, tuple(other / unit for other in others), unit

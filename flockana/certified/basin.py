@@ -31,6 +31,7 @@ from flint import arb, ctx, fmpq
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.seals import ensure_sealed, sealed
 from flockana.certified.alignment import centred, projects, turned_to
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.damping import damping
@@ -39,7 +40,7 @@ from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
 from flockana.certified.structure import Structure
-from flockana.equilibria.solve import Equilibrium
+from flockana.equilibria.solve import Equilibrium, ensure_found
 from flockana.measures.nets import components, links
 
 DIGITS = 40
@@ -125,6 +126,10 @@ class Basin:
             excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
             return distance.upper(), excess.upper()
 
+    def ensure_whole(self) -> None:
+        """Raise unless it is as `certify` returned it."""
+        ensure_sealed("basin", self, "a basin as certify returned it", "certify(equilibrium) proves another")
+
     def holds(self, q: Any, p: Any) -> bool:
         """Whether a start is certainly in the basin; False too where that is not certain.
 
@@ -133,7 +138,13 @@ class Basin:
         q, p : array_like, shape (n, m)
             Positions and velocities, floats (which count with their binary values) or balls. Agents are numbered as in
             `rest`.
+
+        Raises
+        ------
+        ArgumentError
+            If the basin was made or changed by hand.
         """
+        self.ensure_whole()
         distance, excess = self.above(q, p)
         with ctx.workdps(DIGITS):
             return bool(distance < ball(self.radius) and excess < ball(self.level))
@@ -185,6 +196,8 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
     (True, True, True)
     """
     known = isinstance(equilibrium, Equilibrium)
+    if known:
+        ensure_found("equilibrium", equilibrium)
     law = equilibrium.law if law is None and known else law
     if law is None:
         raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
@@ -254,7 +267,7 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
     found = decay(bounds)
     if not found.rate > 0:
         return None
-    return Basin(
+    basin = Basin(
         law=law,
         rest=np.array(computed).reshape(u.n, u.m),
         radius=_fraction(shells.radius),
@@ -267,6 +280,7 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
         connected=second > 0,
         proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
     )
+    return sealed(basin)
 
 
 def _fraction(x: fmpq) -> Fraction:

@@ -16,7 +16,7 @@ from flint import fmpq
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_whole
-from flockana.base.seals import sealed
+from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.decimals import decimal, written
 from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
@@ -34,6 +34,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
     """
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
+    basin.ensure_whole()
     proof = basin.proof
     u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
     parameters = {name: written(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
@@ -63,7 +64,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         **{name: decimal(getattr(basin, name)) for name in STATED},
         "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
-    return sealed(data)
+    return with_digest(data)
 
 
 STATED = ("radius", "level", "curvature", "rate", "overshoot", "distance")
@@ -82,7 +83,7 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
     Raises
     ------
     ArgumentError
-        If it is no basin.
+        If it is no basin as `certify` returned it.
     FileError
         If the file cannot be written.
     """

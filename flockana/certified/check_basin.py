@@ -13,12 +13,25 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx
 
-from flockana.certified.check import ensure, unit, whole
+from flockana.certified.check import ensure, unit
 from flockana.certified.check_net import ROOT_TWO, Net, Pair
+from flockana.certified.forms import BINARY, NUMBER, PAIR_LAW, WHOLE
 from flockana.certified.intervals import ball, square
 
 DIGITS = 45
 STATED, OF_RATE = 4, 3  # significant digits
+
+
+def form(data: Mapping[str, Any]) -> dict[str, Any]:
+    """What is checked, by key (`forms`)."""
+    numbers = ("box", "second_eigenvalue", "degree", "radius", "level", "curvature", "surplus", "rate", "overshoot")
+    return dict.fromkeys((*numbers, "distance"), NUMBER) | {
+        "law": PAIR_LAW,
+        "positions": [[BINARY]],
+        "bonds": [{"pairs": [[WHOLE]], "along": [NUMBER], "across": [NUMBER]}],
+        "curvatures": [NUMBER],
+        "lyapunov": dict.fromkeys(("eps", "theta", "kappa", "tau"), NUMBER),
+    }
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
@@ -32,7 +45,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         ensure(radius > 0 and ROOT_TWO**2 > 2 and shells > 0, "no radius")
         gaps = {(i, j): [b - a for a, b in zip(x[i], x[j], strict=True)] for i, j in combinations(range(net.n), 2)}
         lengths = {pair: sum(map(square, gap), arb(0)).sqrt() for pair, gap in gaps.items()}
-        bonds = [tuple((whole(i), whole(j)) for i, j in bond["pairs"]) for bond in data["bonds"]]
+        bonds = [tuple((i, j) for i, j in bond["pairs"]) for bond in data["bonds"]]
         listed = [pair for bond in bonds for pair in bond]
         ensure(len(set(listed)) == len(listed) and set(listed) <= set(gaps), "a pair is listed twice, or is none")
         out = ball(Fraction(str(net.text["r"]))) + ball(reach)

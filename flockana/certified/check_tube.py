@@ -29,9 +29,30 @@ from flockana.certified.check import check_data, ensure
 from flockana.certified.check_motion import Motion, Vector, number
 from flockana.certified.check_sphere import Sphere
 from flockana.certified.decimals import at_least, at_most
+from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH
 from flockana.certified.intervals import AlphaParameters, ball, c_star
 
 BITS = 128
+
+
+def form(data: Mapping[str, Any]) -> dict[str, Any]:
+    """What is checked, by key (`forms`): only Algorithm 3 has spheres, and only with spheres there is a clearance."""
+    law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "told")}
+    if bounded := data["law"]["algorithm"] == "Algorithm3":
+        law |= dict.fromkeys(("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta"), NUMBER)
+        law |= {"spheres": [{"centre": [NUMBER], "radius": NUMBER}]}
+    return {
+        "law": law,
+        "q0": [[BINARY]],
+        "p0": [[BINARY]],
+        "times": [BINARY],
+        "paths": [[[BINARY]]],
+        "errors": [NUMBER],
+        **dict.fromkeys(("weight", "distance", "cohesion_radius", "energy", "turn"), NUMBER),
+        "clearance": NUMBER if bounded and data["law"]["spheres"] else None,
+        "below_c_star": TRUTH,
+        "basin": None if data["basin"] is None else ANY,  # a certificate of its own
+    }
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:

@@ -16,6 +16,7 @@ from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
+from flockana.base.seals import sealed
 from flockana.certified.flow import Flow
 from flockana.certified.laws import ensure_enclosable, flow_of
 from flockana.certified.lohner import StateSet, Step, crossing_step, size, taylor_step, variation_order
@@ -159,7 +160,7 @@ def _collected(
         except KeyboardInterrupt:
             status, message = "interrupted", f"interrupted: it ends at t = {times[-1]:g}"
     stats = {"order": knobs.order, "remainder": knobs.remainder, "widest": knobs.widest, "radius": tuple(radii)}
-    return Tube(law, q0, p0, tuple(times), tuple(sets), tuple(taken), status, message, stats)
+    return sealed(Tube(law, q0, p0, tuple(times), tuple(sets), tuple(taken), status, message, stats))
 
 
 def _steps(

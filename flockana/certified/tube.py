@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 from math import inf, nextafter
@@ -14,6 +14,7 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import changed, ensure_sealed
 from flockana.certified.structural_energy import BITS, energy_of, norm2, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
@@ -37,6 +38,9 @@ class BasinLike(Protocol):
     @property
     def proof(self) -> Any:
         """Balls that hold that equilibrium, and the structure that it is one of."""
+
+    def ensure_whole(self) -> None:
+        """Raise unless it is as it was proved."""
 
     def holds(self, q: Any, p: Any) -> bool:
         """Whether every state in a box certainly lies in it."""
@@ -112,7 +116,11 @@ class Tube:
         seconds : float
             By the clock.
         """
-        return replace(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
+        return changed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
+
+    def ensure_whole(self) -> None:
+        """Raise unless it is as `enclose` returned it."""
+        ensure_sealed("tube", self, "a tube as enclose returned it", "enclose(law, q0, p0, t_span) proves another")
 
     @property
     def n(self) -> int:
@@ -262,7 +270,14 @@ class Tube:
         ----------
         basin : Basin
             Of `flockana.certify`.
+
+        Raises
+        ------
+        ArgumentError
+            If either was made or changed by hand.
         """
+        self.ensure_whole()
+        basin.ensure_whole()
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 

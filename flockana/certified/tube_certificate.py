@@ -17,7 +17,7 @@ from flint import arb, ctx
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_whole
-from flockana.base.seals import sealed
+from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check_motion import number
@@ -64,7 +64,7 @@ def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 
     with ctx.workprec(BITS):
         data = _start(tube, weight) | {"times": [_hexadecimal(arb(t)) for t in tube.t], "paths": _paths(tube)}
         run = Run.of(data)
-        return sealed(data | _followed(run, tube, data["paths"]) | _ending(tube, basin))
+        return with_digest(data | _followed(run, tube, data["paths"]) | _ending(tube, basin))
 
 
 def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None = None) -> None:
@@ -92,6 +92,7 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
     if not isinstance(tube, Tube):
         raise ArgumentError(f"tube = {tube!r}: expected a tube, as enclose(...) gives it")
+    tube.ensure_whole()
     if not isinstance(basin, Basin | None):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it, or None")
     law: Any = tube.law

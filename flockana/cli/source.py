@@ -37,31 +37,15 @@ _BUILDERS: dict[str, tuple[Callable[..., FloatArray], str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Positions, with the scale and the range that they are to be measured with.
+    """Positions, with the scale and the range that they are to be measured with."""
 
-    Attributes
-    ----------
-    name : str
-        What was asked for.
-    q : ndarray, shape (n, m)
-        Positions.
-    d, r : float
-        Scale and interaction range.
-    law : object or None
-        The law that came with the positions.
-    t : float
-        When they were taken.
-    max_ratio : float or None
-        Of a builder: largest κ at which its pattern is an α-lattice.
-    """
-
-    name: str
-    q: FloatArray
-    d: float
+    name: str  # what was asked for
+    q: FloatArray  # shape (n, m)
+    d: float  # d, r: Scale and interaction range
     r: float
-    law: Any = None
-    t: float = 0.0
-    max_ratio: float | None = None
+    law: Any = None  # the law that came with the positions
+    t: float = 0.0  # when they were taken
+    max_ratio: float | None = None  # of a builder: largest κ at which its pattern is an α-lattice
 
 
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:

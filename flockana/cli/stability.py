@@ -137,7 +137,8 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
     if delay:
         for kind in DELAYED:
             margin = delay_margin(delay_system(law, linear.q, delayed=kind, strict=strict))
-            facts[f"delay margin, {kind}"] = {"delay": finite(margin.delay), "frequency": finite(margin.frequency)}
+            numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
+            facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
     if norms:
         system = disturbance_system(law_blocks(law, linear.q, strict=strict))
         assert system is not None  # shapes are always bounded
@@ -206,7 +207,8 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         margin = facts.get(f"delay margin, {kind}")
         if margin is not None:
             at = "" if margin["frequency"] is None else f", then a swing at {margin['frequency']:.4g} rad per time unit"
-            rows.append(("delay margin", f"{words}: {_or_none(margin['delay'])}{at}"))
+            most = "" if margin["certified"] else "at most "
+            rows.append(("delay margin", f"{words}: {most}{_or_none(margin['delay'])}{at}"))
     for name, unit in (("H2", "time^(3/2)"), ("Hinf", "time²")):
         if name in facts:
             value = facts[name]

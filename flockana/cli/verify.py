@@ -99,8 +99,9 @@ def _planned(
     name: str | None, seeds: int | None, seed: int, *, figures: bool
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
     """All that is to be done, and the surveys among it."""
+    from flockana.report.section import LINEARISED, MANY_LAWS, Section
     from flockana.report.surveys import surveys
-    from flockana.report.work import LINEARISED, MANY_LAWS, Section, plan
+    from flockana.report.work import plan
 
     tasks = plan(name, seed=seed, figures=figures)
     many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()

@@ -47,26 +47,15 @@ _COMPANIONS = """
 
 @dataclass(frozen=True)
 class Exercise:
-    """One exercise of a lecture.
+    """One exercise of a lecture."""
 
-    Parameters
-    ----------
-    name : str
-        The variable that takes the answer.
-    number, level, points : int
-        Its place in the lecture, stars from 1 to 3, and what it counts.
-    kind : {"derivation", "design", "counterexample", "program", "experiment", "reading", "words"}
-        What it takes to answer: paper, a choice, a search, code, a computation of one's own, an output, sentences.
-    form : str
-        What is asked for, as `answered` takes it.
-    """
-
-    name: str
-    number: int
+    name: str  # the variable that takes the answer
+    number: int  # number, level, points: its place in the lecture, stars from 1 to 3, and what it counts
     level: int
     points: int
+    # what it takes to answer: paper, a choice, a search, code, a computation of one's own, an output, sentences
     kind: str
-    form: str
+    form: str  # what is asked for, as `answered` takes it
 
 
 def lectures() -> Path:
@@ -82,35 +71,12 @@ def sources() -> list[Path]:
 
 
 def tags(cell: Any) -> list[str]:
-    """The tags of a cell.
-
-    Parameters
-    ----------
-    cell : NotebookNode
-        Of a notebook.
-    """
+    """The tags of a cell."""
     return list(cell.metadata.get("tags", ()))
 
 
 def notebook(source: Path, version: str) -> Any:
-    """The notebook of a lecture: for the student, for study alone (with checks), or with solutions.
-
-    Parameters
-    ----------
-    source : Path
-        One of `sources`.
-    version : {"student", "self-study", "solutions"}
-        A student's checks look at the form of an answer only: neither values nor hints are in the file.
-
-    Returns
-    -------
-    nbformat.NotebookNode
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such version.
-    """
+    """The notebook of a lecture: for the student, for study alone (with checks), or with solutions."""
     ensure_choice("version", version, VERSIONS)
     book = jupytext.read(source)
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
@@ -135,24 +101,12 @@ def _install(source: Path) -> Any:
 
 
 def needs_companions(source: Path) -> bool:
-    """Whether a lecture imports from folders beside it.
-
-    Parameters
-    ----------
-    source : Path
-        One of `sources`.
-    """
+    """Whether a lecture imports from folders beside it."""
     return any(f"from {name}." in source.read_text(encoding="utf-8") for name in ("own_law", "proofs"))
 
 
 def exercises(source: Path) -> Iterator[Exercise]:
-    """The exercises of a lecture, in order.
-
-    Parameters
-    ----------
-    source : Path
-        One of `sources`.
-    """
+    """The exercises of a lecture, in order."""
     posed = [cell for cell in jupytext.read(source).cells if {"exercise", "check"} & set(tags(cell))]
     for text, check in zip(posed[::2], posed[1::2], strict=True):
         number, stars, points, kind = _head(text.source, source)
@@ -172,16 +126,6 @@ def _head(text: str, source: Path) -> tuple[int, int, int, str]:
 
 def asked(check: str) -> tuple[str, str]:
     """The variable that a check looks at, and the form of its answer.
-
-    Parameters
-    ----------
-    check : str
-        The source of the cell, which is one call ``grade(name, right, ...)``.
-
-    Raises
-    ------
-    ArgumentError
-        If `right` is neither a constant nor accompanied by ``form=``.
 
     Examples
     --------
@@ -203,11 +147,6 @@ def asked(check: str) -> tuple[str, str]:
 def form_check(check: str) -> str:
     """What a student's copy has in the place of a check: a look at the form of the answer.
 
-    Parameters
-    ----------
-    check : str
-        The source of the cell.
-
     Examples
     --------
     >>> print(form_check('grade(jump, 1.0, hint="one-sided limits")'))
@@ -220,25 +159,7 @@ def form_check(check: str) -> str:
 
 
 def write(folder: Path, version: str = "student") -> list[Path]:
-    """Write a version of all lectures, and what they import or show, so that they run there.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if need be.
-    version : {"student", "self-study", "solutions"}, default "student"
-        As in `notebook`.
-
-    Returns
-    -------
-    list of Path
-        The notebooks.
-
-    Raises
-    ------
-    FileError
-        If a file is there that differs from what would be written, such as one with answers: then none is written.
-    """
+    """Write a version of all lectures, and what they import or show, so that they run there."""
     books = {f"{source.stem}.ipynb": notebook_bytes(notebook(source, version)) for source in sources()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
     return deliver(folder, books | pages | companions())[: len(books)]
@@ -254,11 +175,5 @@ def companions() -> dict[str, bytes]:
 
 
 def copy_companions(folder: Path) -> None:
-    """Write `companions` into the folder in which a notebook runs.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the notebooks are; a file there that differs is not replaced, but a `FileError`.
-    """
+    """Write `companions` into the folder in which a notebook runs."""
     deliver(folder, companions())

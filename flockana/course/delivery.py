@@ -16,35 +16,12 @@ _REMEDY = "choose another folder"
 
 
 def notebook_bytes(book: Any) -> bytes:
-    """A notebook as its file holds it.
-
-    Parameters
-    ----------
-    book : NotebookNode
-        Of `flockana.course.build.notebook`, for instance.
-    """
+    """A notebook as its file holds it."""
     return f"{nbformat.writes(book).rstrip()}\n".encode()
 
 
 def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[Path]:
     """Write files into a folder, unless one is there that differs: then none is written.
-
-    Parameters
-    ----------
-    folder : path
-        Made if need be.
-    files : mapping of str to bytes
-        What each is to hold, by its name in the folder.
-
-    Returns
-    -------
-    list of Path
-        Where they are.
-
-    Raises
-    ------
-    FileError
-        If a file is there that differs from what would be written, or one cannot be written.
 
     Examples
     --------

@@ -25,24 +25,7 @@ GRADERS = ("otter", "nbgrader")
 
 
 def master(source: Path, grader: str) -> Any:
-    """The notebook that a grader starts from, with solutions and all tests: for lecturers only.
-
-    Parameters
-    ----------
-    source : Path
-        One of `sources`.
-    grader : {"otter", "nbgrader"}
-        For ``otter assign``, or as a source notebook of nbgrader.
-
-    Returns
-    -------
-    nbformat.NotebookNode
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such grader.
-    """
+    """The notebook that a grader starts from, with solutions and all tests: for lecturers only."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, asked = notebook(source, "solutions"), iter(exercises(source))
@@ -63,25 +46,7 @@ def master(source: Path, grader: str) -> Any:
 
 
 def write_for(folder: Path, grader: str) -> list[Path]:
-    """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if need be.
-    grader : {"otter", "nbgrader"}
-        As in `master`.
-
-    Returns
-    -------
-    list of Path
-        The notebooks.
-
-    Raises
-    ------
-    FileError
-        If a file is there that differs from what would be written, such as one that was changed: then none is written.
-    """
+    """Write all lectures for a grader: masters for ``otter assign``, or nbgrader's folder ``source``."""
     books: dict[str, bytes] = {}
     others: dict[str, bytes] = {}
     for source in sources():

@@ -42,33 +42,15 @@ if (button) button.onclick = () => {{
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Pictures, one for each value: a notebook shows them behind a slider.
+    """Pictures, one for each value: a notebook shows them behind a slider."""
 
-    Parameters
-    ----------
-    pictures : tuple of bytes
-        As PNG.
-    texts : tuple of str
-        The values, as they are shown.
-    name : str
-        What is moved.
-    title : str
-        What is to be seen, for those who cannot see it.
-    size : tuple of int
-        Width and height in pixels.
-    start : int
-        Which picture is shown first.
-    seconds : float
-        Of a film; 0 for a slider.
-    """
-
-    pictures: tuple[bytes, ...]
-    texts: tuple[str, ...]
-    name: str
-    title: str
-    size: tuple[int, int]
-    start: int = 0
-    seconds: float = 0.0
+    pictures: tuple[bytes, ...]  # as PNG
+    texts: tuple[str, ...]  # the values, as they are shown
+    name: str  # what is moved
+    title: str  # what is to be seen, for those who cannot see it
+    size: tuple[int, int]  # width and height in pixels
+    start: int = 0  # which picture is shown first
+    seconds: float = 0.0  # of a film; 0 for a slider
 
     def __repr__(self) -> str:
         """One line."""
@@ -114,30 +96,6 @@ def slider(
 ) -> Frames:
     """A picture for each value, behind a slider.
 
-    Parameters
-    ----------
-    draw : callable
-        Takes axes and a value, and draws.
-    values : sequence
-        At least two.
-    name : str
-        What the slider moves.
-    title : str
-        What is to be seen, for those who cannot see it.
-    size : tuple of float
-        Width and height in inches.
-    start : int
-        Which value is shown first.
-
-    Returns
-    -------
-    Frames
-
-    Raises
-    ------
-    ArgumentError
-        If there are fewer than two values, or no value `start`.
-
     Examples
     --------
     >>> slider(lambda ax, a: ax.plot([0, 1], [0, a]), [1, 2, 3], name="a", title="a line of slope a")
@@ -155,24 +113,7 @@ def film(
     size: tuple[float, float] = (6.0, 3.6),
     seconds: float = 6.0,
 ) -> Frames:
-    """A picture for each value, one after another at the touch of a button.
-
-    Parameters
-    ----------
-    draw, values, name, title, size : object
-        As for `slider`.
-    seconds : float
-        From the first picture to the last.
-
-    Returns
-    -------
-    Frames
-
-    Raises
-    ------
-    ArgumentError
-        If there are fewer than two values, or `seconds` is not positive.
-    """
+    """A picture for each value, one after another at the touch of a button."""
     return _drawn(draw, values, name, title, size, 0, ensure_positive("seconds", seconds))
 
 

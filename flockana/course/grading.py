@@ -18,21 +18,14 @@ _ROUNDING = 1e-9  # of the right answer: what double precision may leave of an e
 class Grade:
     """What became of an answer; shows itself in a notebook.
 
-    Parameters
-    ----------
-    status : {"right", "handed in", "not yet", "not answered"}
-        The finding; ``handed in`` says that the form is right and that nobody has looked at the value.
-    hint : str
-        Where to look, if it is not right.
-
     Examples
     --------
     >>> Grade("not yet", "count each pair once")
     ✗ not yet: count each pair once
     """
 
-    status: str
-    hint: str = ""
+    status: str  # the finding; ``handed in`` says that the form is right and that nobody has looked at the value
+    hint: str = ""  # where to look, if it is not right
 
     def __repr__(self) -> str:
         return f"{_MARKS[self.status]} {self.status}" + (
@@ -47,31 +40,6 @@ def grade(
 
     A number counts to the precision that the question asks for, and no wider: to so many significant `digits`, that is
     half a unit of the last of them, or `within` so much. Without either, to rounding.
-
-    Parameters
-    ----------
-    answer : object
-        The student's; ``...`` stands for no answer yet.
-    right : object
-        A number, an array or list (in this order), a set (in any order), a text (in any case), a truth value, or a
-        function of the answer that returns one. A function that stumbles over the answer counts as a no.
-    digits : int, optional
-        Significant digits asked for.
-    within : float, optional
-        Largest difference that counts as none.
-    hint : str
-        Shown with an answer that is not right.
-    form : {"number", "word", "text", "truth value", "list", "function"}, optional
-        What is asked for, if `right` is a function; by default what `right` is.
-
-    Returns
-    -------
-    Grade
-
-    Raises
-    ------
-    ArgumentError
-        If both `digits` and `within` are given.
 
     Examples
     --------
@@ -100,18 +68,6 @@ def grade(
 def answered(answer: Any, form: str) -> Grade:
     """Look at the form of an answer only: all that a student's copy checks.
 
-    Parameters
-    ----------
-    answer : object
-        The student's; ``...`` stands for no answer yet.
-    form : {"number", "word", "text", "truth value", "list", "function", ""}
-        What is asked for; anything if empty.
-
-    Returns
-    -------
-    Grade
-        ``handed in``, ``not yet`` or ``not answered``.
-
     Examples
     --------
     >>> answered(3.0, "number"), answered("three", "number"), answered(..., "number")
@@ -126,11 +82,6 @@ def answered(answer: Any, form: str) -> Grade:
 
 def form_of(right: Any) -> str:
     """The form of a right answer, as `answered` knows it; empty for a function, which may ask for anything.
-
-    Parameters
-    ----------
-    right : object
-        As `grade` takes it.
 
     Examples
     --------

@@ -20,35 +20,18 @@ _ACCENTS = {'"': "\u0308", "'": "\u0301"}
 
 @dataclass(frozen=True)
 class Lecture:
-    """A lecture's entry in the map of the course, or an assignment's, whose number begins with A.
+    """A lecture's entry in the map of the course, or an assignment's, whose number begins with A."""
 
-    Parameters
-    ----------
-    number, title : str
-        As in its file's name and its first line.
-    after : tuple of str
-        Numbers of the lectures that it builds on.
-    minutes : int
-        For reading and running it, exercises apart.
-    references, further : tuple of str
-        What it rests on, and what to read next, as text.
-    """
-
-    number: str
+    number: str  # number, title: as in its file's name and its first line
     title: str
-    after: tuple[str, ...]
-    minutes: int
-    references: tuple[str, ...]
+    after: tuple[str, ...]  # numbers of the lectures that it builds on
+    minutes: int  # for reading and running it, exercises apart
+    references: tuple[str, ...]  # references, further: what it rests on, and what to read next, as text
     further: tuple[str, ...]
 
 
 def number_of(source: Path) -> str:
     """The number of a lecture, from the name of its file.
-
-    Parameters
-    ----------
-    source : Path
-        Of the lecture.
 
     Examples
     --------
@@ -59,18 +42,7 @@ def number_of(source: Path) -> str:
 
 
 def course_map(folder: Path) -> list[Lecture]:
-    """The lectures in the order in which they are taught.
-
-    Parameters
-    ----------
-    folder : Path
-        Holds the sources and ``lectures.toml``.
-
-    Raises
-    ------
-    ArgumentError
-        If the table and the folder differ, or a lecture comes before one that it builds on.
-    """
+    """The lectures in the order in which they are taught."""
     table = tomllib.loads((folder / "lectures.toml").read_text(encoding="utf-8"))
     files = {number_of(path): path for path in sorted(folder.glob("[0-9A][0-9]*_*.py"))}
     if set(table) != set(files):
@@ -97,11 +69,6 @@ def _title(source: Path) -> str:
 
 def as_text(bibtex: str) -> str:
     """A BibTeX entry as a line of text.
-
-    Parameters
-    ----------
-    bibtex : str
-        One entry.
 
     Examples
     --------
@@ -132,13 +99,7 @@ def _initials(name: str) -> str:
 
 
 def notation(folder: Path) -> list[dict[str, str]]:
-    """The table of symbols: ``symbol``, ``meaning``, ``unit`` and the ``lectures`` that use it.
-
-    Parameters
-    ----------
-    folder : Path
-        Holds ``notation.csv``.
-    """
+    """The table of symbols: ``symbol``, ``meaning``, ``unit`` and the ``lectures`` that use it."""
     with (folder / "notation.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file, delimiter="|", quoting=csv.QUOTE_NONE))
 
@@ -151,15 +112,7 @@ def _rows(table: list[dict[str, str]], number: str) -> Iterator[str]:
 
 
 def header(lecture: Lecture, folder: Path) -> str:
-    """What stands below a lecture's title: what goes before, how long it takes, and its symbols.
-
-    Parameters
-    ----------
-    lecture : Lecture
-        Of the map.
-    folder : Path
-        Holds ``notation.csv``.
-    """
+    """What stands below a lecture's title: what goes before, how long it takes, and its symbols."""
     before = ", ".join(lecture.after) or "none"
     symbols = "\n".join(_rows(notation(folder), lecture.number))
     return (
@@ -169,38 +122,20 @@ def header(lecture: Lecture, folder: Path) -> str:
 
 
 def references(lecture: Lecture) -> str:
-    """What stands at a lecture's end.
-
-    Parameters
-    ----------
-    lecture : Lecture
-        Of the map.
-    """
+    """What stands at a lecture's end."""
     lists = (("References", lecture.references), ("Further reading", lecture.further))
     return "\n\n".join(f"## {title}\n\n" + "\n".join(f"- {text}" for text in texts) for title, texts in lists)
 
 
 def notation_page(folder: Path) -> str:
-    """All symbols of the course, in Markdown.
-
-    Parameters
-    ----------
-    folder : Path
-        Holds ``notation.csv``.
-    """
+    """All symbols of the course, in Markdown."""
     return (
         "# Notation\n\nA symbol means the same in all lectures.\n\n" + "\n".join(_rows(notation(folder), "all")) + "\n"
     )
 
 
 def map_page(folder: Path) -> str:
-    """The map of the course, in Markdown: its lectures, what each builds on, and a drawing for Mermaid.
-
-    Parameters
-    ----------
-    folder : Path
-        Holds the sources and ``lectures.toml``.
-    """
+    """The map of the course, in Markdown: its lectures, what each builds on, and a drawing for Mermaid."""
     lectures = course_map(folder)
     rows = "\n".join(f"| {e.number} | {e.title} | {', '.join(e.after) or '–'} | {e.minutes} |" for e in lectures)
     arrows = "\n".join(f"    L{before} --> L{each.number}" for each in lectures for before in each.after)

@@ -28,17 +28,7 @@ _STYLE = """<style>
 
 
 def slides(source: Path) -> Any:
-    """The notebook of a lecture, marked for ``jupyter nbconvert --to slides --execute``.
-
-    Parameters
-    ----------
-    source : Path
-        One of `flockana.course.build.sources`.
-
-    Returns
-    -------
-    nbformat.NotebookNode
-    """
+    """The notebook of a lecture, marked for ``jupyter nbconvert --to slides --execute``."""
     book = notebook(source, "student")
     book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
     book.cells[0].source += f"\n\n{_STYLE}"
@@ -72,22 +62,6 @@ def shown() -> list[Path]:
 
 
 def write_slides(folder: Path) -> list[Path]:
-    """Write all lectures as slides, and what they import.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if need be.
-
-    Returns
-    -------
-    list of Path
-        The notebooks.
-
-    Raises
-    ------
-    FileError
-        If a file is there that differs from what would be written, such as one that was changed: then none is written.
-    """
+    """Write all lectures as slides, and what they import."""
     books = {f"{source.stem}.ipynb": notebook_bytes(slides(source)) for source in shown()}
     return deliver(folder, books | companions())[: len(books)]

@@ -1,9 +1,9 @@
 """Runs as labelled data and as netCDF-4 files, and back.
 
-A saved run carries a checksum of every variable and a digest of these and of its attributes; after the netCDF comes one
-line with the digest of all bytes before it, which HDF5 does not read. That line is looked at first, so that HDF5 never
-sees damaged bytes; the checksums hold where another program wrote the file anew, too. Files that flockana wrote before,
-and those written from `to_xarray`, have neither: they are read, and validated like a run that is made.
+A file carries the seal of the run in it, a checksum of each of its fields, and so does the dataset of `to_xarray`: one
+without is refused. What was made by hand is marked as a recording, and read as one. After the netCDF comes one line
+with the digest of all bytes before it, which HDF5 does not read. That line is looked at first, so that HDF5 never sees
+damaged bytes; the seal holds where another program wrote the file anew, too.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path, replacing
-from flockana.base.seals import checksum, digest
-from flockana.base.serialize import from_data, to_data, to_data_mapping
+from flockana.base.seals import checksum, is_sealed, seal_of, sealed
+from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.between import Between
 from flockana.laws.discrete import ensure_law
 
@@ -32,6 +32,7 @@ _Run = TypeVar("_Run")
 
 FORMAT = "flockana-trajectory"
 FORMAT_VERSION = 1
+RUN, RECORDING = "simulate", "hand"  # what made it
 _LINE = b"\nflockana sha256 %s\n"
 _BLOCK = 2**20  # bytes read at once
 _MARK, _LENGTH = b"\nflockana sha256", len(_LINE % (b"0" * 64))
@@ -57,6 +58,8 @@ def to_xarray(run: Any) -> xarray.Dataset:
         "status": run.status,
         "message": run.message,
         "stats": json.dumps(to_data_mapping(run.stats)),
+        "made_by": (made_by := RUN if is_sealed(run) else RECORDING),
+        "seal": json.dumps(_file_seal(run, made_by)),
     }
     return xarray.Dataset(data, coords, attrs)
 
@@ -64,7 +67,7 @@ def to_xarray(run: Any) -> xarray.Dataset:
 def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     """See `Trajectory.save`."""
     # in memory first: HDF5 tears itself apart on a disk that fills
-    netcdf = _with_checksums(dataset).to_netcdf(None, engine="h5netcdf")
+    netcdf = dataset.to_netcdf(None, engine="h5netcdf")
     total = hashlib.sha256(netcdf).hexdigest()
     with replacing(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
         file.write(netcdf)
@@ -72,27 +75,24 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def _with_checksums(dataset: xarray.Dataset) -> xarray.Dataset:
-    sums = {str(name): checksum(variable.values) for name, variable in dataset.variables.items()}
-    with_sums = dataset.assign_attrs(checksums=json.dumps(sums))
-    return with_sums.assign_attrs(digest=_digest_of_attributes(with_sums.attrs))
-
-
-def _digest_of_attributes(attributes: Mapping[Any, Any]) -> str:
-    return digest({str(key): str(value) for key, value in attributes.items() if key != "digest"})
-
-
-def _ensure_unharmed(data: xarray.Dataset, source: Path) -> None:
-    """Raise unless variables and attributes are those that were saved."""
-    sums = json.loads(data.attrs["checksums"])
-    found = {str(name): checksum(variable.values) for name, variable in data.variables.items()}
-    differing = sorted(name for name in {*sums, *found} if sums.get(name) != found.get(name))
-    if data.attrs["digest"] != _digest_of_attributes(data.attrs):
-        differing.append("attributes")
+def _ensure_unharmed(run: Any, attributes: Mapping[str, Any], source: Path) -> Any:
+    """The run with its seal, if it has one; raise unless every field is that which was saved."""
+    if "seal" not in attributes:
+        raise FileError(
+            f"{source} is damaged: it has no seal, which every file of a run is written with; run the simulation again"
+        )
+    seal, found = read_json(attributes["seal"]), _file_seal(run, attributes["made_by"])
+    differing = sorted(name for name in {*seal, *found} if seal.get(name) != found.get(name))
     if differing:
         raise FileError(
             f"{source} is damaged: {', '.join(differing)} not as saved, by the checksums; run the simulation again"
         )
+    return sealed(run) if attributes["made_by"] == RUN else run
+
+
+def _file_seal(run: Any, made_by: str) -> dict[str, str]:
+    """The checksums of a run's fields, and of whether it is a run or a recording."""
+    return seal_of(run) | {"made_by": checksum(made_by)}
 
 
 def _ensure_whole(source: Path) -> None:
@@ -138,20 +138,19 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
             raise FileError(f"{source} is of format {version}, newer than {FORMAT_VERSION}: update flockana")
         if version < 1:
             raise FileError(f"{source} is damaged: there is no format {version}; run the simulation again")
-        if {"checksums", "digest"} & {*data.attrs}:
-            _ensure_unharmed(data, source)
-        return run_of(
+        run = run_of(
             t=np.array(data["time"]),
             q=np.array(data["q"]),
             p=np.array(data["p"]),
             u=np.array(data["u"]),
-            law=ensure_law(from_data(json.loads(data.attrs["law"]))),
+            law=ensure_law(from_data(read_json(data.attrs["law"]))),
             extra={str(k)[6:]: np.array(v) for k, v in data.data_vars.items() if str(k).startswith("extra_")},
             status=str(data.attrs["status"]),
             message=str(data.attrs["message"]),
-            stats=json.loads(data.attrs["stats"]),
+            stats=read_json(data.attrs["stats"]),
             between=_read_between(data),
         )
+        return cast(_Run, _ensure_unharmed(run, data.attrs, source))
     except (KeyError, ValueError, TypeError, RecursionError) as error:
         raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
 

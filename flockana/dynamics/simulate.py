@@ -24,6 +24,7 @@ from flockana.base.checks import (
 from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import interrupts_recognised
 from flockana.base.progress import progress_bar
+from flockana.base.seals import sealed
 from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.first_call import check_first_call
@@ -38,7 +39,6 @@ from flockana.laws.law import Law
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
-AS_SIMULATED = "as simulated"  # the digest of its samples, of a run that `simulate` returned
 
 
 def simulate(
@@ -78,8 +78,8 @@ def simulate(
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
         energy in a run; scipy's own 1e-3 is never used.
     atol : float, optional
-        Absolute tolerance, in the state's own units; by default a hundredth of `rtol` times the law's own length for
-        positions, and length over time for velocities.
+        Absolute tolerance of positions, a length; velocities and energies are allowed the same share of the law's own
+        speed and energy. By default a hundredth of `rtol` times the law's own length.
     dt : float, optional
         Step of RK4 (required there, meaningless elsewhere). The last step is shortened to end on time.
     t_eval : array_like, optional
@@ -145,9 +145,7 @@ def simulate(
         if watch is not None:
             watch(_copy(first))
     t, q, p, u, extra = _stacked(kept)
-    run = Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between)
-    run.remembered(AS_SIMULATED, run.samples_digest)
-    return run
+    return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
 
 
 def _stacked(

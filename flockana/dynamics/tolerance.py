@@ -27,7 +27,7 @@ class Floors(NamedTuple):
 def error_floor(
     law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: float | None
 ) -> Floors:
-    """Absolute tolerances: the same number for all, or by default a hundredth of `rtol` times the law's own scales.
+    """Absolute tolerances: shares of the law's own scales, `atol` of its length or by default a hundredth of `rtol`.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
@@ -38,9 +38,8 @@ def error_floor(
         duration = t_span[1] - t_span[0]
         extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
         scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
-    share = FLOOR * rtol
-    floor = (share * scales.length, share * scales.speed, share * len(q0) * scales.energy)
-    length, speed, energy = floor if atol is None else (atol,) * 3
+    share = FLOOR * rtol if atol is None else atol / scales.length
+    length, speed, energy = share * scales.length, share * scales.speed, share * len(q0) * scales.energy
     reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))
     blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
     length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,15 +12,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, real_array
+from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
+from flockana.base.seals import changed
 from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
 from flockana.dynamics.tolerance import Floors, error_floor, rounding_floors
-from flockana.laws.discrete import ensure_law
+from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
 from flockana.measures.metrics import cohesion_radius
@@ -55,7 +55,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A sampled run.
+    """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Trajectory:
     ------
     ArgumentError
         On arrays that do not fit each other, numbers that are not real and finite, times that do not rise, an unknown
-        status, or something that is no law.
+        status, a step or a tolerance in `stats` that is no number > 0, or something that is no law.
     """
 
     t: FloatArray
@@ -101,6 +101,9 @@ class Trajectory:
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")
         ensure_choice("status", self.status, STATUSES)
+        for name in ("rtol", "atol", "dt"):
+            if self.stats.get(name) is not None:
+                ensure_positive(f"stats[{name!r}]", self.stats[name])
         try:
             shape = np.shape(self.q)
             others = [np.shape(each) for each in (self.t, self.p, self.u)]
@@ -151,14 +154,14 @@ class Trajectory:
             for name, series in self.extra.items()
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
-        units = {"dt": time, "atol": length}  # an absolute tolerance is in the state's own units: places first
+        units = {"dt": time, "atol": length}
         stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
         if "floors" in stats:
             factors = length, length / time, (length / time) ** 2
             stats["floors"] = [value * factor for value, factor in zip(stats["floors"], factors, strict=True)]
         law = rescale(self.law, length=length, time=time)
         between = None if self.between is None else rescale(self.between, length=length, time=time)
-        return replace(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
+        return changed(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 
     @cached_property
     def _flows(self) -> tuple[FloatArray, FloatArray]:
@@ -178,7 +181,7 @@ class Trajectory:
 
     def energy(self) -> FloatArray:
         """The law's energy H at each sample, shape (T,)."""
-        return self._energy
+        return self._energy.copy()
 
     @cached_property
     def _energy(self) -> FloatArray:
@@ -186,7 +189,7 @@ class Trajectory:
 
     def energy_rate(self) -> FloatArray:
         """dH/dt in closed form at each sample, shape (T,)."""
-        return self._flows[1]
+        return self._flows[1].copy()
 
     @property
     def energy_residual(self) -> FloatArray:
@@ -195,10 +198,13 @@ class Trajectory:
         Raises
         ------
         ArgumentError
-            If the run carries no ``extra["work"]`` (its law has no energy).
+            If the run carries no ``extra["work"]``: its law has no energy, or `simulate` did not make it.
         """
         if "work" not in self.extra:
-            raise ArgumentError("this run has no energy balance: its law has no energy")
+            raise ArgumentError(
+                "this run has no energy balance: it carries no extra['work'], the integral of dH/dt, which simulate "
+                "adds where the law has an energy; energy() gives H alone"
+            )
         energy, work = self.energy(), self.extra["work"]
         residual: FloatArray = energy - energy[0] - (work - work[0])  # the first may be later than the start
         return residual
@@ -288,7 +294,7 @@ class Trajectory:
             else:
                 raise UnknownNameError("metric", name, self._metric_names)
             self._measured[name] = values
-        return self._measured[name]
+        return self._measured[name].copy()
 
     def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
         """What was computed from this run before, or is now: kept as long as the run.
@@ -303,13 +309,6 @@ class Trajectory:
         if name not in self._memory:
             self._memory[name] = compute()
         return self._memory[name]  # type: ignore[no-any-return]
-
-    def samples_digest(self) -> bytes:
-        """Of all times, positions, velocities, accelerations and further series, to the bit."""
-        digest = hashlib.sha256()
-        for series in (self.t, self.q, self.p, self.u, *(self.extra[name] for name in sorted(self.extra))):
-            digest.update(np.ascontiguousarray(series).data)
-        return digest.digest()
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what is remembered: a copy can be written to, and some measures are functions that do not travel."""
@@ -341,12 +340,26 @@ class Trajectory:
         """The samples and the solver's own steps between them, in order of time: what bounds at all times rest on."""
         return merged(self.t, self.q, self.p, self.u, self.between)
 
+    @property
+    def resolved(self) -> bool:
+        """Whether the solver's own steps are known, so that the run can be bounded between its samples.
+
+        They are of a run that `simulate` made, of its windows and files, and of a map; of arrays from elsewhere, or a
+        dump that left steps out, nothing is known between samples, and bounds at all times are the trivial ones.
+        """
+        steps = self.stats.get("steps", np.inf)
+        return isinstance(self.law, DiscreteLaw) or self.between is not None or len(self.t) - 1 >= steps
+
     def closest_approach(self) -> ClosestApproach:
         """The closest two agents come, between samples too; intervals are those between samples."""
         return self._closest
 
     @cached_property
     def _closest(self) -> ClosestApproach:
+        if not self.resolved and len(self.t) > 1 < self.n:
+            k = slice(at := int(np.argmin(self.metric("min_distance"))), at + 1)
+            seen = closest_approach(self.t[k], self.q[k], self.p[k], self.u[k])
+            return replace(seen, lower=0.0, lower_by_interval=np.zeros(len(self.t) - 1))
         approach = closest_approach(*self.path)
         return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
@@ -368,7 +381,8 @@ class Trajectory:
     def min_distance(self) -> float:
         """A lower bound of every distance between two agents at every time of the run.
 
-        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`).
+        It holds given the integrator's accuracy, on steps that resolve the motion (`flockana.kernels.paths`), and is 0
+        where the steps are not known (`resolved`); the least distance at the samples is ``metric("min_distance")``.
         """
         return self._closest.lower
 
@@ -380,6 +394,8 @@ class Trajectory:
     @cached_property
     def cohesion_bounds(self) -> FloatArray:
         """That of each interval between samples, shape (T − 1,)."""
+        if not self.resolved:
+            return np.full(len(self.t) - 1, np.inf)
         return self.over_intervals(np.maximum, cohesion_bound(*self.path))
 
     def clearance(self) -> Clearance:
@@ -389,7 +405,12 @@ class Trajectory:
     @cached_property
     def _clearance(self) -> Clearance:
         path, obstacles = self.path, self.law.obstacles
-        return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
+        if self.resolved or len(self.t) == 1 or not obstacles:
+            return clearance(path.t, path.q, path.p, path.u, obstacles, path.slack)
+        one = (slice(k, k + 1) for k in range(len(self.t)))
+        each = (clearance(self.t[k], self.q[k], self.p[k], self.u[k], obstacles) for k in one)
+        seen = min(each, key=lambda found: found.reached)
+        return replace(seen, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))
 
     def animate(
         self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
@@ -454,10 +475,11 @@ class Trajectory:
         extra = {name: series[keep] for name, series in self.extra.items()}
         if "work" in extra:
             extra["work"] = extra["work"] - extra["work"][0]
-        between = None if self.between is None else self.between.within(self.t, self.t[keep])
-        return replace(
-            self, t=self.t[keep], q=self.q[keep], p=self.p[keep], u=self.u[keep], extra=extra, between=between
-        )
+        between, stats = None if self.between is None else self.between.within(self.t, self.t[keep]), self.stats
+        if self.resolved and self.between is None and "steps" in stats:
+            stats = {**stats, "steps": min(stats["steps"], int(keep.sum()) - 1)}
+        part = {name: getattr(self, name)[keep] for name in ("t", "q", "p", "u")}
+        return changed(self, **part, extra=extra, between=between, stats=stats)
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""

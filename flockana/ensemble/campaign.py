@@ -73,8 +73,6 @@ def ensemble(
     metrics : iterable of str or callable
         What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
-    tolerances : Tolerances, optional
-        Thresholds of the verdicts.
     executor : concurrent.futures.Executor, optional
         Who computes; it is left running. By default a pool of processes that is started for the purpose.
     cluster : str, optional

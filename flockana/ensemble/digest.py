@@ -51,13 +51,6 @@ def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
 
     To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
-
-    Parameters
-    ----------
-    sources : mapping of str to bytes
-        Files by name.
-    folder : Path
-        Where Python keeps what it compiled.
     """
     exact = hashlib.sha256(repr((sys.version, _libraries(), Path(__file__).read_bytes())).encode())
     for name, source in sorted(sources.items()):

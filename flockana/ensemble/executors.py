@@ -34,24 +34,12 @@ class Serial(Executor):
 
 @dataclass
 class Crew:
-    """An executor and what must be known of it to keep it busy.
+    """An executor and what must be known of it to keep it busy."""
 
-    Parameters
-    ----------
-    executor : Executor
-        Who works.
-    width : callable
-        How many batches it can work on at once, now.
-    renew : callable, optional
-        Gives a new executor after a worker's death broke this one.
-    loses : bool
-        Whether a result may be lost with its worker, whatever error that then is: Dask's.
-    """
-
-    executor: Executor
-    width: Callable[[], int]
-    renew: Callable[[], Executor] | None = None
-    loses: bool = False
+    executor: Executor  # who works
+    width: Callable[[], int]  # how many batches it can work on at once, now
+    renew: Callable[[], Executor] | None = None  # gives a new executor after a worker's death broke this one
+    loses: bool = False  # whether a result may be lost with its worker, whatever error that then is: Dask's
 
 
 @contextmanager

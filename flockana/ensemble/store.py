@@ -51,12 +51,6 @@ class Store:
     path : path-like
         File; made, with its folders, if there is none.
 
-    Raises
-    ------
-    FileError
-        If the file cannot be written, is damaged, is no store, or holds runs of another version of the mathematics.
-        It is left as it was.
-
     Examples
     --------
     >>> import tempfile

@@ -25,43 +25,23 @@ COMPLETE, FAILED, ERROR, DIED = "complete", "failed", "error", "died"
 
 @dataclass(frozen=True)
 class Job:
-    """One run to make.
-
-    Parameters
-    ----------
-    seed : int
-        Of the random start.
-    options : tuple of (str, scalar)
-        Of the scenario, sorted by name.
-    """
+    """One run to make."""
 
     seed: int
-    options: tuple[tuple[str, Scalar], ...] = ()
+    options: tuple[tuple[str, Scalar], ...] = ()  # of the scenario, sorted by name
 
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of every run of an ensemble; names and numbers only, so it can be sent to any machine.
+    """What is asked of every run of an ensemble; names and numbers only, so it can be sent to any machine."""
 
-    Parameters
-    ----------
-    scenario : str
-        A name of the catalogue, or ``"module:function"``.
-    theorems : tuple of str, optional
-        Which to check; by default all of the scenario's own and what its source reports.
-    metrics : tuple of str
-        Names of measures, or ``"module:function"``.
-    tolerances : Tolerances
-        Thresholds of the verdicts.
-    mathematics : str
-        Version that the runs must be computed by.
-    """
-
-    scenario: str
+    scenario: str  # a name of the catalogue, or ``"module:function"``
+    # which to check; by default all of the scenario's own and what its source reports
     theorems: tuple[str, ...] | None = None
+    # names of measures, or ``"module:function"``
     metrics: tuple[str, ...] = field(default_factory=lambda: tuple(measures()))
     tolerances: Tolerances = field(default_factory=Tolerances)
-    mathematics: str = field(default_factory=mathematics)
+    mathematics: str = field(default_factory=mathematics)  # version that the runs must be computed by
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, for the key of a run."""
@@ -70,63 +50,26 @@ class Request:
 
 @dataclass(frozen=True)
 class Record:
-    """What an ensemble keeps of one run.
+    """What an ensemble keeps of one run."""
 
-    Parameters
-    ----------
-    job : Job
-        Which run.
-    status : {"complete", "failed", "error", "died"}
-        Complete; ended early by the integrator; raised an error; or ended its worker process.
-    message : str
-        Why, if not complete.
-    verdicts : mapping of str to str
-        Status by theorem.
-    claims : mapping of str to (str, float or None, float or None)
-        Status, margin and error of the margin by ``"theorem:claim"``.
-    metrics : mapping of str to float
-        Measures by name.
-    stats : mapping of str to int
-        Steps and evaluations.
-    seconds : float
-        Wall time of simulating and checking: the one entry that differs from run to run.
-    """
-
-    job: Job
-    status: str
-    message: str = ""
-    verdicts: Mapping[str, str] = field(default_factory=dict)
+    job: Job  # which run
+    status: str  # complete; ended early by the integrator; raised an error; or ended its worker process
+    message: str = ""  # why, if not complete
+    verdicts: Mapping[str, str] = field(default_factory=dict)  # status by theorem
+    # status, margin and error of the margin by ``"theorem:claim"``
     claims: Mapping[str, tuple[str, float | None, float | None]] = field(default_factory=dict)
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    stats: Mapping[str, int] = field(default_factory=dict)
-    seconds: float = 0.0
+    metrics: Mapping[str, float] = field(default_factory=dict)  # measures by name
+    stats: Mapping[str, int] = field(default_factory=dict)  # steps and evaluations
+    seconds: float = 0.0  # wall time of simulating and checking: the one entry that differs from run to run
 
     def to_json(self, key: str = "") -> str:
-        """As text that gives every number back to the bit (NaN and infinities in Python's spelling), with a digest.
-
-        Parameters
-        ----------
-        key : str
-            What it is kept under; the digest covers it, too.
-        """
+        """As text that gives every number back to the bit (NaN and infinities in Python's spelling), with a digest."""
         data = asdict(self)
         return json.dumps({**data, SEAL: digest([key, data])}, ensure_ascii=False)
 
     @classmethod
     def from_json(cls, text: str, key: str = "") -> Record:
         """Read what `to_json` wrote.
-
-        Parameters
-        ----------
-        text : str
-            What it wrote.
-        key : str
-            What it was kept under.
-
-        Raises
-        ------
-        FileError
-            If the digest is not that of the contents.
 
         Examples
         --------

@@ -45,18 +45,10 @@ class BetaLinks(NamedTuple):
 
 @dataclass(frozen=True)
 class ObstacleField:
-    """Obstacles and the interaction that keeps agents off them.
+    """Obstacles and the interaction that keeps agents off them."""
 
-    Parameters
-    ----------
-    obstacles : tuple of Obstacle
-        Any kinds, of one dimension; they may overlap.
-    beta : BetaInteraction
-        Clearance d', range r'.
-    """
-
-    obstacles: tuple[Obstacle, ...]
-    beta: BetaInteraction
+    obstacles: tuple[Obstacle, ...]  # any kinds, of one dimension; they may overlap
+    beta: BetaInteraction  # clearance d', range r'
 
     @cached_property
     def kinds(self) -> tuple[Kind, ...]:
@@ -73,48 +65,21 @@ class ObstacleField:
         return tuple(kinds)
 
     def forces(self, q: FloatArray, p: FloatArray, u: FloatArray, *, stiffness: float, damping: float) -> float:
-        """Add c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i) to u in place, unchecked (the integrators' inner loop).
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        u : ndarray, shape (n, m)
-            Accelerations to add to.
-        stiffness, damping : float
-            Gains c1 and c2 of the β-terms.
-
-        Returns
-        -------
-        float
-            Σ_i Σ_k b_ik ⟨p_i, p̂_ik − p_i⟩, never positive while all agents are outside.
-        """
+        """Add c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i) to u in place, unchecked (the integrators' inner loop)."""
         power, par, reach = 0.0, self.beta.par, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
             power += kernels.forces(q, p, pars, starts, balls, par, reach, stiffness, damping, u)
         return power
 
     def potential_energy(self, q: FloatArray) -> float:
-        """Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
             total += kernels.potential(q, pars, starts, balls, par, panels, reach)
         return total
 
     def hessian_blocks(self, q: FloatArray) -> FloatArray:
-        """Hessian of `potential_energy`: its diagonal blocks (n, m, m); the others vanish.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Hessian of `potential_energy`: its diagonal blocks (n, m, m); the others vanish."""
         n, m = q.shape
         blocks = np.zeros((n, m, m))
         for obstacle in self.obstacles:
@@ -122,18 +87,7 @@ class ObstacleField:
         return blocks
 
     def braking_blocks(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of Σ_k b_ik (p̂_ik − p_i) in q_i and in p_i: blocks (n, m, m); agents do not see each other's.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-
-        Raises
-        ------
-        ArgumentError
-            If agents move and a kind of obstacle does not say how its β-agents turn.
-        """
+        """Derivatives of Σ_k b_ik (p̂_ik − p_i) in q_i and in p_i: blocks (n, m, m); agents do not see each other's."""
         n, m = q.shape
         by_position, by_velocity = np.zeros((n, m, m)), np.zeros((n, m, m))
         for obstacle in self.obstacles:
@@ -146,13 +100,7 @@ class ObstacleField:
         return by_position, by_velocity
 
     def links(self, q: FloatArray, p: FloatArray) -> BetaLinks:
-        """The β-neighbours of every agent: obstacles k with ‖q̂_ik − q_i‖ < r'.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """The β-neighbours of every agent: obstacles k with ‖q̂_ik − q_i‖ < r'."""
         by_obstacle = []
         for k, obstacle in enumerate(self.obstacles):
             agents = obstacle.beta_agents(q, p)
@@ -165,20 +113,7 @@ class ObstacleField:
 
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
-    """Raise if an agent is inside or on the surface of an obstacle; the first such agent is named.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Initial positions.
-    obstacles : sequence of Obstacle
-        All obstacles.
-
-    Raises
-    ------
-    ArgumentError
-        With the nearest free point that was found, or the obstacles that leave none.
-    """
+    """Raise if an agent is inside or on the surface of an obstacle; the first such agent is named."""
     inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
     agents = np.flatnonzero(inside.any(axis=0))
     if agents.size == 0:

@@ -116,12 +116,6 @@ class Copies:
         )
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """Places and velocities of all copies, two arrays (n, m).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """Places and velocities of all copies, two arrays (n, m)."""
         both: FloatArray = self._motion.at(float(t)).reshape(2, *self.shape)
         return both[0], both[1]

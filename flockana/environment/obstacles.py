@@ -43,6 +43,7 @@ class Obstacle(ABC):
     """
 
     kernels: ObstacleKernels
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("beta_agents", "clearance", "contains")}
 
     @property
     @abstractmethod
@@ -73,10 +74,6 @@ class Obstacle(ABC):
         q, p : array_like, shape (n, m)
             Positions and velocities of the agents.
 
-        Returns
-        -------
-        BetaAgents
-
         Raises
         ------
         ArgumentError
@@ -93,7 +90,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         q = ensure_points("q", q)
         return self.beta_agents(q, np.zeros_like(q)).clearance
@@ -104,7 +100,6 @@ class Obstacle(ABC):
         Parameters
         ----------
         q : array_like, shape (n, m)
-            Points.
         """
         inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
         return inside

@@ -12,18 +12,10 @@ from flockana.base.checks import FloatArray
 
 
 class Harmonic(NamedTuple):
-    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it.
+    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it."""
 
-    Attributes
-    ----------
-    terms : ndarray, shape (5, m)
-        a, b, c, s, e.
-    omega, factor : float
-        ω and what p_r is of the true rate.
-    """
-
-    terms: FloatArray
-    omega: float = 0.0
+    terms: FloatArray  # shape (5, m): a, b, c, s, e
+    omega: float = 0.0  # omega, factor: ω and what p_r is of the true rate
     factor: float = 1.0
 
 
@@ -32,32 +24,14 @@ class Target(ABC):
 
     @abstractmethod
     def position(self, t: float) -> FloatArray:
-        """q_r(t), shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """q_r(t), shape (m,)."""
 
     @abstractmethod
     def rate(self, t: float) -> FloatArray:
-        """The true dq_r/dt, shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """The true dq_r/dt, shape (m,)."""
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,)."""
         return self.position(t), self.rate(t)
 
     @property

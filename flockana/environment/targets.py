@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, inf, pi, sin
 from typing import Any, ClassVar
 
 import numpy as np
@@ -289,11 +289,14 @@ class CallableTarget(Target):
         ``t -> (q_r, p_r)``, two vectors of m components.
     time : float
         In which the path bends, in the user's time unit: dq_r/dt is a difference over 1e-5 of it.
+    span : tuple of float
+        Times between which the function is defined, all unless given. It is never called beyond: the path stays where
+        the span ends, and dq_r/dt is there a difference to one side.
 
     Raises
     ------
     ArgumentError
-        If the function does not return two finite vectors of equal length at t = 0.
+        If the function does not return two finite vectors of equal length at t = 0, or where its span begins.
 
     Examples
     --------
@@ -304,14 +307,25 @@ class CallableTarget(Target):
 
     function: Callable[[float], Any]
     time: float = 1.0
+    span: tuple[float, float] = (-inf, inf)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time", ensure_positive("time", self.time))
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
-        q, p = self._call(0.0)
+        try:
+            start, end = (float(each) for each in self.span)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"span = {told(self.span)}: expected two times, (start, end)") from None
+        if not end - start > 4.0 * _STEP * self.time:
+            raise ArgumentError(f"span = {self.span}: expected a start and an end, more than 4e-5 time apart")
+        object.__setattr__(self, "span", (start, end))
+        first = min(max(0.0, start), end)
+        q, p = self._call(first)
         if q.size != p.size:
-            raise ArgumentError(f"function(0) gave q_r of {q.size} and p_r of {p.size} components: expected equal")
+            raise ArgumentError(
+                f"function({first:g}) gave q_r of {q.size} and p_r of {p.size} components: expected equal"
+            )
 
     def in_units(self, length: float, time: float) -> CallableTarget:
         """The same path in other units (`flockana.rescale`).
@@ -326,9 +340,11 @@ class CallableTarget(Target):
             q, p = self._call(t / time)
             return length * q, length / time * p
 
-        return CallableTarget(scaled, time * self.time)
+        start, end = self.span
+        return CallableTarget(scaled, time * self.time, (time * start, time * end))
 
     def _call(self, t: float) -> tuple[FloatArray, FloatArray]:
+        t = min(max(t, self.span[0]), self.span[1])
         try:
             q, p = self.function(t)
         except (TypeError, ValueError) as error:
@@ -342,12 +358,10 @@ class CallableTarget(Target):
         return self._call(t)
 
     def rate(self, t: float) -> FloatArray:
-        """dq_r/dt by central difference.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """dq_r/dt by central difference; by one of three points to one side where the span ends."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
-        return (self.position(t + step) - self.position(t - step)) / (2.0 * step)
+        if self.span[0] <= t - step and t + step <= self.span[1]:
+            return (self.position(t + step) - self.position(t - step)) / (2.0 * step)
+        to = step if t - step < self.span[0] else -step
+        near, far = self.position(t + to), self.position(t + 2.0 * to)
+        return (4.0 * near - far - 3.0 * self.position(t)) / (2.0 * to)

@@ -81,7 +81,6 @@ class SimplePolygon:
         Parameters
         ----------
         q : array_like, shape (N, 2)
-            Points.
         """
         q = ensure_points("q", q)
         if q.shape[1] != 2:
@@ -198,7 +197,6 @@ class Box:
         Parameters
         ----------
         q : array_like, shape (N, m)
-            Points.
         """
         q = ensure_points("q", q)
         inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

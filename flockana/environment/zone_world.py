@@ -155,7 +155,6 @@ class ZoneWorld:
         Parameters
         ----------
         q : ndarray, shape (N, m)
-            Points.
         """
         least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
         return least
@@ -189,7 +188,6 @@ class ZoneWorld:
         Parameters
         ----------
         q : ndarray, shape (n, m)
-            Positions.
         """
         if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
             i = int(np.argmin(inside))

@@ -31,28 +31,15 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies of n agents that a search came to, with and without two agents at one place.
-
-    Parameters
-    ----------
-    n, m : int
-        Agents, dimension.
-    together : float
-        Lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate.
-    ground : float
-        Lowest V found at all.
-    state : ndarray, shape (n, m)
-        The configuration with a coincident pair.
-    solves : int
-        Successful solves behind the two figures.
-    """
+    """Lowest energies of n agents that a search came to, with and without two agents at one place."""
 
     n: int
     m: int
+    # lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate
     together: float
-    ground: float
-    state: FloatArray
-    solves: int
+    ground: float  # lowest V found at all
+    state: FloatArray  # shape (n, m): the configuration with a coincident pair
+    solves: int  # successful solves behind the two figures
 
     @property
     def height(self) -> float:
@@ -210,13 +197,6 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
     Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
     pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
     upper one doubles the agent with the most links in a compact lattice.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n, m : int
-        Agents, dimension.
 
     Examples
     --------

@@ -33,13 +33,6 @@ class Spectrum(NamedTuple):
 def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
     """Raise if the equilibrium of n agents would take many minutes.
 
-    Parameters
-    ----------
-    n, m : int
-        Agents and dimensions.
-    most : int
-        Largest n m.
-
     Examples
     --------
     >>> ensure_small(1000, 3)

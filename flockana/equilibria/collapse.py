@@ -26,27 +26,14 @@ _NUDGE = 1e-4  # of d: a symmetric start would be squeezed along its symmetry, p
 
 @dataclass(frozen=True)
 class CollapseDiagram:
-    """Minima of U_λ that a lattice relaxes to, against its size and the ratio λ/c1α = c1γ/c1α.
+    """Minima of U_λ that a lattice relaxes to, against its size and the ratio λ/c1α = c1γ/c1α."""
 
-    Parameters
-    ----------
-    sizes : int array, shape (N,)
-        Numbers of agents.
-    ratios : ndarray, shape (L,)
-        c1γ/c1α.
-    closest : ndarray, shape (N, L)
-        Least distance between two agents over d, 0 once some coincide; NaN where the solver failed.
-    coincident : int array, shape (N, L)
-        Pairs at one place, −1 where the solver failed.
-    kinds : tuple of tuple of str
-        Kind of each equilibrium, ``"failed"`` where there is none.
-    """
-
-    sizes: npt.NDArray[np.int64]
-    ratios: FloatArray
+    sizes: npt.NDArray[np.int64]  # shape (N,)
+    ratios: FloatArray  # shape (L,): c1γ/c1α
+    # shape (N, L): least distance between two agents over d, 0 once some coincide; NaN where the solver failed
     closest: FloatArray
-    coincident: npt.NDArray[np.int64]
-    kinds: tuple[tuple[str, ...], ...]
+    coincident: npt.NDArray[np.int64]  # shape (N, L): pairs at one place, −1 where the solver failed
+    kinds: tuple[tuple[str, ...], ...]  # kind of each equilibrium, ``"failed"`` where there is none
 
     def onset(self) -> FloatArray:
         """Least ratio of the diagram at which agents coincide, for each size; NaN where they never do."""
@@ -89,20 +76,6 @@ def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
 
 def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
     """Shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    sizes : sequence of int
-        Numbers of agents.
-    ratios : sequence of float
-        c1γ/c1α, rising.
-
-    Raises
-    ------
-    ArgumentError
-        If the ratios do not rise.
 
     Examples
     --------
@@ -186,15 +159,6 @@ def threshold(
 
 def collapse_threshold(alpha: AlphaInteraction, n: int, *, halvings: int = 4) -> tuple[float, float]:
     """Bracket the ratio c1γ/c1α from which on the relaxed spiral of n agents holds coincident pairs.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    n : int
-        Number of agents.
-    halvings : int
-        Bisections.
 
     Examples
     --------

@@ -44,15 +44,6 @@ class Descent(NamedTuple):
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """A minimum of the potential that is reached from q downhill, or a lower one if the net gives way on the way.
 
-    Parameters
-    ----------
-    potential : Potential
-        What is minimised.
-    q : ndarray, shape (n, m)
-        Start.
-    max_iter : int
-        Most Newton steps; of the cheap steps of the damped motion a hundred times as many.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -72,17 +63,6 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
 
 def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COARSE) -> FloatArray:
     """Follow x'' = −∇U with a drag that lets the motion go downhill only (FIRE: Bitzek et al. 2006).
-
-    Parameters
-    ----------
-    potential : Potential
-        U.
-    q : ndarray, shape (n, m)
-        Start.
-    steps : int
-        Most evaluations of the force.
-    tol : float
-        Relative force at which it ends.
 
     Examples
     --------
@@ -130,15 +110,6 @@ def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
     """Langevin's equation from a temperature that shakes agents out of their places down to none.
-
-    Parameters
-    ----------
-    potential : Potential
-        U.
-    q : ndarray, shape (n, m)
-        Start.
-    warm : float
-        First temperature, in units of the law's force times its length.
 
     Examples
     --------

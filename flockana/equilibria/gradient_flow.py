@@ -24,24 +24,12 @@ _ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one proce
 
 @dataclass(frozen=True)
 class GradientLimit:
-    """The limit of the gradient flow.
+    """The limit of the gradient flow."""
 
-    Attributes
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    force : float
-        Largest residual force over that of the law's `scales`.
-    time : float
-        Time of the flow that was integrated, in units of d over the force scale.
-    converged : bool
-        Whether `force` fell below the tolerance.
-    """
-
-    q: FloatArray
-    force: float
-    time: float
-    converged: bool
+    q: FloatArray  # shape (n, m)
+    force: float  # largest residual force over that of the law's `scales`
+    time: float  # time of the flow that was integrated, in units of d over the force scale
+    converged: bool  # whether `force` fell below the tolerance
 
 
 def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
@@ -57,11 +45,6 @@ def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
 
 def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
     """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method.
-
-    Raises
-    ------
-    SolverError
-        Where the force is not finite.
 
     Examples
     --------

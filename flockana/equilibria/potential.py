@@ -51,13 +51,6 @@ class Potential:
     """Σ U^T over the terms of a law at one time: V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2),
     V_α + V_β + V_γ (Algorithm 3), c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
 
-    Parameters
-    ----------
-    law : SumOfTerms
-        The law, from `ensure_flock_law`.
-    t : float
-        When: a γ-agent may move.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -65,8 +58,8 @@ class Potential:
     [0.0, 0.0]
     """
 
-    law: SumOfTerms
-    t: float = 0.0
+    law: SumOfTerms  # the law, from `ensure_flock_law`
+    t: float = 0.0  # when: a γ-agent may move
 
     @property
     def pinned(self) -> bool:

@@ -12,10 +12,10 @@ import numpy as np
 
 from flockana.base.errors import FileError, FlockanaError, SolverError
 from flockana.base.files import read_whole, write_whole
-from flockana.base.seals import SEAL, opened, sealed
+from flockana.base.seals import with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.solve import Equilibrium, finish
+from flockana.equilibria.solve import Equilibrium, ensure_found, finish
 
 _FORMAT = "flockana equilibrium 1"
 _EXPECTED = f"expected JSON of the format {_FORMAT!r}, as 'flockana equilibrium SOURCE -o FILE' writes it"
@@ -26,6 +26,7 @@ _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on an
 
 def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
     """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly."""
+    ensure_found("equilibrium", equilibrium)
     data = {
         "format": _FORMAT,
         "law": to_data(equilibrium.law),
@@ -37,7 +38,7 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
         "rigid_modes": equilibrium.rigid_modes,
         "hessian_eigenvalues": equilibrium.hessian_eigenvalues.tolist(),
     }
-    write_whole(path, json.dumps(sealed(data), indent=1) + "\n")
+    write_whole(path, json.dumps(with_digest(data), indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
@@ -47,7 +48,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
         equilibrium = finish(Potential(law), q, True, "read from a file and verified")
         _compare(equilibrium, data)
-        _ensure_unharmed(data)
+        without_digest(data, keys=_KEYS)
     except SolverError as error:  # whose advice is for those who seek one
         raise _not_one(path, f"its positions are none of its law; {_REMEDY}") from error
     except KeyError as error:
@@ -74,15 +75,6 @@ def _read(path: str | Path) -> dict[str, Any]:
 
 def _not_one(path: str | Path, reason: object) -> FileError:
     return FileError(f"{path} holds no equilibrium: {reason}")
-
-
-def _ensure_unharmed(data: dict[str, Any]) -> None:
-    """Raise unless the file is as it was written; one without a digest is of before there were any."""
-    unknown = sorted({*data} - {*_KEYS, SEAL})
-    if unknown:
-        raise ValueError(f"it holds {', '.join(unknown)}, which no equilibrium has")
-    if SEAL in data:
-        opened(data)
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:

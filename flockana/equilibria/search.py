@@ -80,40 +80,21 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
 
 @dataclass(frozen=True)
 class Distinct:
-    """An equilibrium that a search came to, once or more often.
+    """An equilibrium that a search came to, once or more often."""
 
-    Parameters
-    ----------
-    equilibrium : Equilibrium
-        The first of those that are the same but for a rigid motion and the numbering.
-    count : int
-        How many starts ended there.
-    coincident : int
-        Pairs of its agents at one place.
-    """
-
-    equilibrium: Equilibrium
-    count: int
-    coincident: int
+    equilibrium: Equilibrium  # the first of those that are the same but for a rigid motion and the numbering
+    count: int  # how many starts ended there
+    coincident: int  # pairs of its agents at one place
 
 
 @dataclass(frozen=True)
 class Search:
-    """The distinct equilibria that many starts lead to.
+    """The distinct equilibria that many starts lead to."""
 
-    Parameters
-    ----------
-    found : tuple of Distinct
-        Distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only.
-    starts : int
-        How many starts there were.
-    failures : tuple of str
-        Messages of the solves that found nothing.
-    """
-
+    # distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only
     found: tuple[Distinct, ...]
-    starts: int
-    failures: tuple[str, ...] = field(default=(), repr=False)
+    starts: int  # how many starts there were
+    failures: tuple[str, ...] = field(default=(), repr=False)  # messages of the solves that found nothing
 
     @property
     def best(self) -> Equilibrium:

@@ -20,6 +20,7 @@ from flockana.base.checks import (
     ensure_positive,
 )
 from flockana.base.errors import SolverError
+from flockana.base.seals import ensure_sealed, sealed
 from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
@@ -52,8 +53,6 @@ class Equilibrium:
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
-        The law.
     q : ndarray, shape (n, m)
         Positions; under Algorithm 2 with one c1γ their centre is the γ-agent.
     energy : float
@@ -152,10 +151,6 @@ def find_equilibrium(
     strict : bool
         Raise on failure; else return the last point with ``success=False`` and the reason.
 
-    Returns
-    -------
-    Equilibrium
-
     Raises
     ------
     ArgumentError
@@ -217,7 +212,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         )
     modes = spectrum(potential, q)
     q.setflags(write=False)
-    return Equilibrium(
+    found = Equilibrium(
         law=potential.law,
         q=q,
         energy=potential.energy(q),
@@ -231,6 +226,13 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         success=success,
         message=message,
     )
+    return sealed(found)
+
+
+def ensure_found(name: str, equilibrium: Equilibrium) -> None:
+    """Raise unless an equilibrium is as it was found."""
+    source = "one as find_equilibrium returned it or read it from a file"
+    ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
 
 
 def _fixed_in_space(potential: Potential) -> bool:

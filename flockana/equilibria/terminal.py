@@ -21,44 +21,24 @@ _ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
 @dataclass(frozen=True)
 class TerminalState:
-    """The geometry and the second-order character of a configuration under Algorithm 1 or 2.
+    """The geometry and the second-order character of a configuration under Algorithm 1 or 2."""
 
-    Attributes
-    ----------
-    force : float
-        Largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`.
-    mismatch : float
-        K̃ = K/n.
-    strain : float
-        Largest |link − d|/d, NaN without links.
-    shortest, longest : float
-        Link lengths, NaN without links.
-    links : int
-        Number of links.
-    coincident : int
-        Number of pairs closer than 1e-9 d.
-    connected : bool
-        Whether the net is connected.
-    curvature : float
-        Smallest Hessian eigenvalue of V (Algorithm 1) or U_λ (Algorithm 2) off the rigid motions, over the largest.
-    curvature_error : float
-        By how much rounding, and the way that the force left here still is from an equilibrium, may change it; infinite
-        where no equilibrium is near.
-    distance : float
-        Bound of the distance to the strict minimum beside this state, over all coordinates, over d; infinite where
-        there is none.
-    """
-
+    # largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`
     force: float
-    mismatch: float
-    strain: float
-    shortest: float
+    mismatch: float  # K̃ = K/n
+    strain: float  # largest |link − d|/d, NaN without links
+    shortest: float  # shortest, longest: Link lengths, NaN without links
     longest: float
-    links: int
-    coincident: int
-    connected: bool
+    links: int  # number of links
+    coincident: int  # number of pairs closer than 1e-9 d
+    connected: bool  # whether the net is connected
+    # smallest Hessian eigenvalue of V (Algorithm 1) or U_λ (Algorithm 2) off the rigid motions, over the largest
     curvature: float
+    # by how much rounding, and the way that the force left here still is from an equilibrium, may change it; infinite
+    # where no equilibrium is near
     curvature_error: float
+    # bound of the distance to the strict minimum beside this state, over all coordinates, over d; infinite where there
+    # is none
     distance: float
 
 

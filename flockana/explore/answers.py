@@ -33,24 +33,7 @@ _SQUEEZED = 400  # agents up to which the collapse threshold is sought, in the p
 
 
 def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool]) -> None:
-    """Run a case and tell all about it; ends early where something is wrong, which is told.
-
-    Parameters
-    ----------
-    asked : Case or mapping
-        A case, or what a page sent.
-    send : callable
-        ``send(kind, content)`` with kinds form, run (bytes), ran, verdict, poles, threshold, error, done.
-    limit : float
-        Seconds that the run may take.
-    cancelled : callable
-        Whether to stop.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If it was cancelled.
-    """
+    """Run a case and tell all about it; ends early where something is wrong, which is told."""
     try:
         case = asked if isinstance(asked, Case) else Case.of(asked)
         parts = case.parts
@@ -75,15 +58,7 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
 
 
 def form(case: Case, parts: Start) -> dict[str, Any]:
-    """What a page lets one change, with the Python that does the same.
-
-    Parameters
-    ----------
-    case : Case
-        What is asked for.
-    parts : Start
-        Of it.
-    """
+    """What a page lets one change, with the Python that does the same."""
     usual = {number.path: number.value for number in numbers(case.start().law)}
     listed = [
         {"path": each.path, "value": each.value, "usual": usual.get(each.path), "place": each.place}
@@ -133,13 +108,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
 
 
 def poles(run: Trajectory) -> dict[str, Any]:
-    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """Poles and slowest modes at the end of a run: of the equilibrium near it, or as if the flock stood still there."""
     law, q = run.law.continuous, run.q[-1]
     if law is None:
         return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}

@@ -19,28 +19,6 @@ _KEYS = ("kind", "name", "seed", "n", "m", "duration", "changes", "moved")
 class Case:
     """A start and what was changed of it.
 
-    Parameters
-    ----------
-    kind : {"scenario", "law", "file"}
-        What it starts from.
-    name : str
-        Of the scenario or law; a file's path.
-    seed : int
-        Of a random start.
-    n, m : int
-        Agents and dimensions, of a law.
-    duration : float, optional
-        Time to integrate over, if it is not the start's own.
-    changes : mapping of str to object
-        Numbers of the law by path (`flockana.explore.parameters`).
-    moved : mapping of int to sequence of float
-        Places of agents by number.
-
-    Raises
-    ------
-    ArgumentError
-        On anything else.
-
     Examples
     --------
     >>> case = Case("scenario", "hexagon", duration=2.0, changes={"gains.c1_alpha": 9.0}, moved={0: (1.0, 2.0)})
@@ -48,14 +26,15 @@ class Case:
     (9.0, [1.0, 2.0], (0.0, 2.0))
     """
 
-    kind: str
-    name: str
+    kind: str  # what it starts from
+    name: str  # of the scenario or law; a file's path
     seed: int = 0
-    n: int = 50
+    n: int = 50  # n, m: Agents and dimensions, of a law
     m: int = 2
-    duration: float | None = None
+    duration: float | None = None  # time to integrate over, if it is not the start's own
+    # numbers of the law by path (`flockana.explore.parameters`)
     changes: Mapping[str, Any] = field(default_factory=dict)
-    moved: Mapping[int, Any] = field(default_factory=dict)
+    moved: Mapping[int, Any] = field(default_factory=dict)  # places of agents by number
 
     def __post_init__(self) -> None:
         ensure_choice("kind", self.kind, KINDS)
@@ -74,18 +53,7 @@ class Case:
 
     @classmethod
     def of(cls, asked: Any) -> Case:
-        """A case from what a page sent.
-
-        Parameters
-        ----------
-        asked : mapping
-            Plain data.
-
-        Raises
-        ------
-        ArgumentError
-            On anything that is no case.
-        """
+        """A case from what a page sent."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
         moved = asked.get("moved") or {}
@@ -131,11 +99,6 @@ class Case:
 
 def program(parts: Start) -> str:
     """Python that does the same as a page: simulates, and checks the same theorems.
-
-    Parameters
-    ----------
-    parts : Start
-        Of a case.
 
     Examples
     --------

@@ -20,15 +20,7 @@ def _text(name: str) -> str:
 
 
 def page(first: dict[str, Any], nonce: str) -> str:
-    """The page.
-
-    Parameters
-    ----------
-    first : dict
-        The case that it begins with.
-    nonce : str
-        Of its scripts: the page runs no others.
-    """
+    """The page."""
     kinds = {"scenario": {name: _titles()[name] for name in scenarios()}, "law": {name: name for name in law_names()}}
     if first["kind"] == "file":
         kinds["file"] = {first["name"]: first["name"]}

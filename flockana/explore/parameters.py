@@ -24,30 +24,15 @@ _COMPONENTS = 3
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or a short vector, in a law.
+    """A number, or a short vector, in a law."""
 
-    Parameters
-    ----------
-    path : str
-        Names of fields and numbers in tuples, such as ``"gains.c1_gamma"`` or ``"obstacles.0.centre"``.
-    value : bool, int, float or tuple of float
-        As it is.
-    place : bool
-        Whether it is where an obstacle or a target is, so that a page may let it be dragged.
-    """
-
-    path: str
-    value: Value
-    place: bool = False
+    path: str  # names of fields and numbers in tuples, such as ``"gains.c1_gamma"`` or ``"obstacles.0.centre"``
+    value: Value  # as it is
+    place: bool = False  # whether it is where an obstacle or a target is, so that a page may let it be dragged
 
 
 def numbers(law: Any) -> tuple[Number, ...]:
     """Every number and short vector among the parameters of a law, and of what they are made of.
-
-    Parameters
-    ----------
-    law : object
-        A law, or another frozen parameter object.
 
     Examples
     --------
@@ -82,20 +67,6 @@ def _is_vector(item: Any) -> bool:
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
     """Changes by path as a tree, each checked to be a value of the kind that it replaces.
 
-    Parameters
-    ----------
-    law : object
-        Whose numbers they change.
-    changes : mapping of str to object
-        New values by path.
-
-    Raises
-    ------
-    UnknownNameError
-        If the law has no number of that path.
-    ArgumentError
-        If a value is no finite number, or no vector of as many components.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -129,18 +100,6 @@ def _like(path: str, old: Value, given: Any) -> Value:
 def changed(item: Any, tree: Tree) -> Any:
     """A law with other numbers; its classes check them.
 
-    Parameters
-    ----------
-    item : object
-        The law, or a part of it.
-    tree : dict
-        From `tree_of`.
-
-    Raises
-    ------
-    ArgumentError
-        On a number that a class does not take.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -158,15 +117,6 @@ def changed(item: Any, tree: Tree) -> Any:
 
 def expression(name: str, item: Any, tree: Tree) -> str:
     """The same as Python: an expression of the changed law.
-
-    Parameters
-    ----------
-    name : str
-        Expression of the unchanged one.
-    item : object
-        The unchanged one.
-    tree : dict
-        From `tree_of`.
 
     Examples
     --------

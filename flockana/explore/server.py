@@ -80,20 +80,10 @@ class Process:
 
 @dataclass
 class Server:
-    """What all tabs share.
+    """What all tabs share."""
 
-    Parameters
-    ----------
-    token : str
-        Whoever does not know it is turned away.
-    first : dict
-        The case that a page begins with.
-    limit : float
-        Seconds that a run may take.
-    """
-
-    token: str
-    first: dict[str, Any]
+    token: str  # whoever does not know it is turned away
+    first: dict[str, Any]  # the case that a page begins with
     limit: float
     tabs: set[Any] = field(default_factory=set)
     spare: Process | None = None
@@ -258,22 +248,7 @@ def kept_token() -> str:
 
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
-    """Serve until cancelled.
-
-    Parameters
-    ----------
-    server : Server
-        Token, first case, limit.
-    port : int
-        On the loopback address; 0 for any that is free.
-    opened : callable
-        Told the address.
-
-    Raises
-    ------
-    ArgumentError
-        If another program has the port.
-    """
+    """Serve until cancelled."""
     routes = [("/", _Page), ("/socket", _Tab)]
     application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)

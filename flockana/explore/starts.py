@@ -32,46 +32,21 @@ FILES = (".nc", ".json")
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """A law, a flock and a time span, before anything is changed.
-
-    Parameters
-    ----------
-    title : str
-        In words.
-    law : Law or DiscreteLaw
-        What moves the flock.
-    q0, p0 : ndarray, shape (n, m)
-        The flock.
-    t_span : (float, float)
-        Start and end.
-    lines : tuple of str
-        Python that makes ``law, q0, p0, t_span, options``, where flockana is ``fl`` and numpy is ``np``.
-    options : mapping
-        Keyword arguments of `simulate`.
-    theorems : tuple of str
-        Ids of those that are checked.
-    tolerances : Tolerances
-        Thresholds of the verdicts.
-    tolerances_text : str
-        These as an expression; empty for the usual ones.
-    recorded : Trajectory, optional
-        The run of a file, which is shown until something is changed.
-    source : Scenario, optional
-        One whose source reports something of the run, as long as nothing is changed.
-    """
+    """A law, a flock and a time span, before anything is changed."""
 
     title: str
     law: Any
-    q0: FloatArray
+    q0: FloatArray  # q0, p0: shape (n, m): the flock
     p0: FloatArray
     t_span: tuple[float, float]
+    # python that makes ``law, q0, p0, t_span, options``, where flockana is ``fl`` and numpy is ``np``
     lines: tuple[str, ...]
     options: Mapping[str, Any] = field(default_factory=dict)
-    theorems: tuple[str, ...] = ()
+    theorems: tuple[str, ...] = ()  # ids of those that are checked
     tolerances: Tolerances = field(default_factory=Tolerances)
-    tolerances_text: str = ""
-    recorded: Trajectory | None = None
-    source: Scenario | None = None
+    tolerances_text: str = ""  # these as an expression; empty for the usual ones
+    recorded: Trajectory | None = None  # the run of a file, which is shown until something is changed
+    source: Scenario | None = None  # one whose source reports something of the run, as long as nothing is changed
 
 
 def law_names() -> tuple[str, ...]:
@@ -106,20 +81,6 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
     """A law of its usual parameters, and agents spread over a square at random.
 
-    Parameters
-    ----------
-    name : str
-        One of `law_names`.
-    n, m : int
-        Agents and dimensions.
-    seed : int
-        Of the flock, >= 0.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such law.
-
     Examples
     --------
     >>> from_law("Algorithm1", n=7).q0.shape
@@ -149,13 +110,6 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
 def from_scenario(name: str, *, seed: int = 0) -> Start:
     """A scenario of the catalogue.
 
-    Parameters
-    ----------
-    name : str
-        Its name.
-    seed : int
-        Of its random start.
-
     Examples
     --------
     >>> from_scenario("hexagon").theorems[0]
@@ -173,18 +127,7 @@ def from_scenario(name: str, *, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=1)
 def from_file(path: str) -> Start:
-    """A saved run (.nc), or a counterexample (.json).
-
-    Parameters
-    ----------
-    path : path-like
-        The file.
-
-    Raises
-    ------
-    FileError
-        If it holds neither.
-    """
+    """A saved run (.nc), or a counterexample (.json)."""
     if Path(path).suffix == ".json":
         found = Counterexample.load(path)
         lines: tuple[str, ...] = (
@@ -212,11 +155,6 @@ def from_file(path: str) -> Start:
 @cache
 def theorems_of(law: str) -> tuple[str, ...]:
     """Ids of the theorems that the catalogue checks on runs of a kind of law; errata are about runs of their own.
-
-    Parameters
-    ----------
-    law : str
-        Name of its class.
 
     Examples
     --------

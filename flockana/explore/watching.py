@@ -28,18 +28,7 @@ class TooLargeError(ArgumentError):
 
 
 def ensure_small(parts: Start) -> None:
-    """Raise before a run of more agents than a page can show.
-
-    Parameters
-    ----------
-    parts : Start
-        What is to be run.
-
-    Raises
-    ------
-    TooLargeError
-        If they are too many.
-    """
+    """Raise before a run of more agents than a page can show."""
     n, m = parts.q0.shape
     if n > AGENTS:
         megabytes = 8e-6 * 2 * n * m * _FRAMES
@@ -50,26 +39,7 @@ def ensure_small(parts: Start) -> None:
 
 
 def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancelled: Callable[[], bool]) -> Trajectory:
-    """The run, shown while it is made.
-
-    Parameters
-    ----------
-    parts : Start
-        What is to be run.
-    show : callable
-        Takes what the player reads: of some frames of the run so far, at growing intervals, and of the whole at last.
-    limit : float
-        Seconds that it may take.
-    cancelled : callable
-        Whether to stop; asked at every sample.
-
-    Raises
-    ------
-    TooLargeError
-        If it takes longer, or is sure to.
-    KeyboardInterrupt
-        If it was cancelled.
-    """
+    """The run, shown while it is made."""
     samples: list[Sample] = []
     span = parts.t_span[1] - parts.t_span[0]
     started, due, pause = time.perf_counter(), 0.0, _FIRST
@@ -121,15 +91,7 @@ def _thin(samples: list[Sample], law: Any) -> Trajectory:
 
 
 def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
-    """A run, shown as a whole: of a long one some samples, as the strip measures each.
-
-    Parameters
-    ----------
-    run : Trajectory
-        What is shown, and returned.
-    show : callable
-        As in `watched`.
-    """
+    """A run, shown as a whole: of a long one some samples, as the strip measures each."""
     most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
     extra = {name: series[most] for name, series in run.extra.items()}
     some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra, between=None)

@@ -75,15 +75,7 @@ class Worker:
 
 
 def work(pipe: Connection, limit: float) -> None:
-    """Answer what comes until the pipe closes; what a process of the explorer does.
-
-    Parameters
-    ----------
-    pipe : Connection
-        To the server.
-    limit : float
-        Seconds that a run may take.
-    """
+    """Answer what comes until the pipe closes; what a process of the explorer does."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = Worker(pipe, limit)
     _warm()

@@ -12,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count, ensure_seed
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
+from flockana.base.seals import sealed
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
@@ -72,8 +73,6 @@ def falsify(
     surrogate : callable, optional
         ``surrogate(trajectory, claim) -> float`` in [0, 1], lower the nearer to breaking: it orders runs of equal
         margins, which counts often have. Some claims have one of ours. None is asked where unmet hypotheses lead back.
-    tolerances : Tolerances, optional
-        Thresholds of the verdicts.
     deepen : bool
         Use up the budget after a counterexample is found, for a worse one.
     executor : concurrent.futures.Executor, optional
@@ -130,7 +129,7 @@ def falsify(
     if record.best.found and not deepen:
         ended = "found"
     case = begin if record.point is None else space.case(record.point)
-    return Falsification(
+    found = Falsification(
         theorem=item.id,
         claim=record.best.claim or claim or "",
         case=case,
@@ -143,6 +142,7 @@ def falsify(
         ended=ended,
         message=record.message,
     )
+    return sealed(found)
 
 
 def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) -> None:

@@ -14,7 +14,7 @@ from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import FileError, FlockanaError
 from flockana.base.files import read_whole, write_whole
-from flockana.base.seals import SEAL, opened, sealed
+from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
@@ -46,10 +46,6 @@ class Counterexample:
         The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
-    t_span : (float, float)
-        Start and end.
-    options : mapping
-        Keyword arguments of `simulate`.
     tolerances : Tolerances
         Thresholds of the verdict.
     margin, error : float
@@ -70,6 +66,10 @@ class Counterexample:
     margin: float = math.nan
     error: float = math.nan
     version: str = __version__
+
+    def _ensure_found(self) -> None:
+        source = "one as falsify found it or Counterexample.load read it"
+        ensure_sealed("counterexample", self, source, "verify(theorem, law=, q0=, p0=, t_span=) judges any other start")
 
     def run(self) -> Trajectory:
         """Simulate the counterexample.
@@ -107,9 +107,12 @@ class Counterexample:
 
         Raises
         ------
+        ArgumentError
+            If it was changed by hand.
         KeyboardInterrupt
             If it was interrupted.
         """
+        self._ensure_found()
 
         def judge(run: Trajectory) -> Verdict:
             return self.verify(run, theorem=theorem)
@@ -119,18 +122,14 @@ class Counterexample:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON; numbers read back exactly, an existing file is replaced only when whole.
 
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-
         Raises
         ------
         FileError
             If it cannot be written.
         ArgumentError
-            If the law holds something that has no written form, such as a user's function.
+            If it was changed by hand, or the law holds something that has no written form, such as a user's function.
         """
+        self._ensure_found()
         data = {
             "format": FORMAT,
             "format_version": FORMAT_VERSION,
@@ -147,7 +146,7 @@ class Counterexample:
             "options": to_data_mapping(self.options),
             "tolerances": asdict(self.tolerances),
         }
-        return write_whole(path, json.dumps(sealed(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+        return write_whole(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
@@ -189,10 +188,10 @@ class Counterexample:
                 error=_number(data["error"]),
                 version=_text(data["flockana_version"]),
             )
-            _ensure_unharmed(data)
+            without_digest(data, keys=_KEYS)
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
-        return found
+        return sealed(found)
 
 
 def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> Verdict:
@@ -232,15 +231,6 @@ def _options(data: Any) -> dict[str, Any]:
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")
     return {key: from_data(value) for key, value in data.items()}
-
-
-def _ensure_unharmed(data: Mapping[str, Any]) -> None:
-    """Raise unless the file is as it was written; one without a digest is of before there were any."""
-    unknown = sorted({*data} - {*_KEYS, SEAL})
-    if unknown:
-        raise ValueError(f"it holds {', '.join(unknown)}, which no counterexample has")
-    if SEAL in data:
-        opened(data)
 
 
 def _number(value: Any) -> float:

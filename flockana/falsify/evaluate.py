@@ -22,24 +22,12 @@ from flockana.theorems.theorem import Lead, unmet
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Grade, deciding claim and verdict of one point of the search space.
+    """Grade, deciding claim and verdict of one point of the search space."""
 
-    Parameters
-    ----------
-    grade : float
-        What the search minimises.
-    claim : str
-        The claim that decided it.
-    verdict : Verdict or None
-        None if the run, or its check, failed.
-    message : str
-        Why it failed.
-    """
-
-    grade: float
-    claim: str = ""
-    verdict: Verdict | None = None
-    message: str = ""
+    grade: float  # what the search minimises
+    claim: str = ""  # the claim that decided it
+    verdict: Verdict | None = None  # none if the run, or its check, failed
+    message: str = ""  # why it failed
 
     @property
     def found(self) -> bool:
@@ -49,30 +37,15 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included.
-
-    Parameters
-    ----------
-    space : Space
-        The search space.
-    theorem : str or Theorem
-        The theorem.
-    tolerances : Tolerances
-        Thresholds.
-    claim : str or None
-        The claim whose grade counts; None for the least grade of all.
-    surrogate : callable or None
-        ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`.
-    scales : mapping of str to float
-        Units of the margins by claim, 1 where none is given.
-    """
+    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included."""
 
     space: Space
     theorem: str | Theorem
     tolerances: Tolerances
-    claim: str | None = None
+    claim: str | None = None  # the claim whose grade counts; None for the least grade of all
+    # ``surrogate(trajectory, claim) -> float`` in [0, 1], instead of the theorem's own `leads`
     surrogate: Lead | None = None
-    scales: Mapping[str, float] = field(default_factory=dict)
+    scales: Mapping[str, float] = field(default_factory=dict)  # units of the margins by claim, 1 where none is given
 
     def __call__(self, point: FloatArray) -> Evaluation:
         """Evaluate a point; an error becomes the grade of a failed run."""

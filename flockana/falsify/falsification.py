@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import ensure_sealed, sealed
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.counterexample import Counterexample
 from flockana.scenarios import Scenario
@@ -165,8 +166,9 @@ class Falsification:
         Raises
         ------
         ArgumentError
-            If the claim did not break.
+            If the claim did not break, or this is not as `falsify` returned it.
         """
+        ensure_sealed("falsification", self, "one as falsify returned it", "search again with falsify(...)")
         if not self.found:
             raise ArgumentError(
                 f"{self.theorem}:{self.claim} did not break (worst: {self.status}, margin {self.margin:.4g}): there is "
@@ -174,7 +176,7 @@ class Falsification:
             )
         assert self.verdict is not None
         case = self.case
-        return Counterexample(
+        found = Counterexample(
             theorem=self.theorem,
             claim=self.claim,
             scenario=self.scenario,
@@ -187,14 +189,10 @@ class Falsification:
             margin=self.margin,
             error=self.error,
         )
+        return sealed(found)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the counterexample as JSON, for `replay`.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
 
         Raises
         ------

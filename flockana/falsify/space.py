@@ -128,8 +128,6 @@ def law_parameter(law: Any, name: str) -> Any:
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
-        The law.
     name : str
         Such as ``"gains.c1_alpha"``.
     """

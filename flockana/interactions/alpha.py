@@ -12,6 +12,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
@@ -20,6 +21,11 @@ from flockana.kernels.scalars import bump, on_panels, phi, phi_integral, sigma_n
 from flockana.kernels.tables import integral_panels, panel_edges
 
 _STRENGTH_GRID = 2049
+_PROOFS = (
+    "σ₁ is analytic, and ρ_h is C¹ with ρ_h(1) = ρ_h'(1) = 0",
+    "ρ_h >= 0",
+    "ρ_h(z) > 0 for z < 1",
+)
 MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
 
 _ADJACENCY_ALPHA = lift_scalar(kernel.adjacency_alpha)
@@ -92,6 +98,9 @@ class AlphaInteraction(PairInteraction):
     unit: float = 1.0
 
     kernels = _ALPHA
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "kernels": ("sigma_norm", "bump", "phi", "phi_alpha", "phi_alpha_slope", "psi_alpha", "adjacency", "c_star")
+    }
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
@@ -130,6 +139,14 @@ class AlphaInteraction(PairInteraction):
     def c_star(self) -> float:
         """ψ_α(0)."""
         return float(self.psi_alpha(0.0))
+
+    @property
+    def facts(self) -> PairFacts:
+        """Those that the formula of φ_α has for all parameters; a derived class may change it, and names its own."""
+        if type(self) is not AlphaInteraction:
+            return super().facts
+        smooth, weight, inside = (Fact("met", text) for text in _PROOFS)
+        return PairFacts(smooth, weight, inside, (0.0, 0.0), (self.c_star, self.c_star), (0.0, 0.0))
 
     @property
     def range(self) -> float:

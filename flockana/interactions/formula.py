@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
 from flockana.interactions.formula_parts import FormulaParts, formula_parts
 from flockana.interactions.pair import PairInteraction, evaluate
@@ -17,6 +19,7 @@ from flockana.kernels.generated import generated_kernels, generated_potential
 if TYPE_CHECKING:
     from flockana.kernels.lift import PairKernels
     from flockana.symbolic.derivation import Derivation
+    from flockana.symbolic.slopes import SlopeBound
 
 _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units to rounding
 
@@ -65,6 +68,8 @@ class FormulaInteraction(PairInteraction):
     d: float = 1.0
     parameters: tuple[tuple[str, float], ...] = ()
     powers: tuple[tuple[str, int, int], ...] = ()
+
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
 
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):
@@ -116,9 +121,31 @@ class FormulaInteraction(PairInteraction):
         return self._parts.surfaces
 
     @property
+    def facts(self) -> PairFacts:
+        """What is proved of the formula over its whole range, by branch and bound; decided when first asked for."""
+        return self._parts.facts
+
+    @property
     def faults(self) -> tuple[str, ...]:
         """Where it is not C¹, does not end smoothly or has no limit, each in words."""
-        return self._parts.faults
+        none = "coincidence is excluded: the force has no limit where two agents meet"
+        return (*(() if self.coincidence else (none,)), *self.facts.faults)
+
+    def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
+        """Bounds of |dF/ds| and |da/ds| on parts of the range; infinite where none is known.
+
+        Parameters
+        ----------
+        parts : int
+            Equal parts of the range, which are split where pieces of the formula meet.
+
+        Examples
+        --------
+        >>> law = FormulaInteraction("s**2/2", r=2.0, adjacency="1 - s/r")
+        >>> [(bound.force, round(bound.adjacency, 9)) for bound in law.slopes(2)]
+        [(1.0, 0.5), (1.0, 0.5)]
+        """
+        return self._parts.slopes(parts)
 
     @property
     def coincidence(self) -> bool:
@@ -129,16 +156,6 @@ class FormulaInteraction(PairInteraction):
     def strength(self) -> float:
         """The largest force, on a grid; from d/2 on, and up to 0.9 r, where it is unbounded."""
         return self._parts.strength
-
-    @property
-    def least_weight(self) -> float:
-        """The least adjacency, on the grid of `strength`: negative where agents drive each other's velocities apart."""
-        return float(self._parts.looks[1].min())
-
-    @property
-    def c_star(self) -> float:
-        """The largest |ψ| within the range, on the grid of `strength`: what rounding of energies counts in."""
-        return self._parts.most_energy
 
     @property
     def far_potential(self) -> float:

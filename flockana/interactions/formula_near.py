@@ -60,7 +60,8 @@ def near_zero(cut: Cut, end: float) -> Near:
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
     closed = np.zeros((0, 0))
     first, second = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))
-    scale = max(abs(w) for w in (first, *(float(weight(end * share)) for share in (0.05, 0.25, 0.5))) if isfinite(w))
+    shares = (float(weight(end * share)) for share in (0.05, 0.25, 0.5))
+    scale = max((abs(w) for w in (first, *shares) if isfinite(w)), default=0.0)
     if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
         return Near("excluded", 0.0, none, closed)
     if not _cancels(cut, piece, end, scale):
@@ -89,7 +90,10 @@ def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
         parts.append((piece.potential, scale * end))
     for part, size in parts:
         plain = sp.lambdify(
-            [y, *symbols], part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))), "math"
+            [y, *symbols],
+            part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))),
+            "math",
+            dummify=True,
         )
         exact = cut.function(part)
         for share in (0.0, *(0.25**j for j in range(2, 60))):

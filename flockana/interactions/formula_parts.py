@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, Any
@@ -12,11 +12,13 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.facts import PairFacts
 from flockana.interactions.formula_near import TERMS, Near, near_zero
 from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
     from flockana.symbolic.pair_formula import Cut
+    from flockana.symbolic.slopes import SlopeBound
 
 _KEPT = 64  # formulas
 _GRID = 257  # distances at which the force is looked at
@@ -36,13 +38,27 @@ class FormulaParts:
     texts: Texts
     par: FloatArray
     panels: FloatArray
-    faults: tuple[str, ...]
     surfaces: tuple[float, ...]
     strength: float
     coincidence: bool
     holds: bool
     looks: FloatArray
-    most_energy: float
+
+    @cached_property
+    def facts(self) -> PairFacts:
+        """What is proved of the formula over its whole range."""
+        from flockana.symbolic.pair_facts import pair_facts
+
+        return pair_facts(self.cut, float(self.par[2]), self.strength, float(np.abs(self.looks[1]).max()) or 1.0)
+
+    def slopes(self, parts: int) -> tuple[SlopeBound, ...]:
+        """Bounds of the slopes of force and adjacency on parts of the range."""
+        from flockana.symbolic.slopes import slope_bounds
+
+        eps, squares = float(self.par[2]), self.par[0]
+        marks = self.cut.marks[1:-1]
+        places = [float(np.sqrt(mark * (2.0 + eps * mark))) if eps else mark for mark in marks]
+        return slope_bounds(self.cut, eps, float(np.sqrt(squares)), places, parts)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
         """Whether another formula's law is this one in other units: on the grid, its forces and weights scale."""
@@ -74,7 +90,7 @@ def formula_parts(
     view = _View(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
-    faults, jumps = view.faults(near)
+    jumps = view.jumps()
     panels = _panels(cut, view, d) if forces else near.panels
     texts, constants = _texts(cut, near, forces=forces)
     far = _far(cut, view, panels, forces=forces)
@@ -91,13 +107,11 @@ def formula_parts(
         texts,
         par,
         panels,
-        faults,
         surfaces,
         view.strength,
         near.kind != "excluded",
         view.holds(d),
         view.looks,
-        view.most_energy or view.strength * r,
     )
 
 
@@ -115,7 +129,6 @@ class _View:
         self._weights = [cut.function(piece.adjacency) for piece in cut.pieces]
         energies = [piece.potential for piece in cut.pieces]
         self._energies = [None if each is None else cut.function(each) for each in energies]
-        self.most_energy = 0.0
         self.strength, self.looks = 0.0, np.zeros((2, 0))
 
     def y(self, s: float) -> float:
@@ -158,43 +171,20 @@ class _View:
             raise ArgumentError(f"the formula has no finite real value at s = {at:g}: expected one below the range")
         poles = not isfinite(self.force(self.r, len(self.cut.pieces) - 1))
         usual = (grid >= (0.5 * d if unbounded else 0.0)) & (grid <= (0.9 * self.r if poles else self.r))
-        self.most_energy = float(np.abs(np.array(energies)[usual]).max(initial=0.0))
         self.strength = float(np.abs(self.looks[0][usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
 
     def holds(self, d: float) -> bool:
         """Whether the force repels just below a distance and attracts just above."""
         return d < self.r and self.force(d * (1.0 - 1e-3)) < 0.0 < self.force(min(d * (1.0 + 1e-3), 0.5 * (d + self.r)))
 
-    def faults(self, near: Near) -> tuple[tuple[str, ...], list[float]]:
-        """What theorems ask for and the formula lacks, and where its force jumps."""
-        found = ["coincidence is excluded: the force has no limit where two agents meet"] * (near.kind == "excluded")
-        jumps, last = [], len(self.cut.pieces) - 1
-        tallest = float(np.abs(self.looks[1]).max()) or 1.0
-        for k, mark in enumerate(self.cut.marks[1:-1]):
-            s = self.distance(mark)
-            if self._differ(s, k, self.force, self.strength):
-                found.append(f"the force jumps at s = {s:g}")
-                jumps.append(s)
-            if self._differ(s, k, self.weight, tallest):
-                found.append(f"the adjacency jumps at s = {s:g}")
-            if not self.cut.formula.forces and self._energies_differ(k, mark):
-                found.append(f"the potential jumps at s = {s:g}")
-        ends = self.force(self.r, last)
-        if not isfinite(ends):
-            found.append(f"the force has a pole at the range, s = {self.r:g}")
-        elif abs(ends) > _SMALL * self.strength:
-            found.append(f"the force does not vanish at the range, s = {self.r:g}")
-        if not abs(self.weight(self.r, last)) <= _SMALL * tallest:
-            found.append(f"the adjacency does not vanish at the range, s = {self.r:g}")
-        return tuple(found), jumps
+    def jumps(self) -> list[float]:
+        """Where the force jumps at cuts, beyond rounding of the parameters."""
+        places = [self.distance(mark) for mark in self.cut.marks[1:-1]]
+        return [s for k, s in enumerate(places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= self._small]
 
-    @staticmethod
-    def _differ(s: float, k: int, of: Any, scale: float) -> bool:
-        return not abs(of(s, k) - of(s, k + 1)) <= _SMALL * scale
-
-    def _energies_differ(self, k: int, mark: float) -> bool:
-        left, right = (float(energy(self.of_mark(mark))) for energy in self._energies[k : k + 2] if energy is not None)
-        return not abs(left - right) <= _SMALL * self.strength * self.r
+    @property
+    def _small(self) -> float:
+        return _SMALL * self.strength
 
 
 def _panels(cut: Cut, view: _View, d: float) -> FloatArray:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
+from flockana.base.facts import Fact, PairFacts
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.scalars import sigma_norm
@@ -19,6 +20,7 @@ from flockana.kernels.scalars import sigma_norm
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+PROVED = ("smooth", "weight", "inside")  # facts that a pair law without a formula may name a proof of
 Pairs = Iterable[tuple[Any, Any]]
 
 
@@ -37,6 +39,7 @@ class PairInteraction(ABC):
     """
 
     kernels: PairKernels
+    proofs: ClassVar[Mapping[str, str]] = {}  # of facts about all distances, by name: smooth, weight, inside
 
     @property
     @abstractmethod
@@ -77,6 +80,15 @@ class PairInteraction(ABC):
     def faults(self) -> tuple[str, ...]:
         """What it lacks that theorems ask for, each in words: where it is not C¹, or does not end smoothly."""
         return ()
+
+    @property
+    def facts(self) -> PairFacts:
+        """What is known of it over all distances: what `proofs` names is met, what `faults` names unmet."""
+        open_ = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
+        met = {name: Fact("met", text) for name, text in self.proofs.items()}
+        smooth = Fact("unmet", "; ".join(self.faults)) if self.faults else (open_ | met)["smooth"]
+        unknown = (-inf, inf)
+        return PairFacts(smooth, (open_ | met)["weight"], (open_ | met)["inside"], unknown, unknown, unknown)
 
     @property
     def coincidence(self) -> bool:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.facts import Fact
 from flockana.base.units import Powers
 from flockana.interactions.pair import evaluate
 from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rational_slope
@@ -21,6 +22,8 @@ class Weight(ABC):
     """A weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
 
     kernels: ClassVar[WeightKernels]
+    proof: ClassVar[str] = ""  # that it is nowhere negative
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__",)}
 
     @property
     @abstractmethod
@@ -31,6 +34,11 @@ class Weight(ABC):
     def range(self) -> float:
         """Distance from which on the weight is 0; infinite, unless it says otherwise."""
         return inf
+
+    @property
+    def sign(self) -> Fact:
+        """Whether it is nonnegative at every distance; assumed, unless `proof` names why."""
+        return Fact("met", self.proof) if self.proof else Fact("assumed", f"{type(self).__name__} names no proof of it")
 
     def __call__(self, distance: Any) -> Any:
         """The weight at some distances, a scalar or an array.
@@ -77,6 +85,7 @@ class RationalWeight(Weight):
     length: float = 1.0
 
     kernels: ClassVar[WeightKernels] = _RATIONAL
+    proof: ClassVar[str] = "K > 0 times a positive power"
     units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
 
     def __post_init__(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from pathlib import Path
@@ -15,18 +15,23 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import ensure_path
 from flockana.dynamics.trajectory import Trajectory
+from flockana.lammps.box import AXES, Box
 from flockana.laws.discrete import ensure_law
 
-_AXES = "xyz"
+_WORDS = ("element", "typelabel")  # columns of words
 _LARGEST = 2**53  # up to which every whole number is a float
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """One snapshot of a dump: step, time if it is there, and its columns by name, agents in the order of their ids."""
+    """One snapshot of a dump: step, time and box if they are there, columns by name, agents in the order of their ids.
+
+    A column of words, such as element, is NaN.
+    """
 
     step: int
     time: float | None
+    box: Box | None
     columns: dict[str, FloatArray]
 
 
@@ -34,6 +39,8 @@ def read_lammps(
     path: str | os.PathLike[str], law: Any, *, start: float = 0.0, dt: float | None = None, m: int | None = None
 ) -> Trajectory:
     """Read a text dump of style custom (id, x ..., vx ..., and fx ... if it is there) as a run of a law.
+
+    Places are xu ... where the dump has them, else x ..., which LAMMPS wraps into a periodic box and ix ... unwraps.
 
     What LAMMPS integrated need not be the law, and the run says so: ``extra["force_residual"]`` is the largest
     difference between LAMMPS's forces and the law's inputs at a sample, relative to the largest input of the law in the
@@ -63,7 +70,8 @@ def read_lammps(
     FileError
         If the file cannot be read, is no dump, is damaged, or its snapshots are not of the same agents.
     ArgumentError
-        If times or columns are missing, or the flock is not one for this law.
+        If times or columns are missing, the box is periodic and places cannot be unwrapped, or the flock is not one for
+        this law.
 
     Examples
     --------
@@ -87,14 +95,15 @@ def read_lammps(
     t = np.array([start + _time(snapshot, step, path) for snapshot in snapshots])
     _ensure_rising(t, path)
     dimension = _dimension(snapshots[0], m, path)
-    q, p = (_stacked(snapshots, names, dimension, path) for names in (("x", "xu"), ("vx",)))
-    law.check_dimension(dimension)
+    _ensure_for(law, dimension, m, path)
+    q = np.stack([_places(snapshot, dimension, path) for snapshot in snapshots])
+    p = _stacked(snapshots, "vx", dimension, path)
     law.check_agents(q.shape[1])
     flows = [law.flow(*state) for state in zip(t.tolist(), q, p, strict=True)]
     own, rates = np.array([u for u, _ in flows]), np.array([rate for _, rate in flows])
     u, extra = own, dict[str, FloatArray]()
     if "fx" in snapshots[0].columns:
-        u = _stacked(snapshots, ("fx",), dimension, path)
+        u = _stacked(snapshots, "fx", dimension, path)
         largest = float(np.abs(own).max())
         extra["force_residual"] = np.abs(u - own).max(axis=(1, 2)) / (largest if largest > 0.0 else 1.0)
     if np.isfinite(rates).all():
@@ -131,7 +140,7 @@ def _ensure_rising(t: FloatArray, path: object) -> None:
 
 def _dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
     there = 0
-    while there < 3 and ({_AXES[there], f"{_AXES[there]}u"} & snapshot.columns.keys()):
+    while there < 3 and ({AXES[there], f"{AXES[there]}u"} & snapshot.columns.keys()):
         there += 1
     if there == 0:
         raise ArgumentError(
@@ -145,14 +154,43 @@ def _dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
     return m
 
 
-def _stacked(snapshots: list[Snapshot], names: tuple[str, ...], m: int, path: object) -> FloatArray:
-    """One of q, p, u over time, (T, n, m), from the first of some names for its columns that is there."""
-    for name in names:
-        axes = [name.replace("x", axis) for axis in _AXES[:m]]
-        if all(axis in snapshots[0].columns for axis in axes):
-            return np.stack([np.stack([s.columns[axis] for axis in axes], axis=1) for s in snapshots])
-    wanted = " ".join(names[0].replace("x", axis) for axis in _AXES[:m])
-    raise ArgumentError(f"{path} has the columns {', '.join(snapshots[0].columns)}: expected {wanted} among them")
+def _ensure_for(law: Any, dimension: int, m: int | None, path: object) -> None:
+    try:
+        law.check_dimension(dimension)
+    except ArgumentError as error:
+        if m is not None or dimension < 3:
+            raise
+        raise ArgumentError(f"{error}; {path} has z; a planar run is read with m=2") from None
+
+
+def _places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
+    """Positions of a snapshot, (n, m), unwrapped."""
+    columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
+    q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
+    if snapshot.box is None or not wrapped:
+        return q
+    images = [k for k in range(3) if f"i{AXES[k]}" in columns]
+    lost = [k for k in snapshot.box.crossed(wrapped) if k not in images]
+    if lost:
+        known = "is periodic" if snapshot.box.periodic else "may be periodic"
+        faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
+        raise ArgumentError(
+            f"{path}: the box {known} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
+            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
+            "dump them, or run LAMMPS with `boundary s s s`"
+        )
+    for k in images:
+        q[:, wrapped] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped]
+    return q
+
+
+def _stacked(snapshots: list[Snapshot], name: str, m: int, path: object) -> FloatArray:
+    """p or u over time, (T, n, m)."""
+    axes = [name.replace("x", axis) for axis in AXES[:m]]
+    if not all(axis in snapshots[0].columns for axis in axes):
+        there = ", ".join(snapshots[0].columns)
+        raise ArgumentError(f"{path} has the columns {there}: expected {' '.join(axes)} among them")
+    return np.stack([np.stack([s.columns[axis] for axis in axes], axis=1) for s in snapshots])
 
 
 def _snapshots(path: Path) -> list[Snapshot]:
@@ -183,7 +221,7 @@ def _snapshots(path: Path) -> list[Snapshot]:
 
 def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
     """The snapshots of a dump, each a series of items that ends with its atoms."""
-    step, time, count = None, None, None
+    step, time, count, box = None, None, None, None
     for line in file:
         if not line.startswith("ITEM:"):
             if line.strip():
@@ -197,7 +235,9 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
         elif item[:3] == ["NUMBER", "OF", "ATOMS"]:
             count = _whole(file, "number of atoms", 1, path)
         elif item[:2] == ["BOX", "BOUNDS"]:
-            _numbers(file, 3, None, path)
+            box = Box.of(item[2:], _numbers(file, 3, None, path))
+            if box is None:
+                raise FileError(f"{path}: {line.strip()[:60]!r} has bounds that are none; expected a box of LAMMPS")
         elif item[:1] == ["UNITS"]:
             next(file, "")
         elif item[:1] == ["ATOMS"]:
@@ -205,8 +245,8 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
                 raise FileError(
                     f"{path}: atoms without a step, a number or ids; expected a dump of style custom with id"
                 )
-            yield Snapshot(step, time, _columns(file, item[1:], count, path))
-            step, time, count = None, None, None
+            yield Snapshot(step, time, box, _columns(file, item[1:], count, path))
+            step, time, count, box = None, None, None, None
         else:
             raise FileError(f"{path}: unknown item {line.strip()[:40]!r}; expected a dump of atoms, style custom")
     if step is not None:
@@ -215,7 +255,7 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
 
 def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str, FloatArray]:
     """Columns by name, the agents in the order of their ids."""
-    values = _numbers(file, count, len(names), path)
+    values = _numbers(file, count, len(names), path, words=[k for k, name in enumerate(names) if name in _WORDS])
     columns = {name: values[:, k] for k, name in enumerate(names)}
     order = np.argsort(columns["id"], kind="stable")
     if (np.diff(columns["id"][order]) == 0.0).any():
@@ -230,8 +270,8 @@ def _whole(file: TextIO, name: str, least: int, path: Path) -> int:
     return int(value)
 
 
-def _numbers(file: TextIO, rows: int, width: int | None, path: Path) -> FloatArray:
-    """The next lines as numbers, (rows, width), or an error that says what is wrong."""
+def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: Sequence[int] = ()) -> FloatArray:
+    """The next lines as numbers, (rows, width), or an error that says what is wrong; NaN in columns of words."""
     lines = list(islice(file, rows))
     cells = [line.split() for line in lines]
     width = len(cells[0]) if width is None and cells else width
@@ -240,10 +280,13 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path) -> FloatArr
     if len(lines) < rows or bad is not None or cut:
         shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
         raise FileError(f"{path}: {shown} where {rows} lines of {width} numbers were expected; was it cut off?")
+    for row in cells:
+        for k in words:
+            row[k] = "nan"
     try:
         values = np.array(cells, dtype=np.float64)
     except ValueError as error:
         raise FileError(f"{path}: {error}; expected numbers in every column") from error
-    if not np.isfinite(values).all():
+    if not np.isfinite(np.delete(values, words, axis=1)).all():
         raise FileError(f"{path}: a number that is not finite; the run of LAMMPS blew up")
     return values

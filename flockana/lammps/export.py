@@ -50,33 +50,18 @@ _LONGEST_LINE = 1000  # bytes; ours are shorter
 
 @dataclass(frozen=True)
 class LammpsExport:
-    """What `export_lammps` wrote.
+    """What `export_lammps` wrote."""
 
-    Attributes
-    ----------
-    folder : Path
-        Where.
-    files : tuple of Path
-        Input script, data file, table, and a text on what they hold.
-    force_error, energy_error : float
-        Largest error of a pair's tabulated force and energy, as LAMMPS interpolates them.
-    exact, near, missing : tuple of str
-        What the script does of the law exactly, nearly, and not at all.
-    dt : float
-        Step of the script.
-    steps : int
-        How many.
-    """
-
-    folder: Path
-    files: tuple[Path, ...]
+    folder: Path  # where
+    files: tuple[Path, ...]  # input script, data file, table, and a text on what they hold
+    # force_error, energy_error: Largest error of a pair's tabulated force and energy, as LAMMPS interpolates them
     force_error: float
     energy_error: float
-    exact: tuple[str, ...]
+    exact: tuple[str, ...]  # exact, near, missing: what the script does of the law exactly, nearly, and not at all
     near: tuple[str, ...]
     missing: tuple[str, ...]
-    dt: float
-    steps: int
+    dt: float  # step of the script
+    steps: int  # how many
 
 
 def export_lammps(
@@ -104,8 +89,6 @@ def export_lammps(
         A sum of terms with a pair term, such as Algorithm 1, 2 or 3.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities.
-    t_span : (float, float)
-        Start and end.
     folder : path
         Folder to write to; it is made if it is not there. An export from before is replaced, another's file is not.
     points : int
@@ -119,10 +102,6 @@ def export_lammps(
         Snapshots to write, beside the start.
     consensus : {"missing", "nearest"}
         What to do with a velocity consensus that LAMMPS has no style for.
-
-    Returns
-    -------
-    LammpsExport
 
     Raises
     ------

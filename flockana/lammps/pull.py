@@ -78,11 +78,6 @@ def _line(q: float, p: float) -> str:
 def pull_commands(term: Navigation) -> list[str] | None:
     """Commands that add the term to the forces, or None if LAMMPS has no formula of it.
 
-    Parameters
-    ----------
-    term : Navigation
-        The pull and the drag.
-
     Examples
     --------
     >>> from flockana.interactions import Gains

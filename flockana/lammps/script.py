@@ -30,20 +30,12 @@ class Clock:
 
 @dataclass
 class Translation:
-    """What of a law is in the script.
+    """What of a law is in the script."""
 
-    Attributes
-    ----------
-    fixes : list of str
-        Commands that add forces.
-    consensus : tuple of (gain, exponent) or None
-        A pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script.
-    exact, near, missing : list of str
-        What is the law's own, to the table's error and the step's; what is nearly; what is left out.
-    """
-
-    fixes: list[str] = field(default_factory=list)
+    fixes: list[str] = field(default_factory=list)  # commands that add forces
+    # a pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script
     consensus: tuple[float, float] | None = None
+    # exact, near, missing: what is the law's own, to the table's error and the step's; what is nearly; what is left out
     exact: list[str] = field(default_factory=list)
     near: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)

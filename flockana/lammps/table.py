@@ -21,25 +21,15 @@ _INNER, _INNER_SINGULAR = 1e-6, 0.25  # first distance: of the range, and of the
 
 @dataclass(frozen=True, eq=False)
 class PairTable:
-    """Energy and force of a pair against its distance.
+    """Energy and force of a pair against its distance."""
 
-    Attributes
-    ----------
-    r : ndarray, shape (N,)
-        Distances, from the inner cutoff to the range; their squares are evenly spaced.
-    energy, force : ndarray, shape (N,)
-        Potential, 0 at the range, and force, positive where it repels.
-    force_error, energy_error : float
-        Largest error of the linear interpolation between the points, but where the force jumps.
-    jumps : tuple of float
-        Distances within at which the force jumps: there the table rises over one of its intervals.
-    """
-
-    r: FloatArray
-    energy: FloatArray
+    r: FloatArray  # shape (N,): distances, from the inner cutoff to the range; their squares are evenly spaced
+    energy: FloatArray  # energy, force: shape (N,): potential, 0 at the range, and force, positive where it repels
     force: FloatArray
+    # force_error, energy_error: Largest error of the linear interpolation between the points, but where the force jumps
     force_error: float
     energy_error: float
+    # distances within at which the force jumps: there the table rises over one of its intervals
     jumps: tuple[float, ...]
 
     def text(self) -> str:
@@ -52,15 +42,6 @@ class PairTable:
 
 def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
     """Tabulate a pair term from a distance to its range.
-
-    Parameters
-    ----------
-    term : PairTerm
-        What to tabulate, its gain included.
-    points : int
-        Distances in the table.
-    inner : float
-        The first distance.
 
     Examples
     --------
@@ -107,30 +88,14 @@ def inner_cutoff(term: PairTerm) -> float:
 
 
 def energy_and_force(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Energy, 0 at the range, and force, positive where it repels, of a pair at each distance up to the range.
-
-    Parameters
-    ----------
-    term : PairTerm
-        The term.
-    r : ndarray, shape (N,)
-        Distances.
-    """
+    """Energy, 0 at the range, and force, positive where it repels, of a pair at each distance up to the range."""
     pair = term.pair
     energy = term.stiffness * (pair.energy_at(r) - pair.far_potential)
     return energy, -term.stiffness * _pull_and_adjacency(term, r)[0]
 
 
 def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
-    """a(r) of the term's velocity consensus at each distance up to the range.
-
-    Parameters
-    ----------
-    term : PairTerm
-        The term.
-    r : ndarray, shape (N,)
-        Distances.
-    """
+    """a(r) of the term's velocity consensus at each distance up to the range."""
     return _pull_and_adjacency(term, r)[1]
 
 

@@ -72,13 +72,6 @@ def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArra
 def line(n: int, d: float) -> FloatArray:
     """Agents on a line, d apart: n − 1 links.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    d : float
-        Distance between neighbours.
-
     Examples
     --------
     >>> line(3, 7.0).ravel().tolist()
@@ -94,8 +87,6 @@ def triangular(n: int, d: float) -> FloatArray:
     ----------
     n : int
         Number of agents; rows hold ⌈√n⌉ of them, every second one shifted by half the spacing.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -111,13 +102,6 @@ def triangular(n: int, d: float) -> FloatArray:
 
 def hexagonal_spiral(n: int, d: float) -> FloatArray:
     """The first n points of a spiral on the triangular lattice: it has Harborth's largest number of links.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    d : float
-        Distance between neighbours.
 
     Returns
     -------
@@ -145,8 +129,6 @@ def hexagonal_patch(k: int, d: float) -> FloatArray:
     ----------
     k : int
         Number of rings, >= 0.
-    d : float
-        Distance between neighbours.
 
     Returns
     -------
@@ -168,8 +150,6 @@ def square(rows: int, cols: int, d: float) -> FloatArray:
     ----------
     rows, cols : int
         Agents along y and along x.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -186,8 +166,6 @@ def honeycomb(rows: int, cols: int, d: float) -> FloatArray:
     ----------
     rows, cols : int
         Cells along either edge.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -205,8 +183,6 @@ def simple_cubic(nx: int, ny: int, nz: int, d: float) -> FloatArray:
     ----------
     nx, ny, nz : int
         Agents along each axis.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -223,8 +199,6 @@ def fcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
     ----------
     nx, ny, nz : int
         Cubes along each axis.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -243,8 +217,6 @@ def hcp(nx: int, ny: int, nz: int, d: float) -> FloatArray:
     ----------
     nx, ny, nz : int
         Cells along each axis.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------
@@ -263,8 +235,6 @@ def bcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
     ----------
     nx, ny, nz : int
         Cubes along each axis.
-    d : float
-        Distance between neighbours.
 
     Examples
     --------

@@ -17,17 +17,18 @@ equation, two links that ought to cross may miss each other by a rounding. `sepa
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.vectors import near_one
 from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
 from flockana.measures.nets import LinkArray
 
+_FARTHEST = 1e300  # where positions differ by so many orders of magnitude that no unit fits all
 _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
 
 
@@ -37,7 +38,6 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Pairs of different agents.
     limit : int, optional
@@ -64,7 +64,7 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     links = ensure_links(links, len(q))
     if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
         raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
-    exact = _Exact(q, links)
+    exact, q = _Exact(q, links), _squarable(q)
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
     for a, b, sure in crossing_blocks(q, links):
         true = sure.copy()
@@ -79,6 +79,18 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
                 break
     pairs: LinkArray = np.unique(np.concatenate(blocks), axis=0)
     return pairs if limit is None else pairs[:limit]
+
+
+def _squarable(q: FloatArray) -> FloatArray:
+    """The same positions in a unit, a power of two, in which no difference overflows."""
+    scaled, _, unit = near_one(q)
+    if (scaled * unit == q).all():
+        return scaled
+    if np.abs(q).max() < _FARTHEST:  # products that underflow or overflow are left to whole numbers
+        return q
+    raise ArgumentError(
+        f"the positions reach {np.abs(q).max():.3g}, others {np.abs(q[q != 0.0]).min():.3g}: expected one unit"
+    )
 
 
 class _Exact:
@@ -113,12 +125,13 @@ def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
     >>> turns_left(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]]), [0, 0], [1, 1], [2, 3]).tolist()
     [True, False]
     """
-    a, b = q[first] - q[centre], q[second] - q[centre]
+    near = _squarable(q)
+    a, b = near[first] - near[centre], near[second] - near[centre]
     left, right = a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]
     turns = left > right
     exact = _Exact(q, np.empty((0, 2), dtype=np.int32))
-    near = np.abs(left - right) <= _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(left) + np.abs(right))
-    for k in np.flatnonzero(near | ~np.isfinite(left - right)):
+    open_ = np.abs(left - right) <= _ROUNDINGS * np.finfo(np.float64).eps * (np.abs(left) + np.abs(right))
+    for k in np.flatnonzero(open_ | ~np.isfinite(left - right)):
         c, i, j = (exact.point(int(agents[k])) for agents in (centre, first, second))
         turns[k] = _turn(i, j, c, 0, 1) > 0
     return turns
@@ -174,7 +187,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Pairs of different agents.
     reach : float
@@ -193,7 +205,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     touching = crossings(q, links, limit=1)
     if len(touching):
         return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
-    distance, a, b = nearest_links(q, links, reach)
-    if not isfinite(distance):
-        raise ArgumentError(f"the positions reach {np.abs(q).max():.3g}: too far for distances in floating point")
-    return Separation(distance, None if a < 0 else (min(a, b), max(a, b)))
+    near, (within,), unit = near_one(q, reach)
+    distance, a, b = nearest_links(near, links, within)
+    return Separation(distance * unit, None if a < 0 else (min(a, b), max(a, b)))

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points
+from flockana.base.vectors import near_one
 from flockana.lattice.crossings import turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.measures.nets import LinkArray
@@ -21,10 +22,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -68,7 +66,6 @@ def defects(q: Any, links: Any) -> Defects:
     Parameters
     ----------
     q : array_like, shape (n, 2)
-        Positions.
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 
@@ -90,7 +87,8 @@ def defects(q: Any, links: Any) -> Defects:
 def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray[np.bool_]:
     n = len(q)
     centre, other = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
-    step = q[other] - q[centre]
+    near = near_one(q)[0]
+    step = near[other] - near[centre]
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))
     centre, other = centre[order], other[order]

@@ -52,11 +52,6 @@ class Elimination:
     definite : bool
         Give up at the first front that is not positive definite: A is not either.
 
-    Raises
-    ------
-    SolverError
-        Without `least`, if a pivot is zero to rounding, so that it has no sign; with `definite`, if A is not.
-
     Examples
     --------
     >>> from scipy.sparse import csr_array
@@ -91,13 +86,7 @@ class Elimination:
                 self._fronts.append(front)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """A⁻¹ b of a vector, or of the columns of a matrix.
-
-        Parameters
-        ----------
-        b : ndarray, shape (n m,) or (n m, k)
-            Right-hand sides.
-        """
+        """A⁻¹ b of a vector, or of the columns of a matrix."""
         x = np.array(b[self._order], dtype=np.float64)
         for rows, boundary, t, coupling, signs in self._fronts:
             y = t @ x[rows]

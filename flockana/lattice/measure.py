@@ -25,9 +25,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
     guard : float
         Relative difference from r up to which a distance counts as r; raise it for lattices far from the origin.
 
@@ -53,9 +50,6 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Returns
     -------
@@ -78,9 +72,6 @@ def strain(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Examples
     --------
@@ -96,9 +87,6 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
     tol : float
         Largest |link − d|/d that counts as rounding.
 

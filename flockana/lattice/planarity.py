@@ -19,11 +19,6 @@ _COMPILED = 3000  # links from which on the compiled search for an embedding is 
 def harborth(n: int) -> int:
     """Largest number of links of a planar α-lattice of n agents: ⌊3n − √(12n − 3)⌋   (Harborth 1974).
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-
     Examples
     --------
     >>> [harborth(n) for n in (1, 2, 3, 7, 19)]
@@ -36,11 +31,6 @@ def harborth(n: int) -> int:
 
 def planar_bound(n: int) -> int:
     """Largest number of links of a planar graph of n >= 3 agents, 3n − 6; for fewer, all there are (erratum E6).
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
 
     Examples
     --------
@@ -56,8 +46,6 @@ def is_complete(n: int, links: Any) -> bool:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
         Links; one that comes twice counts once.
 
@@ -77,10 +65,7 @@ def is_planar(n: int, links: Any) -> bool:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     See Also
     --------
@@ -122,10 +107,7 @@ def kuratowski(n: int, links: Any) -> Kuratowski | None:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     links : array_like, shape (M, 2)
-        Links.
 
     Examples
     --------

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
+from flockana.base.vectors import near_one
 from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:
@@ -54,7 +55,6 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
         Links; one of length zero has no direction, and a row of zeros.
 
@@ -69,7 +69,7 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     """
     from scipy.sparse import csr_array
 
-    q = ensure_points("q", q)
+    q = near_one(ensure_points("q", q))[0]
     links = ensure_links(links, len(q))
     m = q.shape[1]
     step = q[links[:, 1]] - q[links[:, 0]]
@@ -91,9 +91,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     links : array_like, shape (M, 2)
-        Links.
     tol : float
         Singular values below tol times the largest count as zero. Squared in the sparse way, so not below 1e-7. The
         softest true motion of a compact patch of n agents is at about 1/√n; a strip k agents long bends at about 1/k².
@@ -111,7 +109,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     >>> rigidity(square, sides).flexes, rigidity(square, [*sides, [0, 2]]).infinitesimally_rigid
     (1, True)
     """
-    q, tol = ensure_points("q", q), ensure_positive("tol", tol)
+    q, tol = near_one(ensure_points("q", q))[0], ensure_positive("tol", tol)
     matrix = rigidity_matrix(q, links)
     if dense is None:
         dense = q.size <= DENSE_MAX

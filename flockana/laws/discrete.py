@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.overrides import ensure_consistent
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.laws.law import Law, LawOfMotion
@@ -142,9 +143,11 @@ def ensure_law(law: Any) -> Law | DiscreteLaw:
     Raises
     ------
     ArgumentError
-        If it is no `Law` and no `DiscreteLaw`; a class instead of an instance is named as such.
+        If it is no `Law` and no `DiscreteLaw`; a class instead of an instance is named as such. If it, or what it is
+        made of, defines a method anew that the integrators would ignore.
     """
     if isinstance(law, Law | DiscreteLaw):
+        ensure_consistent(law)
         return law
     hint = "; did you forget the parentheses?" if isinstance(law, type) else ""
     raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(target=StaticTarget((0, 0))){hint}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, told
 from flockana.base.scales import Scales
 from flockana.interactions.pair import PairInteraction
 
@@ -39,6 +39,13 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
 
     n, m = blocks.shape[:2]
     return bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(n * m, n * m)).tocsr()
+
+
+def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
+    """Raise unless what a law gives is an array of real numbers, of the flock's shape."""
+    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
+        kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
+        raise ArgumentError(f"{what} as {kind} {at}: expected an array of real numbers of shape {shape}")
 
 
 _Term = TypeVar("_Term", bound="Term")
@@ -72,6 +79,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     """
 
     references: ClassVar[tuple[str, ...]] = ()
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
 
     if TYPE_CHECKING:
         pair: PairInteraction | None
@@ -214,6 +222,11 @@ class Law(LawOfMotion):
     `energy_rate` are the validated public face of the same functions.
     """
 
+    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "flow": ("acceleration", "energy_rate"),
+        "hamiltonian": ("energy",),
+    }
+
     @property
     def continuous(self) -> Law:
         """The law itself."""
@@ -237,6 +250,25 @@ class Law(LawOfMotion):
         self.check_agents(q.shape[0])
         return ensure_finite_scalar("t", t), q, p
 
+    def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """What `flow` gives; raise unless it is an array of real numbers in the flock's shape and a real number.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Finite positions and velocities.
+        """
+        given: Any = self.flow(t, q, p)
+        name, at = type(self).__name__, f"at t = {t:g}"
+        if not isinstance(given, tuple) or len(given) != 2:
+            raise ArgumentError(f"{name} gives {told(given)} {at}: expected (u, dH/dt)")
+        ensure_given(f"{name} gives u", given[0], q.shape, at)
+        if np.ndim(given[1]) != 0 or np.asarray(given[1]).dtype.kind not in "fiu":
+            raise ArgumentError(f"{name} gives dH/dt = {told(given[1])} {at}: expected a real number, or NaN")
+        return given
+
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Control input u(t, q, p).
 
@@ -257,7 +289,7 @@ class Law(LawOfMotion):
             On wrong shapes, values that are not finite, or agents at one place where their force has no limit.
         """
         t, q, p = self._checked(t, q, p)
-        u = self.flow(t, q, p)[0]
+        u = self.checked_flow(t, q, p)[0]
         if not np.isfinite(u).all():
             self.check_start(q, p)  # tells who is where the law has no input
         return u
@@ -284,7 +316,7 @@ class Law(LawOfMotion):
         q, p : array_like, shape (n, m)
             Positions and velocities.
         """
-        return self.flow(*self._checked(t, q, p))[1]
+        return self.checked_flow(*self._checked(t, q, p))[1]
 
     def compiled(self, m: int) -> Compiled | None:
         """The law for integrators that are compiled too (`flockana.dynamics.compiled`); None, unless it has that form.

@@ -32,29 +32,16 @@ _CHUNK = 50_000  # agent-intervals handled at once
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """The least clearance of a run.
+    """The least clearance of a run."""
 
-    Attributes
-    ----------
-    lower : float
-        Lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
-        and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles.
-    reached : float
-        Least signed distance reached on the interpolated paths: an estimate from above.
-    time : float
-        When it was reached.
-    agent, obstacle : int
-        By which agent, at which obstacle; -1 without obstacles.
-    lower_by_obstacle : ndarray, shape (K,)
-        The lower bound for each obstacle.
-    """
-
+    # lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
+    # and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles
     lower: float
-    reached: float
-    time: float
-    agent: int
+    reached: float  # least signed distance reached on the interpolated paths: an estimate from above
+    time: float  # when it was reached
+    agent: int  # agent, obstacle: by which agent, at which obstacle; -1 without obstacles
     obstacle: int
-    lower_by_obstacle: FloatArray
+    lower_by_obstacle: FloatArray  # shape (K,): the lower bound for each obstacle
 
 
 def clearance(
@@ -193,21 +180,11 @@ def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True)
 class ConstrainedLattice:
-    """How far a configuration is from a constrained α-lattice: all links d long, all β-agents at d'.
+    """How far a configuration is from a constrained α-lattice: all links d long, all β-agents at d'."""
 
-    Attributes
-    ----------
-    alpha_error : float
-        Largest |‖q_j − q_i‖ − d| over links; NaN without links.
-    beta_error : float
-        Largest |‖q̂_ik − q_i‖ − d'| over β-neighbours (within r'); NaN without any.
-    links, beta_links : int
-        How many there are of each.
-    """
-
-    alpha_error: float
-    beta_error: float
-    links: int
+    alpha_error: float  # largest |‖q_j − q_i‖ − d| over links; NaN without links
+    beta_error: float  # largest |‖q̂_ik − q_i‖ − d'| over β-neighbours (within r'); NaN without any
+    links: int  # links, beta_links: how many there are of each
     beta_links: int
 
 

@@ -20,11 +20,6 @@ def _has_leader(law: Any) -> bool:
 def following(run: Any) -> FloatArray:
     """Which agents move as their leader does at the end of a run, within 1/100 of the law's speed, shape (n,).
 
-    Parameters
-    ----------
-    run : Trajectory
-        A run of a law with a γ-agent.
-
     Examples
     --------
     >>> from flockana import Algorithm2, StaticTarget, simulate

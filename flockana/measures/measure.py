@@ -19,18 +19,10 @@ from flockana.measures.metrics import nets
 
 @dataclass(frozen=True, eq=False)
 class Flock:
-    """A flock at several instants, under its law: what measures are taken of.
-
-    Attributes
-    ----------
-    law : LawOfMotion
-        The law.
-    q, p : ndarray, shape (T, n, m)
-        Positions and velocities.
-    """
+    """A flock at several instants, under its law: what measures are taken of."""
 
     law: Any
-    q: FloatArray
+    q: FloatArray  # q, p: shape (T, n, m)
     p: FloatArray
 
     @cached_property
@@ -66,39 +58,19 @@ def has_lattice(law: Any) -> bool:
 
 @dataclass(frozen=True)
 class Measure:
-    """One measure of runs.
+    """One measure of runs."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in `Trajectory.metrics` and in ensembles.
-    text : str
-        What it is, for people.
-    unit : str
-        Its unit.
-    over_time : callable, optional
-        ``over_time(flock) -> ndarray of shape (T,)``: its value at each instant of a `Flock`.
-    of_run : callable, optional
-        ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end.
-    of_run_text : str
-        What that is, where it is not the value at the end.
-    defined : callable
-        ``defined(law)``: whether it makes sense.
-    logarithmic : bool
-        Draw it on a logarithmic axis.
-    at_most_one : bool
-        It is a share or a cosine, so that its axis ends at 1.
-    """
-
-    name: str
-    text: str
+    name: str  # its name in `Trajectory.metrics` and in ensembles
+    text: str  # what it is, for people
     unit: str = "1"
+    # ``over_time(flock) -> ndarray of shape (T,)``: its value at each instant of a `Flock`
     over_time: Callable[[Flock], FloatArray] | None = None
+    # ``of_run(trajectory) -> float``: what an ensemble keeps of a run; by default the value at the end
     of_run: Callable[[Any], float] | None = None
-    of_run_text: str = ""
-    defined: Callable[[Any], bool] = any_law
-    logarithmic: bool = False
-    at_most_one: bool = False
+    of_run_text: str = ""  # what that is, where it is not the value at the end
+    defined: Callable[[Any], bool] = any_law  # ``defined(law)``: whether it makes sense
+    logarithmic: bool = False  # draw it on a logarithmic axis
+    at_most_one: bool = False  # it is a share or a cosine, so that its axis ends at 1
 
     @property
     def label(self) -> str:
@@ -111,13 +83,7 @@ class Measure:
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:
-        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law.
-
-        Parameters
-        ----------
-        run : Trajectory
-            The run.
-        """
+        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law."""
         if not self.defined(run.law):
             return nan
         if self.of_run is not None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.vectors import centres, lengths
+from flockana.base.vectors import centres, lengths, near_one
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
@@ -22,9 +22,6 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Examples
     --------
@@ -36,13 +33,14 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
+    q, (d, r), unit = near_one(q, d, r)
     n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
     for first, second in pair_blocks(q, r):
         unite(known, first, second)
         count, excess = count + first.size, excess + squared_excess(q, first, second, d)
     sizes = np.bincount(labelled(known))
     connectivity = 1.0 if n == 1 else (n - sizes.size) / (n - 1)
-    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1)
+    return connectivity, float(sizes.max()) / n, 2.0 * excess / (2 * count + 1) * unit * unit
 
 
 def connectivity(q: Any, r: float) -> float:
@@ -51,9 +49,6 @@ def connectivity(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Returns
     -------
@@ -74,9 +69,6 @@ def giant_share(q: Any, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    r : float
-        Interaction range.
 
     Examples
     --------
@@ -92,7 +84,6 @@ def cohesion_radius(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -108,9 +99,6 @@ def deviation_energy(q: Any, d: float, r: float) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
 
     Returns
     -------
@@ -131,7 +119,6 @@ def velocity_mismatch(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -147,7 +134,6 @@ def inertia(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -163,7 +149,6 @@ def min_distance(q: Any) -> float:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -200,7 +185,6 @@ def order(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -218,7 +202,6 @@ def coordination(p: Any) -> float:
     Parameters
     ----------
     p : array_like, shape (n, m)
-        Velocities.
 
     Examples
     --------
@@ -234,7 +217,6 @@ def coincident_pairs(q: Any, tol: float) -> int:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     tol : float
         Distance below which two agents count as coincident.
 
@@ -244,7 +226,8 @@ def coincident_pairs(q: Any, tol: float) -> int:
     3
     """
     q = ensure_points("q", q)
-    return sum(i.size for i, _ in pair_blocks(q, ensure_positive("tol", tol)))
+    q, (tol,), _ = near_one(q, ensure_positive("tol", tol))
+    return sum(i.size for i, _ in pair_blocks(q, tol))
 
 
 def pairs_at_one_place(q: Any) -> int:
@@ -253,7 +236,6 @@ def pairs_at_one_place(q: Any) -> int:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -273,9 +255,6 @@ def nets(q: FloatArray, d: float, r: float) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
-    d, r : float
-        Desired distance and interaction range.
     """
     return np.array([_net_measures(x, d, r) for x in q]).T
 
@@ -286,9 +265,9 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
-    radii: FloatArray = lengths(_centred(q)).max(axis=1)
+    q, _, unit = near_one(q)
+    radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
     return radii
 
 
@@ -310,14 +289,14 @@ def min_distances(q: FloatArray) -> FloatArray:
     Parameters
     ----------
     q : ndarray, shape (T, n, m)
-        Positions.
     """
+    q, _, unit = near_one(q)
     if q.shape[1] < _TREE:
-        distances: FloatArray = least_distances(q)
+        distances: FloatArray = least_distances(q) * unit
         return distances
     from scipy.spatial import KDTree
 
-    return np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
+    return unit * np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
 def diameters(x: FloatArray) -> FloatArray:
@@ -328,7 +307,8 @@ def diameters(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    distances: FloatArray = greatest_distances(np.ascontiguousarray(x))
+    x, _, unit = near_one(x)
+    distances: FloatArray = greatest_distances(np.ascontiguousarray(x)) * unit
     return distances
 
 
@@ -338,7 +318,6 @@ def orders(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     return lengths(centres(_headings(p)))
 
@@ -349,7 +328,6 @@ def coordinations(p: FloatArray) -> FloatArray:
     Parameters
     ----------
     p : ndarray, shape (T, n, m)
-        Velocities.
     """
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once

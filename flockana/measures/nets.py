@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
-from flockana.base.vectors import lengths
+from flockana.base.vectors import lengths, near_one
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.rank import rank_modulo
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+_PRIME = 2147483647  # a rank modulo 2³¹ − 1 is exact unless that divides every minor of its size
 LinkArray = npt.NDArray[np.int32]
 
 
@@ -29,7 +29,6 @@ def links(q: Any, r: float) -> LinkArray:
     Parameters
     ----------
     q : array_like, shape (n, m)
-        Positions.
     r : float
         Interaction range; strict.
 
@@ -42,25 +41,20 @@ def links(q: Any, r: float) -> LinkArray:
     >>> links([[0.0], [1.0], [2.5]], 1.2).tolist()
     [[0, 1]]
     """
-    return np.column_stack(pair_list(ensure_points("q", q), ensure_positive("r", r)))
+    q, (r,), _ = near_one(ensure_points("q", q), ensure_positive("r", r))
+    return np.column_stack(pair_list(q, r))
 
 
 def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     """Euclidean length of each link.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    pairs : int array, shape (M, 2)
-        Links.
 
     Examples
     --------
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    return lengths(q[pairs[:, 1]] - q[pairs[:, 0]])
+    q, _, unit = near_one(q)
+    return lengths(q[pairs[:, 1]] - q[pairs[:, 0]]) * unit
 
 
 def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
@@ -68,10 +62,7 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     pairs : int array, shape (M, 2)
-        Links.
 
     Examples
     --------
@@ -90,10 +81,7 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     pairs : int array, shape (M, 2)
-        Links.
     weights : ndarray, shape (M,), optional
         a_ij of each link; 1 by default.
 
@@ -118,13 +106,6 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
     With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
     for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links; with none the share is NaN.
-
     Examples
     --------
     >>> printed_edge_share(3, np.array([[0, 1]], dtype=np.int32))
@@ -140,16 +121,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
-    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8); dense, for small n.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
-    typeset : bool
-        The matrix that the code as typeset keeps: a unit diagonal but for the last agent, not a zero one.
+    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8).
 
     Examples
     --------
@@ -161,9 +133,11 @@ def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False
     >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
     True
     """
+    from flint import nmod_mat
+
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)
-    adjacency = np.eye(n, dtype=np.int64) if typeset else np.zeros((n, n), dtype=np.int64)
-    adjacency[-1, -1] = 0
-    adjacency[pairs[:, 0], pairs[:, 1]] = adjacency[pairs[:, 1], pairs[:, 0]] = 1
-    return float(rank_modulo(adjacency)) / n
+    adjacency = nmod_mat(n, n, _PRIME)
+    for i, j in [*pairs.tolist(), *((k, k) for k in range(n - 1) if typeset)]:
+        adjacency[i, j] = adjacency[j, i] = 1
+    return float(adjacency.rank()) / n

@@ -23,28 +23,15 @@ RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance
 
 @dataclass(frozen=True, eq=False)
 class ClosestApproach:
-    """The closest two agents come over a run.
+    """The closest two agents come over a run."""
 
-    Attributes
-    ----------
-    lower : float
-        Lower bound of every pair's distance at every time of the run, given the integrator's accuracy and samples that
-        resolve the motion.
-    distance : float
-        Distance that was reached on the interpolated path: an estimate from above.
-    time : float
-        When.
-    pair : tuple of int
-        Which two agents; (-1, -1) if there is but one.
-    lower_by_interval : ndarray, shape (T - 1,)
-        The lower bound for each interval between samples.
-    """
-
+    # lower bound of every pair's distance at every time of the run, given the integrator's accuracy and samples that
+    # resolve the motion
     lower: float
-    distance: float
-    time: float
-    pair: tuple[int, int]
-    lower_by_interval: FloatArray
+    distance: float  # distance that was reached on the interpolated path: an estimate from above
+    time: float  # when
+    pair: tuple[int, int]  # which two agents; (-1, -1) if there is but one
+    lower_by_interval: FloatArray  # shape (T - 1,): the lower bound for each interval between samples
 
 
 def closest_approach(
@@ -132,22 +119,12 @@ def cohesion_bound(
 
 @dataclass(frozen=True)
 class Contact:
-    """Two agents within the contact tolerance of each other at a time.
+    """Two agents within the contact tolerance of each other at a time."""
 
-    Attributes
-    ----------
-    i, j : int
-        The agents, i < j.
-    time : float
-        First time at which they are within the tolerance.
-    crossed : bool
-        True if their order on the line changed between two samples (m = 1): then they certainly met.
-    """
-
-    i: int
+    i: int  # i, j: the agents, i < j
     j: int
-    time: float
-    crossed: bool
+    time: float  # first time at which they are within the tolerance
+    crossed: bool  # true if their order on the line changed between two samples (m = 1): then they certainly met
 
 
 def contacts(

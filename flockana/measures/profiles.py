@@ -17,18 +17,6 @@ QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
     """Quantiles of the distances of all pairs at each instant, shape (T, number of shares); NaN for one agent.
 
-    Parameters
-    ----------
-    q : array_like, shape (T, n, m)
-        Positions over time.
-    shares : sequence of float
-        Shares of the pairs, in [0, 1]: 0 is the least distance, 0.5 the median, 1 the largest distance.
-
-    Raises
-    ------
-    ArgumentError
-        If q has another shape, or a share is outside [0, 1].
-
     Examples
     --------
     >>> pair_distance_profile([[[0.0], [1.0], [3.0]]], (0.0, 0.5, 1.0)).tolist()

@@ -88,15 +88,10 @@ def reynolds(q: Any, p: Any, *, alpha: AlphaInteraction | None = None, gains: Ga
     Parameters
     ----------
     q, p : array_like, shape (n, m)
-        Positions and velocities.
     alpha : AlphaInteraction, optional
         The pair law; the paper's by default.
     gains : Gains, optional
         c1_alpha and c2_alpha are used.
-
-    Returns
-    -------
-    Reynolds
 
     Examples
     --------

@@ -19,8 +19,6 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
 
     Parameters
     ----------
-    n : int
-        Number of agents.
     nets : iterable of int array, shape (M, 2)
         Links at each instant.
 
@@ -68,16 +66,6 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     """Windows of a run's samples over which its nets are jointly connected.
 
     A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-
-    Raises
-    ------
-    ArgumentError
-        If the law has no net.
     """
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")

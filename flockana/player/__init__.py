@@ -23,24 +23,13 @@ __all__ = ["Player", "marks_of", "page", "scene", "script", "style"]
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """A run to watch: a notebook shows it, and keeps it when it is exported as HTML.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    height : int
-        Of the frame in a notebook, in pixels.
-    values : int
-        Numbers of places and velocities that are kept at most; of a longer run some samples are left out.
-    verdicts : sequence of Verdict
-        On the run: the instants that their claims point to are marked.
-    """
+    """A run to watch: a notebook shows it, and keeps it when it is exported as HTML."""
 
     trajectory: Trajectory
-    height: int = 760
+    height: int = 760  # of the frame in a notebook, in pixels
+    # numbers of places and velocities that are kept at most; of a longer run some samples are left out
     values: int = 240_000
-    verdicts: Sequence[Verdict] = ()
+    verdicts: Sequence[Verdict] = ()  # on the run: the instants that their claims point to are marked
 
     def __post_init__(self) -> None:
         for name in ("height", "values"):
@@ -59,13 +48,7 @@ class Player:
         return scene(self.trajectory, values=self.values, marks=marks_of(self.trajectory, self.verdicts))
 
     def save(self, path: str) -> Path:
-        """Write that page; an existing file is replaced only when the new one is whole.
-
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-        """
+        """Write that page; an existing file is replaced only when the new one is whole."""
         target = Path(path)
         with replacing(target, remedy="choose another file") as partial:
             partial.write_text(self.html(), encoding="utf-8")
@@ -80,11 +63,6 @@ class Player:
 
         A notebook with it that is exported to HTML fetches what shows widgets from the network; of the player itself
         the export needs nothing.
-
-        Raises
-        ------
-        ArgumentError
-            If anywidget is not installed.
         """
         try:
             import anywidget

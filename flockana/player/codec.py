@@ -25,34 +25,14 @@ _STEPS = 2.0**30  # more of them in one array than this would not fit 32 bits
 
 @dataclass(frozen=True)
 class Packed:
-    """An array on its way into bytes.
+    """An array on its way into bytes."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (T, …)
-        Numbers; the first axis is time.
-    step : float
-        Resolution to which they are kept, > 0; or 0 for that of float32.
-    """
-
-    values: Any
-    step: float = 0.0
+    values: Any  # shape (T, …): numbers; the first axis is time
+    step: float = 0.0  # resolution to which they are kept, > 0; or 0 for that of float32
 
 
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
     """A header and arrays as bytes.
-
-    Parameters
-    ----------
-    header : mapping
-        Plain data for JSON, without a key ``"arrays"``.
-    arrays : mapping of str to Packed
-        Arrays by name.
-
-    Raises
-    ------
-    ArgumentError
-        If an array holds something that is not finite, beyond float32, or too large for its step.
 
     Examples
     --------
@@ -71,18 +51,7 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
 
 
 def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
-    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js.
-
-    Parameters
-    ----------
-    data : bytes
-        What `encode` gave.
-
-    Raises
-    ------
-    ArgumentError
-        If it is something else, or damaged.
-    """
+    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js."""
     try:
         if data[:4] != _MAGIC:
             raise ValueError("its first bytes are not FLK1")

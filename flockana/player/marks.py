@@ -17,17 +17,6 @@ def marks_of(
 ) -> Marks:
     """Instants of a run, in order, each once, with the claims whose witness it is.
 
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    verdicts : iterable of Verdict
-        On it; a claim whose witness has a ``time`` within the run marks it.
-    instants : iterable of float
-        Others.
-    named : str
-        What these are called.
-
     Examples
     --------
     >>> from flockana import scenario, verify

@@ -31,11 +31,6 @@ def style() -> str:
 def text_of(data: bytes) -> str:
     """Bytes as text that a page can hold.
 
-    Parameters
-    ----------
-    data : bytes
-        A run.
-
     Examples
     --------
     >>> text_of(b"FLK1")
@@ -45,15 +40,7 @@ def text_of(data: bytes) -> str:
 
 
 def page(data: bytes, *, title: str = "A run") -> str:
-    """A page that holds the player and one run, and needs nothing else.
-
-    Parameters
-    ----------
-    data : bytes
-        What `flockana.player.scene` gave.
-    title : str
-        Of the page.
-    """
+    """A page that holds the player and one run, and needs nothing else."""
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'

@@ -49,50 +49,24 @@ _EXTREME = 1e30  # beyond it a number is shown as if it were this
 
 @dataclass(frozen=True)
 class World:
-    """What is around the agents.
+    """What is around the agents."""
 
-    Parameters
-    ----------
-    reach, length : float, optional
-        Agents nearer than the first are linked, and the links coloured by their strain about the second.
-    edges : tuple of ndarray of int, shape (M, 2)
-        Links by frame, in place of those within reach; or of one frame for all.
-    stars, crosses : ndarray, shape (T, K, m), optional
-        Targets and aliens by frame.
-    solids : sequence of Obstacle
-        Obstacles.
-    outlines : tuple of ndarray, shape (V, m)
-        Closed lines: of other obstacles, and of a box.
-    beta : float
-        Distance r' within which β-agents are shown.
-    groups : sequence of int
-        Colour of each agent by number; empty for one colour.
-    """
-
+    # reach, length: Agents nearer than the first are linked, and the links coloured by their strain about the second
     reach: float | None = None
     length: float | None = None
+    # shape (M, 2): links by frame, in place of those within reach; or of one frame for all
     edges: tuple[npt.NDArray[np.int64], ...] = ()
-    stars: FloatArray | None = None
+    stars: FloatArray | None = None  # stars, crosses: shape (T, K, m): targets and aliens by frame
     crosses: FloatArray | None = None
     solids: Sequence[Obstacle] = ()
-    outlines: tuple[FloatArray, ...] = ()
-    beta: float = 0.0
-    groups: Sequence[int] = field(default=())
+    outlines: tuple[FloatArray, ...] = ()  # shape (V, m): closed lines: of other obstacles, and of a box
+    beta: float = 0.0  # distance r' within which β-agents are shown
+    groups: Sequence[int] = field(default=())  # colour of each agent by number; empty for one colour
 
 
 @singledispatch
 def world(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """What is around the agents of a run; ``@world.register(Law)`` for a law with a world of its own.
-
-    Parameters
-    ----------
-    law : object
-        The run's law, or the one that its map steps.
-    run : Trajectory
-        The run.
-    frames : ndarray of int
-        Samples that are shown.
-    """
+    """What is around the agents of a run; ``@world.register(Law)`` for a law with a world of its own."""
     pair, target = law.pair, law.target
     return World(
         reach=_finite(None if pair is None else pair.range),
@@ -145,26 +119,7 @@ def scene(
     title: str = "",
     marks: Iterable[tuple[float, str]] = (),
 ) -> bytes:
-    """A run as the player reads it.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    values : int
-        So many numbers of places and velocities at most; of a longer run only every so-many-th sample is kept.
-    exact : bool
-        Keep places and velocities to float32; else to 1/8192 and 1/64 of their span, which no eye can tell.
-    title : str
-        What the drawing is called to who cannot see it.
-    marks : iterable of (float, str)
-        Instants to mark, with their names.
-
-    Returns
-    -------
-    bytes
-        See `flockana.player.codec`.
-    """
+    """A run as the player reads it."""
     frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
     around = world(run.law.continuous or run.law, run, frames)
     q, p = run.q[frames], run.p[frames]
@@ -201,11 +156,6 @@ def scene(
 
 def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
     """Which of so many samples are kept: first and last, and others evenly between, at most so many.
-
-    Parameters
-    ----------
-    samples, most : int
-        How many there are, and may be.
 
     Examples
     --------
@@ -249,17 +199,7 @@ def _solid(solid: Obstacle) -> dict[str, Any]:
 
 
 def outlines(solids: Iterable[Obstacle]) -> tuple[FloatArray, ...]:
-    """Closed lines on those that are neither balls nor walls: the closest points of circles about each.
-
-    Parameters
-    ----------
-    solids : iterable of Obstacle
-        Obstacles; of one in the plane the line is its outline, of one in space the lines are five wires.
-
-    Returns
-    -------
-    tuple of ndarray, shape (V, m)
-    """
+    """Closed lines on those that are neither balls nor walls: the closest points of circles about each."""
     turn = np.linspace(0.0, 2.0 * np.pi, _OUTLINE, endpoint=False)
     lines = []
     for solid in solids:

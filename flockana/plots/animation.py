@@ -63,20 +63,8 @@ def animation(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
-    seconds : float
-        Length of the film.
-    fps : float
-        Frames per second.
-    velocities : bool
-        Draw arrows.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
-
-    Returns
-    -------
-    matplotlib.animation.FuncAnimation
 
     Raises
     ------
@@ -124,24 +112,14 @@ def animate(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     path : path-like
         File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
-    seconds : float
-        Length of the film.
     fps : float
         Frames per second; a GIF rounds the time of a frame to hundredths of a second.
-    velocities : bool
-        Draw arrows.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
     progress : callable
         Is told the number of frames drawn and their total.
-
-    Returns
-    -------
-    pathlib.Path
 
     Raises
     ------

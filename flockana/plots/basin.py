@@ -24,12 +24,6 @@ def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None
         Of `flockana.certified.sampling.sample_basin`.
     level : float
         Confidence of the intervals.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     d, basin = sampled.basin.law.alpha.d, sampled.basin

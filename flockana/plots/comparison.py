@@ -99,12 +99,6 @@ def velocity_diameters(outcomes: Sequence[Outcome], *, ax: Axes | None = None) -
     ----------
     outcomes : sequence of Outcome
         What `flockana.scenarios.one_start.compare` gave.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -88,12 +88,6 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     ----------
     sweep : flockana.stability.sweeps.Sweep
         From `centre_locus` or `gain_sweep`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     roots = sweep.eigenvalues
@@ -114,12 +108,6 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     ----------
     sweep : flockana.stability.sweeps.Sweep
         From `gain_sweep` or `centre_locus`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     decay = sweep.eigenvalues.real[:, sweep.neutral :]
@@ -141,12 +129,6 @@ def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
     ----------
     table : flockana.stability.norms.NormTable
         From `norms_against_size`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     n, (low, high) = table.sizes, table.bounds.T
@@ -169,12 +151,6 @@ def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) ->
     ----------
     sweeps : mapping of str to flockana.stability.sweeps.MarginSweep
         By label, over the same gain; four at most. The area below the first is shaded.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     for k, ((label, sweep), (colour, dash)) in enumerate(zip(sweeps.items(), _DASHES, strict=False)):

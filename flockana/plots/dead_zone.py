@@ -42,16 +42,8 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
 
     Parameters
     ----------
-    interaction : DeadZoneInteraction
-        The pair law.
     nearest : float, optional
         Where the curve begins, 0.7 d1 by default: it falls to minus infinity at 0.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -88,12 +80,6 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
     ----------
     trajectory : Trajectory
         A run of the dead-zone law.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

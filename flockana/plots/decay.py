@@ -26,12 +26,6 @@ def linear_range(
         By label: displacement in units of d, deviation over displacement, and where links form or break (filled white).
     marks : mapping of str to float, optional
         Amplitudes to point out, by label.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     for k, (label, (sizes, deviations, changes)) in enumerate(ranges.items()):
@@ -60,12 +54,6 @@ def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None
     ----------
     points : mapping of str to (frequency, ratio)
         By label: angular frequency in radians per time unit, and measured size of the flock's path over the γ-agent's.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax = ensure_axes(ax)
     for k, (label, (omega, ratio)) in enumerate(points.items()):

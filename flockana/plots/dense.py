@@ -16,20 +16,7 @@ _INSTANTS = 1500  # about as many as a figure has pixels across
 
 
 def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Times and velocities on each of the solver's steps: the cubic through velocities and accelerations at its ends.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run; that of a map has nothing between its steps.
-
-    Returns
-    -------
-    t : ndarray, shape (S,)
-        Instants, samples and steps among them.
-    p : ndarray, shape (S, n, m)
-        Velocities.
-    """
+    """Times and velocities on each of the solver's steps, by cubics through velocities and accelerations."""
     t, _, p, u, _ = trajectory.path
     parts = -(-_INSTANTS // max(1, len(t) - 1))
     if isinstance(trajectory.law, DiscreteLaw) or len(t) < 2 or parts == 1:

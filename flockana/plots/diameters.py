@@ -22,14 +22,8 @@ def diameters(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     ax : matplotlib.axes.Axes, optional
         Where to draw; its scale becomes logarithmic.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     axes: Any = ensure_axes(ax)
     series = (("position_diameter", "positions", VERMILLION, "--"), ("velocity_diameter", "velocities", BLUE, "-"))
@@ -50,12 +44,6 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ----------
     trajectory : Trajectory
         A run of a law with a range.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -52,14 +52,6 @@ def share_against(
         Which, at most seven; by default all.
     of : {"verified", "refuted"}
         Which share.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -124,14 +116,6 @@ def share_bars(
         From `flockana.ensemble.shares`, without parameters.
     claims : iterable of str, optional
         Which; by default all.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -150,27 +134,7 @@ def share_bars(
 def draw_bars(
     axes: Any, claims: Sequence[str], shares: Mapping[str, FloatArray], runs: Any, level: float, title: str = ""
 ) -> Axes:
-    """Draw rows of `share_bars`: shares, and the ends of their intervals, of claims verified and refuted, shape (3, M).
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    claims : sequence of str, length M
-        How to name the rows.
-    shares : mapping of str to ndarray
-        By ``"verified"`` and ``"refuted"``; NaN where a claim was checked on no run.
-    runs : array_like, shape (M,)
-        On how many each was checked.
-    level : float
-        Confidence of each interval.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw rows of `share_bars`: shares and the ends of their intervals, shape (3, M), by status."""
     rows = np.arange(len(claims))[::-1]
     for of, colour, mark, shift in (("verified", BLUE, "o", 0.12), ("refuted", VERMILLION, "s", -0.12)):
         share, low, high = shares[of]
@@ -210,14 +174,6 @@ def distribution(
         A threshold to mark.
     log : bool
         A logarithmic axis; values that are not positive are left out and counted in the legend.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -271,16 +227,8 @@ def phase_diagram(
         From `flockana.ensemble.phases`, with dimensions x, y and seed.
     x, y : str
         Names of the parameters; every value has a cell of one size.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
     labels : (str, str)
         Of the axes, instead of the parameters' names.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

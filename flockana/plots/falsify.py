@@ -26,12 +26,6 @@ def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
     ----------
     found : flockana.falsify.Falsification
         What the search found.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     return search_history(
         found.margins[found.claim],
@@ -58,14 +52,6 @@ def search_history(
         Which runs refute the claim, counted from 0.
     label : str
         Name of the claim.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -19,14 +19,6 @@ class Film:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
-    seconds : float
-        Length of the film.
-    fps : float
-        Frames per second.
-    velocities : bool
-        Draw arrows.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
 
@@ -52,10 +44,6 @@ class Film:
         ----------
         path : path-like
             ``.gif``, or ``.mp4`` where the program ffmpeg is installed.
-
-        Returns
-        -------
-        pathlib.Path
 
         Raises
         ------

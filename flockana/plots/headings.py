@@ -24,12 +24,6 @@ def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ----------
     trajectory : Trajectory
         A run of `HeadingAveraging`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -34,14 +34,6 @@ def informed_shares(
         How many agents there are.
     majority : float
         The share of agents that a run must exceed to count, 0 <= majority < 1.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-    title : str
-        Above the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -74,21 +74,12 @@ def defect_map(
     q : array_like, shape (n, m)
         Positions, m = 1, 2 or 3.
     links : array_like, shape (M, 2)
-        Links.
     coordination : array_like, shape (n,)
         Number of neighbours of each agent.
     strain : array_like, shape (M,), optional
         (length − d)/d of each link; without it links are grey.
     limit : float, optional
         Strain at the ends of the colour scale; by default the largest.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    title : str
-        Of the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     points = ensure_points("q", q)
     links, degrees = ensure_links(links, len(points)), ensure_series("coordination", coordination, len(points))
@@ -141,12 +132,6 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     ----------
     diagram : CollapseDiagram
         Shortest distances, sizes and ratios.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     axes = ensure_axes(ax)
     n, ratio = np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :])
@@ -170,12 +155,6 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
     ----------
     brackets : mapping of int to (float, float)
         By number of agents: the largest ratio seen safe, the least seen to collapse.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     axes = ensure_axes(ax)
     sizes = sorted(brackets)
@@ -200,12 +179,6 @@ def barrier(
         Least energies, by number of agents.
     c_star : float
         The printed bound, ψ_α(0).
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     axes = ensure_axes(ax)
     sizes = sorted(together)

@@ -31,20 +31,10 @@ def perception(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        A run of MinimalFlocking.
     time : float, optional
         By default the end.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    velocities : bool
-        Draw arrows.
     bar : bool
         Draw the colour bar of (length − ρ)/ρ.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

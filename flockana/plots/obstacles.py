@@ -32,14 +32,8 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
     ----------
     items : iterable of Obstacle
         All of one dimension.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
     view : array_like, shape (k, m), optional
         Points that are in view; an unbounded obstacle is drawn about them, by default about the origin.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     solids = tuple(items)
     axes = ensure_axes(ax, m=solids[0].dimension if solids else 2)

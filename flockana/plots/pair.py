@@ -19,19 +19,7 @@ _SAMPLES = 600
 
 
 def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw φ_α over the distance of a pair: below zero it repels, above it attracts, beyond r nothing.
-
-    Parameters
-    ----------
-    interaction : AlphaInteraction
-        The pair law.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw φ_α over the distance of a pair: below zero it repels, above it attracts, beyond r nothing."""
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.phi_alpha(interaction.sigma_norm(x)), color=BLUE, linestyle="-")
@@ -40,19 +28,7 @@ def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
 
 
 def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* where two agents coincide.
-
-    Parameters
-    ----------
-    interaction : AlphaInteraction
-        The pair law.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* where two agents coincide."""
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
@@ -66,17 +42,6 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     """Draw E and V of a pair over its distance, each in its value at 0: E jumps at r and has a corner at 0, V neither.
 
     To the left of 0 one agent has passed through the other.
-
-    Parameters
-    ----------
-    interaction : AlphaInteraction
-        The pair law.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     ax, d, r = ensure_axes(ax), interaction.d, interaction.r
     x = np.linspace(-0.5 * d, 1.15 * r, _SAMPLES)

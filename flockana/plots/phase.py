@@ -38,12 +38,6 @@ def phase_portrait(
         and of more energy about it.
     labels : (str, str)
         Of the axes, with units.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

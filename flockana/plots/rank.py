@@ -25,12 +25,6 @@ def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes
     ----------
     trajectory : Trajectory
         A run of a law with an interaction range.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

@@ -27,12 +27,6 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
         What `flockana.measures.reynolds.reynolds` found.
     q : array_like, shape (n, 2)
         The positions that it was given.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

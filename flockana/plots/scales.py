@@ -47,26 +47,14 @@ def _typeset(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Ticks:
-    """The ticks of one kind, major or minor.
+    """The ticks of one kind, major or minor."""
 
-    Parameters
-    ----------
-    at : ndarray
-        Pixels along the scale.
-    numbers : tuple of str
-        As many; empty texts where there is none.
-    length, width, pad : float
-        Of the marks, and from them to the numbers: pixels, but the width in points.
-    grid : bool
-        Whether grid lines go with them.
-    """
-
-    at: FloatArray
-    numbers: tuple[str, ...]
-    length: float
+    at: FloatArray  # pixels along the scale
+    numbers: tuple[str, ...]  # as many; empty texts where there is none
+    length: float  # length, width, pad: of the marks, and from them to the numbers: pixels, but the width in points
     width: float
     pad: float
-    grid: bool
+    grid: bool  # whether grid lines go with them
 
     @property
     def numbered(self) -> list[tuple[float, str]]:
@@ -102,13 +90,7 @@ class PlainScale(Artist):
         self.set_clip_on(False)
 
     def ticks(self, which: str) -> Ticks:
-        """The major or minor ticks within the limits.
-
-        Parameters
-        ----------
-        which : {"major", "minor"}
-            Which of them.
-        """
+        """The major or minor ticks within the limits."""
         scale, look, pixel = self.scale, self.scale.get_tick_params(which), self.ax.figure.dpi / 72.0
         values = np.asarray(getattr(scale, f"get_{which}ticklocs")(), dtype=np.float64)
         formatter = getattr(scale, f"get_{which}_formatter")()
@@ -136,13 +118,7 @@ class PlainScale(Artist):
         return pixels
 
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
-        """Pixels that it takes left of, right of, below and above its axes.
-
-        Parameters
-        ----------
-        renderer : object
-            What texts are measured with.
-        """
+        """Pixels that it takes left of, right of, below and above its axes."""
         kinds, sizes, box = self._kinds(), self._sizes(renderer), self.ax.bbox
         k, ends = "xy".index(self.name), (0.0, 0.0)
         low, high = ((box.x0, box.x1), (box.y0, box.y1))[k]
@@ -204,13 +180,7 @@ class PlainScale(Artist):
         return depth
 
     def draw(self, renderer: Any) -> None:
-        """Draw grid lines, marks, numbers, the power of ten that they share, and the name.
-
-        Parameters
-        ----------
-        renderer : object
-            What draws.
-        """
+        """Draw grid lines, marks, numbers, the power of ten that they share, and the name."""
         kinds = self._kinds()
         for ticks in kinds:
             if ticks.at.size:
@@ -292,13 +262,7 @@ class PlainScale(Artist):
 
 
 def plain_scales(figure: Any) -> dict[Any, tuple[PlainScale, ...]]:
-    """Draw the scales of all axes of the plane in a figure so, colour bars included; returns them by their axes.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        What is otherwise done.
-    """
+    """Draw the scales of all axes of the plane in a figure so, colour bars included; returns them by their axes."""
     flat = (ax for outer in figure.axes for ax in (outer, *outer.child_axes) if ax.name == "rectilinear")
     sizes: dict[tuple[str, float], Size] = {}
     return {ax: tuple(PlainScale(ax, name, sizes) for name in "xy") for ax in flat}

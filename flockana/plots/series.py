@@ -19,10 +19,13 @@ from flockana.plots.style import (
     MUTED,
     PURPLE,
     VERMILLION,
+    curves,
     ensure_axes,
     finish_empty,
     finish_over_time,
     hairline,
+    levels,
+    over_time,
     subplots,
 )
 from flockana.scenarios.findings import component_counts
@@ -41,16 +44,8 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     name : str
         A variable of ``trajectory.metrics()``.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -73,15 +68,7 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
 
 
 def has_metric(trajectory: Trajectory, name: str) -> bool:
-    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    name : str
-        Of the metric.
-    """
+    """Whether a run has a metric, asked without all the others (which xarray holds, whose import takes longer)."""
     try:
         trajectory.metric(name)
     except UnknownNameError:
@@ -94,8 +81,6 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     ax : sequence of four Axes, optional
         Where to draw; by default a new figure of two by two.
 
@@ -109,126 +94,59 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
     return flat
 
 
-def energy(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the law's energy H over time, if it has one.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
+@over_time("H, energy")
+def energy(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the law's energy H over time, if it has one."""
     values = trajectory.energy()
     if not np.isfinite(values).any():
-        return finish_empty(ax, "H, energy", "this law has no energy")
+        return "this law has no energy"
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    return finish_over_time(ax, trajectory.t, "H, energy")
+    return None
 
 
-def energy_residual(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw H(t) − H(0) − ∫ dH/dt: what the integration got wrong, by the energy identity.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
-    label = "H − H(0) − ∫ dH/dt"
+@over_time("H − H(0) − ∫ dH/dt")
+def energy_residual(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw H(t) − H(0) − ∫ dH/dt, the error of the integration by the energy identity."""
     if "work" not in trajectory.extra:
-        return finish_empty(ax, label, "no energy balance: this law has no energy")
+        return "no energy balance: the run carries no ∫ dH/dt"
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     ax.plot(trajectory.t, trajectory.energy_residual, color=VERMILLION, linestyle="-", linewidth=1.0)
-    return finish_over_time(ax, trajectory.t, label)
+    return None
 
 
-def distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the least distance of two agents at the samples, its lower bound between them, and d and r.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run. Between the steps of a map there is nothing to bound.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
-    label = "least distance (length)"
+@over_time("least distance (length)")
+def distances(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the least distance of two agents at the samples, a lower bound between samples (of flows), and d and r."""
     if trajectory.n == 1:
-        return finish_empty(ax, label, "one agent has no distances")
+        return "one agent has no distances"
     t, least = trajectory.t, trajectory.metric("min_distance")
     ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
         bound = trajectory.closest_approach().lower_by_interval
         ax.stairs(bound, t, baseline=None, color=VERMILLION, linestyle="--", linewidth=1.0, label="lower bound between")
-    for name, length, colour, dash in zip(
-        "dr", trajectory.law.lattice or (), (GREEN, PURPLE), (":", "-."), strict=False
-    ):
-        ax.axhline(length, color=colour, linestyle=dash, linewidth=1.1, label=name)
+    levels(ax, zip(trajectory.law.lattice or (), "dr", (GREEN, PURPLE), (":", "-."), strict=False))
     ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, label)
+    return None
 
 
-def pair_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the profile of all pairs' distances over time: least, quarters, median and largest.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax, label = ensure_axes(ax), "distance of two agents (length)"
+@over_time("distance of two agents (length)")
+def pair_distances(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the profile of all pairs' distances over time: least, quarters, median and largest."""
     if trajectory.n == 1:
-        return finish_empty(ax, label, "one agent has no distances")
+        return "one agent has no distances"
     least, low, middle, high, largest = pair_distance_profile(trajectory.q).T
     ax.fill_between(trajectory.t, least, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
     ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of them")
-    ax.plot(trajectory.t, middle, color=BLUE, linestyle="-", linewidth=1.4, label="median")
-    ax.plot(trajectory.t, least, color=INK, linestyle="-", linewidth=1.3, label="least (D)")
+    curves(ax, trajectory.t, ((middle, "median", BLUE, "-"), (least, "least (D)", INK, "-")))
     ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, label)
+    return None
 
 
-def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the number of components of the net over time (logarithmic where many), if the law has an interaction range.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
-    label = "components of the net"
+@over_time("components of the net")
+def components(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the number of components of the net over time (logarithmic where many), if the law has a range."""
     if not has_metric(trajectory, "connectivity"):
-        return finish_empty(ax, label, "not defined for this law")
+        return "not defined for this law"
     counts = component_counts(trajectory)
     ax.plot(trajectory.t, counts, color=BLUE, linestyle="-", drawstyle="steps-post")
     if counts.max() > _FEW:
@@ -238,28 +156,15 @@ def components(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     else:
         ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_ylim(0.8, max(2.5, 1.3 * float(counts.max())))
-    return finish_over_time(ax, trajectory.t, label)
+    return None
 
 
-def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the least clearance of any agent from each obstacle at the samples, d', and the bound for all times.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
-    label = "least clearance (length)"
+@over_time("least clearance (length)")
+def clearances(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the least clearance of any agent from each obstacle at the samples, d', and the bound for all times."""
     solids = trajectory.law.obstacles
     if not solids:
-        return finish_empty(ax, label, "there are no obstacles")
+        return "there are no obstacles"
     t, q = trajectory.t, trajectory.q
     width, alpha = hairline(2 * len(solids))
     for k, solid in enumerate(solids):
@@ -267,64 +172,35 @@ def clearances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         name = "each obstacle, at the samples" if k == 0 else None
         ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
-    ax.axhline(bound, color=VERMILLION, linestyle="--", linewidth=1.1, label="lower bound for all times")
+    levels(ax, [(bound, "lower bound for all times", VERMILLION, "--")])
     if (field := trajectory.law.obstacle_field) is not None:
-        beta = field.beta
-        ax.axhline(beta.d, color=GREEN, linestyle=":", linewidth=1.1, label="d'")
-        ax.set_ylim(min(0.0, bound), max(6.0 * beta.d, 1.5 * bound))
+        levels(ax, [(field.beta.d, "d'", GREEN, ":")])
+        ax.set_ylim(min(0.0, bound), max(6.0 * field.beta.d, 1.5 * bound))
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
-    return finish_over_time(ax, trajectory.t, label)
+    return None
 
 
-def speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
+@over_time("speed (length/time)")
+def speeds(trajectory: Trajectory, ax: Any) -> None:
+    """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law."""
     (t, p), target = velocities_between(trajectory), trajectory.law.target
-    speed = lengths(p)
     width, alpha = hairline(trajectory.n)
-    ax.plot(t, speed, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot(t, lengths(p), color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
-    centre = np.linalg.norm(p.mean(axis=1), axis=1)
-    ax.plot(t, centre, color=INK, linestyle="-", linewidth=1.4, label="centre of mass")
+    curves(ax, t, [(np.linalg.norm(p.mean(axis=1), axis=1), "centre of mass", INK, "-")])
     if target is not None:
-        handed = [np.linalg.norm(target.state(s)[1]) for s in t.tolist()]
-        ax.plot(t, handed, color=VERMILLION, linestyle="--", label="γ-agent's ‖p_r‖")
+        handed = np.array([np.linalg.norm(target.state(s)[1]) for s in t.tolist()])
+        curves(ax, t, [(handed, "γ-agent's ‖p_r‖", VERMILLION, "--")])
     ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, "speed (length/time)")
 
 
-def centre_of_mass(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw each coordinate of the centre of mass over time (solid), against the γ-agent's (dashed).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    ax = ensure_axes(ax)
-    t, centre, target = trajectory.t, trajectory.q.mean(axis=1), trajectory.law.target
-    for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
-        ax.plot(t, centre[:, k], color=colour, linestyle="-", linewidth=1.8, label=f"{'xyz'[k]} of the centre")
-    if target is not None:
-        path = np.array([target.position(s) for s in t.tolist()])
-        for k, colour in zip(range(trajectory.m), (BLUE, GREEN, PURPLE), strict=False):
-            ax.plot(t, path[:, k], color=colour, linestyle="--", linewidth=1.1, label=f"{'xyz'[k]} of the γ-agent")
-    return finish_over_time(ax, trajectory.t, "position (length)")
+@over_time("position (length)")
+def centre_of_mass(trajectory: Trajectory, ax: Any) -> None:
+    """Draw each coordinate of the centre of mass over time (solid), against the γ-agent's (dashed)."""
+    t, colours = trajectory.t, (BLUE, GREEN, PURPLE)
+    paths = [(trajectory.q.mean(axis=1), "centre", "-", 1.8)]
+    if (target := trajectory.law.target) is not None:
+        paths.append((np.array([target.position(s) for s in t.tolist()]), "γ-agent", "--", 1.1))
+    for path, name, dash, width in paths:
+        named = zip(path.T, "xyz", colours, strict=False)
+        curves(ax, t, ((x, f"{axis} of the {name}", colour, dash) for x, axis, colour in named), width=width)

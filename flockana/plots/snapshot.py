@@ -71,22 +71,12 @@ def snapshot(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        The run.
     time : float, optional
         By default the end.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    velocities : bool
-        Draw arrows.
     bar : bool
         Draw the colour bar of the strain.
     ranges : bool
         Draw a circle about each agent at the distance within which it interacts, in the plane.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -212,16 +202,8 @@ def configuration(
         Drawn in full, and kept in view where they are bounded.
     beta : BetaInteraction, optional
         Its r' says which β-agents to draw; without it there are none.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
     bar : bool
         Draw the colour bar of the strain.
-    title : str
-        Of the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     points = ensure_points("q", q)
     m = points.shape[1]

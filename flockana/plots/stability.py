@@ -51,12 +51,6 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
         Eigenvalues; with labels, up to four groups.
     grid : bool
         Draw rays of constant damping ratio.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     groups = dict(poles) if isinstance(poles, Mapping) else {"eigenvalues": poles}
     try:
@@ -120,19 +114,10 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     q : array_like, shape (n, m)
         Positions, m = 1, 2 or 3.
     links : array_like, shape (M, 2)
-        Links.
     shape : array_like, shape (n, m)
         Displacements, real or complex, of any size: the longest arrow is a tenth of the flock.
     target : array_like, shape (m,), optional
         Position of the γ-agent.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    title : str
-        Of the axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
     points, moves = ensure_points("q", q), np.asarray(shape)
     if moves.shape != points.shape or moves.dtype.kind not in "iufc":
@@ -172,11 +157,6 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
 def mode_title(mode: Mode) -> str:
     """Name and numbers of a mode, for its picture.
 
-    Parameters
-    ----------
-    mode : Mode
-        The mode.
-
     Examples
     --------
     >>> mode_title(Mode(-3 + 4j, np.ones((1, 1)), "breathing"))
@@ -210,18 +190,12 @@ def animate_mode(
     ----------
     linearisation : Linearisation
         Where the mode is from.
-    mode : Mode
-        Which one.
     path : path-like
         File to write, ``.gif`` or ``.mp4``.
     amplitude, periods, damped : object
         As for `flockana.stability.mode_motion`.
     seconds, fps, velocities, progress : object
         As for `flockana.plots.animate`.
-
-    Returns
-    -------
-    pathlib.Path
 
     Raises
     ------

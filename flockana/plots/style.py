@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import update_wrapper
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import matplotlib as mpl
 import numpy as np
@@ -20,6 +21,8 @@ from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from flockana.dynamics.trajectory import Trajectory
 
 # Okabe and Ito's colours: told apart with every common kind of colour vision, and here always paired with a dash
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7"
@@ -150,6 +153,42 @@ def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
     return finish(ax, "t (time)", y)
 
 
+class OverTime(Protocol):
+    """A plot of a run over time."""
+
+    def __call__(self, trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+        """Draw on axes, or on new ones."""
+
+
+def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]], OverTime]:
+    """Decorate a function that draws a run on axes or returns why it cannot: label and finish the axes."""
+
+    def decorated(draw: Callable[[Trajectory, Any], str | None]) -> OverTime:
+        def plot(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+            axes = ensure_axes(ax)
+            if reason := draw(trajectory, axes):
+                return finish_empty(axes, label, reason)
+            return finish_over_time(axes, trajectory.t, label)
+
+        update_wrapper(plot, draw, ("__module__", "__name__", "__qualname__", "__doc__"))
+        del plot.__wrapped__  # type: ignore[attr-defined]  # the signature is that of `plot`
+        return plot
+
+    return decorated
+
+
+def curves(ax: Any, t: FloatArray, looks: Iterable[tuple[FloatArray, str, str, str]], *, width: float = 1.4) -> None:
+    """Draw a line for each (values, label, colour, dash)."""
+    for values, label, colour, dash in looks:
+        ax.plot(t, values, color=colour, linestyle=dash, linewidth=width, label=label)
+
+
+def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
+    """Draw a horizontal line for each (value, label, colour, dash)."""
+    for value, label, colour, dash in looks:
+        ax.axhline(value, color=colour, linestyle=dash, linewidth=1.1, label=label)
+
+
 def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     """Leave the axes empty, with the reason in their middle."""
     ax.set_xticks([])
@@ -184,21 +223,7 @@ def legend_above(ax: Any) -> None:
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
-    """A colour bar beside axes, of which it is a part: wherever they are put, it stands a little to the right of them.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Of the plane or of space.
-    colours : matplotlib.cm.ScalarMappable
-        What is coloured.
-    label : str
-        Of the bar.
-    extend : {"neither", "min", "max", "both"}
-        Ends beyond which there are values.
-    share : float
-        Of the height of the axes.
-    """
+    """Add a colour bar as a part of axes, a little to the right of them."""
     beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)

@@ -57,11 +57,6 @@ _ANY = re.compile("|".join(f"(?P<r{k}>{pattern})" for k, (pattern, _) in enumera
 def typeset(text: str) -> str:
     r"""A label with its symbols in mathtext; what is typeset already stays.
 
-    Parameters
-    ----------
-    text : str
-        A label, or the entry of a legend, or a title.
-
     Examples
     --------
     >>> typeset("c1γ (1/time²)"), typeset("t (time)"), typeset("τ*, delay margin (time)")

@@ -19,19 +19,7 @@ _STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
 
 
 def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time."""
     axes = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
     width, alpha = hairline(trajectory.n)
@@ -44,19 +32,7 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 
 def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the path of the centre of mass against the γ-agent's; on a line, both over time.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw the path of the centre of mass against the γ-agent's; on a line, both over time."""
     axes = ensure_axes(ax, m=trajectory.m)
     centre = _plane(trajectory.t, trajectory.q.mean(axis=1))
     axes.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
 
@@ -29,12 +30,14 @@ from flockana.plots.style import (
     ORANGE,
     PURPLE,
     VERMILLION,
+    curves,
     ensure_axes,
-    finish_over_time,
     frame_space,
     hairline,
     head,
+    levels,
     lines,
+    over_time,
 )
 
 if TYPE_CHECKING:
@@ -61,18 +64,8 @@ def zones(
 
     Parameters
     ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
     time : float, optional
         By default the end.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; three-dimensional for m = 3.
-    velocities : bool
-        Draw arrows.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -170,139 +163,78 @@ def _space(ax: Any, world: ZoneWorld) -> None:
         ax.add_collection(lines(edges, colors=INK, linewidths=0.8))
 
 
-def zone_distances(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+@over_time("distance (length)")
+def zone_distances(trajectory: Trajectory, ax: Any) -> None:
     """Draw the distances of all pairs over time, the least of them, and the radii of the zones.
 
     Of more than some hundred agents the profile is drawn (`pair_distances`), as lines would be one blot.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
     """
-    law, ax = _law(trajectory), ensure_axes(ax)
+    law, t = _law(trajectory), trajectory.t
     first, second = np.triu_indices(trajectory.n, 1)
     if first.size > _AS_LINES:
         pair_distances(trajectory, ax=ax)
     else:
         apart = lengths(trajectory.q[:, first] - trajectory.q[:, second])
-        width, alpha = hairline(2 * max(1, first.size))
-        ax.plot(trajectory.t, apart, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-        ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="pairs")
-        if first.size:
-            ax.plot(trajectory.t, apart.min(axis=1), color=INK, linestyle="-", linewidth=1.3, label="least (D)")
-    looks = (("r", VERMILLION, "--"), ("c", PURPLE, "-."), ("a", GREEN, ":"))
-    for radius, (name, colour, dash) in zip(law.radii.reach, looks, strict=True):
-        ax.axhline(radius, color=colour, linestyle=dash, linewidth=1.1, label=name)
+        _hairlines(ax, t, apart, "pairs")
+        curves(ax, t, [(apart.min(axis=1), "least (D)", INK, "-")] if first.size else ())
+    levels(ax, zip(law.radii.reach, "rca", (VERMILLION, PURPLE, GREEN), ("--", "-.", ":"), strict=True))
     ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, "distance (length)")
 
 
-def zone_speeds(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the speeds of all agents, their mean, the desired speed and the bound.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    law, ax = _law(trajectory), ensure_axes(ax)
-    _agents(ax, trajectory, lengths(trajectory.p))
-    ax.axhline(law.desired_speed, color=GREEN, linestyle=":", linewidth=1.2, label="desired")
-    ax.axhline(law.v_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
-    ax.set_ylim(0.0, 1.08 * law.v_max)
-    return finish_over_time(ax, trajectory.t, "speed (length/time)")
+@over_time("speed (length/time)")
+def zone_speeds(trajectory: Trajectory, ax: Any) -> None:
+    """Draw the speeds of all agents, their mean, the desired speed and the bound."""
+    law = _law(trajectory)
+    _against_bound(ax, trajectory.t, lengths(trajectory.p), law.v_max, [(law.desired_speed, "desired", GREEN, ":")])
 
 
-def zone_controls(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw the inputs of all agents, their mean and the bound.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    law, ax = _law(trajectory), ensure_axes(ax)
-    _agents(ax, trajectory, lengths(trajectory.u))
-    ax.axhline(law.u_max, color=VERMILLION, linestyle="--", linewidth=1.1, label="bound")
-    ax.set_ylim(0.0, 1.08 * law.u_max)
-    return finish_over_time(ax, trajectory.t, "input ‖u‖ (length/time²)")
+@over_time("input ‖u‖ (length/time²)")
+def zone_controls(trajectory: Trajectory, ax: Any) -> None:
+    """Draw the inputs of all agents, their mean and the bound."""
+    _against_bound(ax, trajectory.t, lengths(trajectory.u), _law(trajectory).u_max)
 
 
-def zone_safety(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw how near the flock comes to obstacles (bound between the steps too), to walls and to aliens.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    _law(trajectory)
-    ax, metrics = ensure_axes(ax), trajectory.metrics()
+@over_time("least distance (length)")
+def zone_safety(trajectory: Trajectory, ax: Any) -> str | None:
+    """Draw the distance of the flock from obstacles (bounded between the steps too), walls and aliens."""
     shown = (
         ("obstacle_clearance_bound", "obstacle", BLUE, "-"),
         ("wall_distance", "wall", GREEN, "-."),
         ("alien_distance", "alien", VERMILLION, "--"),
     )
-    for name, label, colour, dash in shown:
-        if name in metrics:
-            ax.plot(trajectory.t, metrics[name].values, color=colour, linestyle=dash, linewidth=1.1, label=label)
-    if not ax.get_legend_handles_labels()[0]:
-        ax.set_yticks([])
-        ax.text(0.5, 0.5, "nothing to keep clear of", ha="center", va="center", transform=ax.transAxes, color=MUTED)
-    else:
-        ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
-    return finish_over_time(ax, trajectory.t, "least distance (length)")
+    if not _measured(ax, trajectory, shown):
+        return "nothing to keep clear of"
+    ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
+    return None
 
 
-def zone_populations(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw how many agents are in the zones of repulsion, conflict and attraction of an agent, on the mean.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of ZoneFlocking.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
-    _law(trajectory)
-    ax, metrics = ensure_axes(ax), trajectory.metrics()
-    for zone, colour, dash in (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":")):
-        ax.plot(trajectory.t, metrics[f"in_{zone}"].values, color=colour, linestyle=dash, linewidth=1.2, label=zone)
+@over_time("agents in the zone, mean")
+def zone_populations(trajectory: Trajectory, ax: Any) -> None:
+    """Draw the mean numbers of agents in an agent's zones of repulsion, conflict and attraction."""
+    looks = (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":"))
+    _measured(ax, trajectory, [(f"in_{zone}", zone, colour, dash) for zone, colour, dash in looks])
     ax.set_ylim(bottom=0.0)
-    return finish_over_time(ax, trajectory.t, "agents in the zone, mean")
 
 
-def _agents(ax: Any, trajectory: Trajectory, values: FloatArray) -> None:
-    width, alpha = hairline(2 * trajectory.n)
-    ax.plot(trajectory.t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
-    ax.plot(trajectory.t, values.mean(axis=1), color=INK, linestyle="-", linewidth=1.4, label="mean")
+def _measured(ax: Any, trajectory: Trajectory, looks: Iterable[tuple[str, str, str, str]]) -> bool:
+    """Draw the run's measures among (name, label, colour, dash); return whether there is one."""
+    _law(trajectory)
+    metrics = trajectory.metrics()
+    found = [(metrics[name].values, *look) for name, *look in looks if name in metrics]
+    curves(ax, trajectory.t, found, width=1.1)
+    return bool(found)
+
+
+def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, others: Any = ()) -> None:
+    """Draw the values of all agents, their mean and the bound."""
+    _hairlines(ax, t, values, "agents")
+    curves(ax, t, [(values.mean(axis=1), "mean", INK, "-")])
+    levels(ax, [*others, (bound, "bound", VERMILLION, "--")])
+    ax.set_ylim(0.0, 1.08 * bound)
+
+
+def _hairlines(ax: Any, t: FloatArray, values: FloatArray, label: str) -> None:
+    """Draw a faint line for each column, and one entry of the legend."""
+    width, alpha = hairline(2 * max(1, values.shape[1]))
+    ax.plot(t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label=label)

@@ -22,43 +22,21 @@ _DECADES = 6  # more of them are labelled at every other one
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve of a chart.
+    """A curve of a chart."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (T,)
-        Over the chart's times; where they are not finite there is no curve.
-    label : str
-        What it is; empty if the chart's own words say it.
-    """
-
-    values: FloatArray
-    label: str = ""
+    values: FloatArray  # shape (T,): over the chart's times; where they are not finite there is no curve
+    label: str = ""  # what it is; empty if the chart's own words say it
 
 
 @dataclass(frozen=True)
 class Chart:
-    """Curves over the same times.
+    """Curves over the same times."""
 
-    Parameters
-    ----------
-    words : str
-        What the axis upwards is.
-    t : ndarray, shape (T,)
-        Times.
-    curves : sequence of Curve
-        At most five: they differ in colour and dash.
-    logarithmic : bool
-        Whether decades are equally long; what is not positive is then left out.
-    levels : sequence of (float, str)
-        Horizontal lines, with their names.
-    """
-
-    words: str
-    t: FloatArray
-    curves: Sequence[Curve]
-    logarithmic: bool = False
-    levels: Sequence[tuple[float, str]] = ()
+    words: str  # what the axis upwards is
+    t: FloatArray  # shape (T,): times
+    curves: Sequence[Curve]  # at most five: they differ in colour and dash
+    logarithmic: bool = False  # whether decades are equally long; what is not positive is then left out
+    levels: Sequence[tuple[float, str]] = ()  # horizontal lines, with their names
 
     def svg(self) -> str:
         """The chart as an ``<svg>`` element."""
@@ -104,13 +82,7 @@ class Chart:
 
 
 def panels(charts: Sequence[Chart]) -> str:
-    """Charts side by side, as HTML.
-
-    Parameters
-    ----------
-    charts : sequence of Chart
-        What is shown.
-    """
+    """Charts side by side, as HTML."""
     return f'<div class="panels">{"".join(chart.svg() for chart in charts)}</div>'
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from flockana import plots
 from flockana.report.figures import Picture
 from flockana.report.image import svg
-from flockana.report.work import MANY_LAWS
+from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
 
@@ -22,47 +22,25 @@ _SETTLED = 1e-9  # of the start: what a table calls 0
 
 @dataclass(frozen=True)
 class Row:
-    """A law, its theorem and what happened, as text.
+    """A law, its theorem and what happened, as text."""
 
-    Parameters
-    ----------
-    name, theorem, promise : str
-        Of the law and the theorem.
-    status : str
-        Of the verdict.
-    reason : str
-        What is refuted or open, or the first unmet hypothesis; empty if there is none of these.
-    velocities, positions : str
-        Diameters at the end over those at the start.
-    groups, nearest : str
-        Components of the net at the end, and the least distance.
-    """
-
-    name: str
+    name: str  # name, theorem, promise: of the law and the theorem
     theorem: str
     promise: str
     status: str
-    reason: str
-    velocities: str
+    reason: str  # what is refuted or open, or the first unmet hypothesis; empty if there is none of these
+    velocities: str  # velocities, positions: Diameters at the end over those at the start
     positions: str
-    groups: str
+    groups: str  # groups, nearest: Components of the net at the end, and the least distance
     nearest: str
 
 
 @dataclass(frozen=True)
 class ComparisonSection:
-    """Rows and pictures of one start under many laws.
+    """Rows and pictures of one start under many laws."""
 
-    Parameters
-    ----------
-    rows : tuple of Row
-        One for each law.
-    pictures : tuple of Picture
-        Paths side by side, and velocity diameters.
-    """
-
-    rows: tuple[Row, ...]
-    pictures: tuple[Picture, ...]
+    rows: tuple[Row, ...]  # one for each law
+    pictures: tuple[Picture, ...]  # paths side by side, and velocity diameters
 
     @property
     def name(self) -> str:
@@ -72,13 +50,7 @@ class ComparisonSection:
 
 @cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge it; it takes seconds, once in a process.
-
-    Parameters
-    ----------
-    seed : int
-        Of the start.
-    """
+    """Run the start under every law and judge it; it takes seconds, once in a process."""
     outcomes = compare(seed=seed)
     return ComparisonSection(tuple(_row(outcome) for outcome in outcomes), _pictures(outcomes))
 

@@ -26,21 +26,11 @@ _SIZES = (3, 7, 12, 19)
 
 @dataclass(frozen=True)
 class Download:
-    """A file within the page.
-
-    Parameters
-    ----------
-    name : str
-        Of the file.
-    words : str
-        What is in it.
-    address : str
-        A ``data:`` address that holds it.
-    """
+    """A file within the page."""
 
     name: str
-    words: str
-    address: str
+    words: str  # what is in it
+    address: str  # a ``data:`` address that holds it
 
 
 def control_pictures() -> tuple[Picture, ...]:
@@ -81,15 +71,7 @@ def control_pictures() -> tuple[Picture, ...]:
 
 
 def state_space(flock: Linearisation, name: str, words: str) -> Download:
-    """A linearised flock as JSON: A by its entries, in the order (δq, δp), agent by agent.
-
-    Parameters
-    ----------
-    flock : Linearisation
-        The flock.
-    name, words : str
-        Of the file, and what is in it.
-    """
+    """A linearised flock as JSON: A by its entries, in the order (δq, δp), agent by agent."""
     matrix = flock.A_sparse.tocoo()
     kept = np.abs(matrix.data) > 0.0
     entries = [

@@ -21,18 +21,10 @@ from flockana.scenarios.findings import component_counts
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure with its words.
+    """A figure with its words."""
 
-    Parameters
-    ----------
-    caption : str
-        What it shows and how to read it.
-    source : str
-        SVG elements, in HTML, in the page's own colours.
-    """
-
-    caption: str
-    source: str
+    caption: str  # what it shows and how to read it
+    source: str  # SVG elements, in HTML, in the page's own colours
 
 
 @cache
@@ -42,15 +34,7 @@ def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], t
 
 
 def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
-    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    instants : sequence of float
-        Times at which its source shows the flock: they come first, the sample nearest to each.
-    """
+    """Draw a run: by the ``*_figures`` module that names its law among its ``LAWS``, else as any flock is drawn."""
     drawn = trajectory.law, drawn_law(trajectory)  # of a map that steps another law, that one's figures will do
     owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
     draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
@@ -94,42 +78,18 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def measured(run: Trajectory, name: str) -> Chart:
-    """One of a run's metrics over time.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    name : str
-        Of the metric.
-    """
+    """One of a run's metrics over time."""
     it = run.measure(name)
     return Chart(it.label, run.t, (Curve(run.metric(name)),), bool(it.logarithmic))
 
 
 def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
-    """Greatest, mean and least speed of an agent over time.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    levels : sequence of (float, str)
-        Bounds, with their names.
-    """
+    """Greatest, mean and least speed of an agent over time."""
     return _spread("speeds (length/time)", run.t, lengths(run.p), levels)
 
 
 def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
-    """Greatest and mean control effort ‖u‖ of an agent over time.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    levels : sequence of (float, str)
-        Bounds, with their names.
-    """
+    """Greatest and mean control effort ‖u‖ of an agent over time."""
     size = lengths(run.u)
     curves = Curve(size.max(axis=1), "greatest"), Curve(size.mean(axis=1), "mean")
     return Chart("control effort ‖u‖ (length/time²)", run.t, curves, levels=levels)

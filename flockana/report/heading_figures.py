@@ -17,13 +17,7 @@ _SETTLED = 1e-3  # of the first span of headings: until it falls below there is 
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw start, middle, end as of any flock; headings, connectivity and their span.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The run.
-    """
+    """Draw start, middle, end as of any flock; headings, connectivity and their span."""
     early = trajectory.window(float(trajectory.t[0]), _until(trajectory))
     times = float(trajectory.t[0]), float(early.t[len(early.t) // 2]), float(trajectory.t[-1])
     heading = early.extra["heading"]

@@ -37,15 +37,7 @@ IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its pl
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look as an ``<svg>`` element.
-
-    Parameters
-    ----------
-    draw : callable
-        Takes the figure.
-    size : (float, float)
-        Width and height in inches.
-    """
+    """A figure in flockana's look as an ``<svg>`` element."""
     with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
@@ -98,16 +90,6 @@ def _short(path: str) -> str:
 
 
 def named(source: str, caption: str, number: int) -> str:
-    """A figure as the page holds it: with ids that no other has, and what it shows for who cannot see it.
-
-    Parameters
-    ----------
-    source : str
-        What `svg` gave, or other SVG.
-    caption : str
-        What it shows.
-    number : int
-        Of the figure in its page.
-    """
+    """A figure as the page holds it: with ids that no other has, and what it shows for who cannot see it."""
     label = escape(caption, quote=True)
     return source.replace(IDS, f"f{number}-").replace('class="drawn"', f'class="drawn" role="img" aria-label="{label}"')

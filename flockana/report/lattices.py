@@ -24,46 +24,25 @@ _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
 
 @dataclass(frozen=True)
 class EndState:
-    """The net of one run's last state.
-
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    kind : str
-        α-lattice, quasi-α-lattice or neither, with its strain.
-    links, crossings : str
-        Their numbers.
-    printed, extension : str
-        Statuses of "no two links cross", as printed of α-lattices, and extended to every net with distances above
-        r/√2.
-    """
+    """The net of one run's last state."""
 
     scenario: str
-    kind: str
-    links: str
+    kind: str  # α-lattice, quasi-α-lattice or neither, with its strain
+    links: str  # links, crossings: Their numbers
     crossings: str
+    # printed, extension: Statuses of "no two links cross", as printed of α-lattices, and extended to every net with
+    # distances above r/√2
     printed: str
     extension: str
 
 
 @dataclass(frozen=True)
 class LatticeSection:
-    """End states, spirals and pictures of lattices and equilibria, for the report.
+    """End states, spirals and pictures of lattices and equilibria, for the report."""
 
-    Parameters
-    ----------
-    ends : tuple of EndState
-        By scenario.
-    spirals : tuple of (int, int, int)
-        n, links of the hexagonal spiral, Harborth's number.
-    pictures : tuple of Picture
-        Collapse and barrier, where their verdicts are at hand.
-    """
-
-    ends: tuple[EndState, ...]
-    spirals: tuple[tuple[int, int, int], ...]
-    pictures: tuple[Picture, ...]
+    ends: tuple[EndState, ...]  # by scenario
+    spirals: tuple[tuple[int, int, int], ...]  # n, links of the hexagonal spiral, Harborth's number
+    pictures: tuple[Picture, ...]  # collapse and barrier, where their verdicts are at hand
 
 
 def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:

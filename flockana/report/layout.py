@@ -34,15 +34,6 @@ def place_axes(figure: Any, renderer: Any, scales: Scales) -> None:
 
     They are measured where usual margins would put them, then where that puts them, until that is room enough:
     numbers depend on the size of axes, and what a wide legend takes beside them does.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        A figure whose axes share one grid; each colour bar is part of its axes (`plots.style.colour_bar`).
-    renderer : object
-        What texts are measured with.
-    scales : dict
-        What `plots.scales.plain_scales` gave.
     """
     places = [_place(ax) for ax in figure.axes]
     if not places:

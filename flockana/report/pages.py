@@ -26,64 +26,33 @@ _VALUES = 24_000  # numbers of places and velocities of a run in the page: all r
 
 @dataclass(frozen=True)
 class ScenarioResult:
-    """A scenario that was run and verified.
+    """A scenario that was run and verified."""
 
-    Parameters
-    ----------
-    scenario : Scenario
-        What was run.
-    trajectory : Trajectory
-        The run.
-    verdicts : tuple of Verdict
-        What `Scenario.verify` found.
-    """
-
-    scenario: Scenario
+    scenario: Scenario  # what was run
     trajectory: Trajectory
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Verdict, ...]  # what `Scenario.verify` found
 
 
 @dataclass(frozen=True)
 class FixedResult:
-    """A theorem or erratum that was checked by itself.
+    """A theorem or erratum that was checked by itself."""
 
-    Parameters
-    ----------
-    theorem : Theorem
-        What was checked.
-    verdict : Verdict
-        The finding.
-    """
-
-    theorem: Theorem
+    theorem: Theorem  # what was checked
     verdict: Verdict
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict beside what its reader needs: the statement, its source, and what was expected.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    title, statement, source : str
-        Of the theorem.
-    expected : mapping of str to str
-        Expected status by theorem id and by ``"id:claim"``; empty if nothing is.
-    surprises : tuple of str
-        What differs from the expected, one line each.
-    references : tuple of str
-        Keys of the bibliography.
-    """
+    """A verdict beside what its reader needs: the statement, its source, and what was expected."""
 
     verdict: Verdict
     title: str
     statement: str
     source: str
+    # expected status by theorem id and by ``"id:claim"``; empty if nothing is
     expected: Mapping[str, Status] = field(default_factory=dict)
-    surprises: tuple[str, ...] = ()
-    references: tuple[str, ...] = ()
+    surprises: tuple[str, ...] = ()  # what differs from the expected, one line each
+    references: tuple[str, ...] = ()  # keys of the bibliography
 
     @property
     def as_expected(self) -> bool | None:
@@ -102,35 +71,17 @@ class Finding:
 
 @dataclass(frozen=True)
 class ScenarioPage:
-    """All that the report says of a scenario, as plain data.
-
-    Parameters
-    ----------
-    name, title, source : str
-        Of the scenario.
-    facts : tuple of (str, str)
-        How it was run, by name.
-    findings : tuple of Finding
-        Its verdicts.
-    pictures : tuple of Picture
-        Its figures; empty if none were drawn.
-    trouble : str
-        Why the run ended early; empty if it did not.
-    references : tuple of str
-        Keys of the bibliography.
-    play : str
-        The run for the player, as text (`flockana.player`); empty if there are no figures.
-    """
+    """All that the report says of a scenario, as plain data."""
 
     name: str
     title: str
     source: str
-    facts: tuple[tuple[str, str], ...]
+    facts: tuple[tuple[str, str], ...]  # how it was run, by name
     findings: tuple[Finding, ...]
-    pictures: tuple[Picture, ...] = ()
-    trouble: str = ""
-    references: tuple[str, ...] = ()
-    play: str = ""
+    pictures: tuple[Picture, ...] = ()  # its figures; empty if none were drawn
+    trouble: str = ""  # why the run ended early; empty if it did not
+    references: tuple[str, ...] = ()  # keys of the bibliography
+    play: str = ""  # the run for the player, as text (`flockana.player`); empty if there are no figures
 
     @property
     def surprises(self) -> tuple[str, ...]:
@@ -141,13 +92,7 @@ class ScenarioPage:
 
 @dataclass(frozen=True)
 class FixedPage:
-    """All that the report says of a theorem or erratum that needs no run.
-
-    Parameters
-    ----------
-    finding : Finding
-        Its verdict.
-    """
+    """All that the report says of a theorem or erratum that needs no run."""
 
     finding: Finding
 

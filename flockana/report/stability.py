@@ -20,7 +20,7 @@ from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.pages import Page
-from flockana.report.work import LINEARISED
+from flockana.report.section import LINEARISED
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor
@@ -37,23 +37,11 @@ _LONGER = (
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the table of decay rates, as text.
+    """A row of the table of decay rates, as text."""
 
-    Parameters
-    ----------
-    name, mode : str
-        Of the equilibrium and its slowest mode.
-    n : str
-        Agents.
-    frequency, predicted, measured, error, difference, random_linear, random_measured : str
-        Its figures.
-    status : str
-        Of the verdict that it is from.
-    """
-
-    name: str
+    name: str  # name, mode: of the equilibrium and its slowest mode
     mode: str
-    n: str
+    n: str  # agents
     frequency: str
     predicted: str
     measured: str
@@ -61,26 +49,16 @@ class Row:
     difference: str
     random_linear: str
     random_measured: str
-    status: str
+    status: str  # of the verdict that it is from
 
 
 @dataclass(frozen=True)
 class LinearisedFlocks:
-    """What the section shows whatever the verdicts are.
+    """What the section shows whatever the verdicts are."""
 
-    Parameters
-    ----------
-    poles : tuple of Picture
-        Poles and modes of a flock under each algorithm.
-    control : tuple of Picture
-        Step response, root locus and norms.
-    downloads : tuple of Download
-        State spaces.
-    """
-
-    poles: tuple[Picture, ...]
-    control: tuple[Picture, ...]
-    downloads: tuple[Download, ...]
+    poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
+    control: tuple[Picture, ...]  # step response, root locus and norms
+    downloads: tuple[Download, ...]  # state spaces
 
     @property
     def name(self) -> str:
@@ -93,36 +71,16 @@ NO_FLOCKS = LinearisedFlocks((), (), ())
 
 @dataclass(frozen=True)
 class StabilitySection:
-    """Poles, decay rates, linear range and delay margins, for the report.
+    """Poles, decay rates, linear range and delay margins, for the report."""
 
-    Parameters
-    ----------
-    flocks : LinearisedFlocks
-        Pictures and data of flocks under the algorithms.
-    rows : tuple of Row
-        The decay table.
-    pictures : tuple of Picture
-        Linear range and Bode plot, where their verdicts are at hand.
-    margins : tuple of str
-        Findings on delays and gains.
-    """
-
-    flocks: LinearisedFlocks
+    flocks: LinearisedFlocks  # pictures and data of flocks under the algorithms
     rows: tuple[Row, ...]
-    pictures: tuple[Picture, ...]
-    margins: tuple[str, ...]
+    pictures: tuple[Picture, ...]  # linear range and Bode plot, where their verdicts are at hand
+    margins: tuple[str, ...]  # findings on delays and gains
 
 
 def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = None) -> StabilitySection | None:
-    """Gather the section from the verdicts; None if none of them is about the linearisation.
-
-    Parameters
-    ----------
-    pages : iterable of Page
-        With the verdicts.
-    flocks : LinearisedFlocks, optional
-        Made before; by default they are made here.
-    """
+    """Gather the section from the verdicts; None if none of them is about the linearisation."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
     decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]

@@ -27,19 +27,11 @@ TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
 
 @dataclass(frozen=True)
 class Share:
-    """How often a claim came out in one way, of how many runs.
+    """How often a claim came out in one way, of how many runs."""
 
-    Parameters
-    ----------
-    count, runs : int
-        Runs that did, and all that the claim was checked on.
-    low, high : float
-        Interval of the share.
-    """
-
-    count: int
+    count: int  # count, runs: Runs that did, and all that the claim was checked on
     runs: int
-    low: float
+    low: float  # low, high: Interval of the share
     high: float
 
     @property
@@ -56,79 +48,39 @@ class Share:
 
 @dataclass(frozen=True)
 class Row:
-    """One claim over all seeds.
-
-    Parameters
-    ----------
-    theorem, claim : str
-        Its names.
-    text : str
-        What it says, in words.
-    verified, refuted : Share
-        Shares of the runs.
-    vacuous, inconclusive : int
-        Runs on which it says nothing, or that do not decide it.
-    expected : str
-        Status that the scenario expects for its usual seed; empty if none.
-    """
+    """One claim over all seeds."""
 
     theorem: str
     claim: str
-    text: str
-    verified: Share
+    text: str  # what it says, in words
+    verified: Share  # verified, refuted: Shares of the runs
     refuted: Share
-    vacuous: int
+    vacuous: int  # vacuous, inconclusive: Runs on which it says nothing, or that do not decide it
     inconclusive: int
-    expected: str = ""
+    expected: str = ""  # status that the scenario expects for its usual seed; empty if none
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One scenario over all seeds.
-
-    Parameters
-    ----------
-    scenario, title : str
-        Of the scenario.
-    settings : str
-        Whose they are: printed, recommended, …
-    options : str
-        Options that were given it, in words; empty if none.
-    runs, incomplete : int
-        All runs, and how many of them did not complete and count for nothing.
-    seconds : float
-        Mean time of a run.
-    rows : tuple of Row
-        Claims.
-    """
+    """One scenario over all seeds."""
 
     scenario: str
     title: str
-    settings: str
-    options: str
-    runs: int
+    settings: str  # whose they are: printed, recommended, …
+    options: str  # options that were given it, in words; empty if none
+    runs: int  # runs, incomplete: All runs, and how many of them did not complete and count for nothing
     incomplete: int
-    seconds: float
-    rows: tuple[Row, ...]
+    seconds: float  # mean time of a run
+    rows: tuple[Row, ...]  # claims
 
 
 @dataclass(frozen=True)
 class StatisticsSection:
-    """Shares over many seeds of the scenarios that were surveyed.
+    """Shares over many seeds of the scenarios that were surveyed."""
 
-    Parameters
-    ----------
-    level : float
-        Confidence of every interval by itself.
-    entries : tuple of Entry
-        By scenario.
-    picture : Picture, optional
-        All shares.
-    """
-
-    level: float
-    entries: tuple[Entry, ...]
-    picture: Picture | None = None
+    level: float  # confidence of every interval by itself
+    entries: tuple[Entry, ...]  # by scenario
+    picture: Picture | None = None  # all shares
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""

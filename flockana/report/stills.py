@@ -20,15 +20,7 @@ _MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are 
 
 
 def stills(run: Trajectory, times: Sequence[float]) -> str:
-    """The samples nearest to some times, side by side, as HTML; all on one scale.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    times : sequence of float
-        Instants.
-    """
+    """The samples nearest to some times, side by side, as HTML; all on one scale."""
     samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
     around = world(run.law.continuous or run.law, run, samples)
     places = [_flat(run.q[k]) for k in samples]

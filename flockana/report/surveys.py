@@ -14,18 +14,10 @@ _AT_ONCE = 10  # runs in one survey: about a second at most, so that all process
 
 @dataclass(frozen=True)
 class Survey:
-    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent.
-
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    seeds : tuple of int
-        Which runs.
-    """
+    """Runs of one scenario to make and judge by what its source reports; names and numbers only, so it can be sent."""
 
     scenario: str
-    seeds: tuple[int, ...]
+    seeds: tuple[int, ...]  # which runs
 
     @property
     def name(self) -> str:
@@ -35,18 +27,10 @@ class Survey:
 
 @dataclass(frozen=True)
 class SurveyResult:
-    """The records of a survey's runs.
+    """The records of a survey's runs."""
 
-    Parameters
-    ----------
-    survey : Survey
-        Which runs.
-    records : tuple of Record
-        One of each seed.
-    """
-
-    survey: Survey
-    records: tuple[Record, ...]
+    survey: Survey  # which runs
+    records: tuple[Record, ...]  # one of each seed
 
     @property
     def name(self) -> str:

@@ -12,6 +12,7 @@ from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import crew
 from flockana.laws.discrete import DiscreteLaw
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
+from flockana.report.section import MANY_LAWS, Section
 from flockana.report.surveys import Survey, SurveyResult, make_survey
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems, verify
@@ -21,48 +22,18 @@ if TYPE_CHECKING:
     from flockana.report.stability import LinearisedFlocks
 
 ERRATA = "errata"
-MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 
 @dataclass(frozen=True)
 class Task:
-    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent.
+    """A scenario to run and verify, or a theorem to check by itself; names and numbers only, so it can be sent."""
 
-    Parameters
-    ----------
-    name : str
-        Of the scenario or the theorem.
-    fixed : bool
-        True for a theorem by itself.
-    seed : int
-        Of the scenario's random start.
-    only : tuple of str
-        Theorems to check on the scenario; empty for all of its own and what its source reports.
-    figures : bool
-        Draw the scenario's figures.
-    """
-
-    name: str
-    fixed: bool = False
-    seed: int = 0
+    name: str  # of the scenario or the theorem
+    fixed: bool = False  # true for a theorem by itself
+    seed: int = 0  # of the scenario's random start
+    # theorems to check on the scenario; empty for all of its own and what its source reports
     only: tuple[str, ...] = ()
-    figures: bool = True
-
-
-@dataclass(frozen=True)
-class Section:
-    """What the report shows beside verdicts, to be made; a name and a number only, so it can be sent.
-
-    Parameters
-    ----------
-    name : str
-        `MANY_LAWS` or `LINEARISED`.
-    seed : int
-        Of the start.
-    """
-
-    name: str
-    seed: int = 0
+    figures: bool = True  # draw the scenario's figures
 
 
 Work = Task | Survey | Section

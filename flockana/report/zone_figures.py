@@ -57,13 +57,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
-    """Greatest, median and least distance of two agents over time.
-
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    """
+    """Greatest, median and least distance of two agents over time."""
     profile = pair_distance_profile(run.q)
     return tuple(
         Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))

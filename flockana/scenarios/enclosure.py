@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flockana.base.errors import SolverError
+from flockana.base.seals import changed
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems import Tolerances, Verdict, verify
@@ -16,39 +17,19 @@ from flockana.theorems import Tolerances, Verdict, verify
 class Enclosure:
     """How to decide theorems about a run rigorously: a tube from its start, over its time.
 
-    Parameters
-    ----------
-    theorems : tuple of str
-        Ids of the theorems; others are checked on the run.
-    limit : bool
-        Whether to certify the basin of the equilibrium next to the end: what claims about limits need.
-    options : mapping
-        Keyword arguments of `flockana.enclose`.
-
     Examples
     --------
     >>> Enclosure(("collision-energy",)).limit
     False
     """
 
-    theorems: tuple[str, ...]
+    theorems: tuple[str, ...]  # ids of the theorems; others are checked on the run
+    # whether to certify the basin of the equilibrium next to the end: what claims about limits need
     limit: bool = False
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments of `flockana.enclose`
 
     def verdict(self, name: str, run: Trajectory, *, tolerances: Tolerances | None, subject: str) -> Verdict:
-        """Check a theorem on all that starts where a run does.
-
-        Parameters
-        ----------
-        name : str
-            One of `theorems`.
-        run : Trajectory
-            The run: its law, its first sample and its time are enclosed, whatever else it holds.
-        tolerances : Tolerances, optional
-            Thresholds.
-        subject : str
-            A name for the case.
-        """
+        """Check a theorem on all that starts where a run does."""
         tube, basin = run.remembered("enclosed", lambda: self._enclosed(run))
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
@@ -66,7 +47,7 @@ class Enclosure:
         span = (float(run.t[0]), float(run.t[-1]))
         tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
         if unit != 1.0:
-            tube = replace(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
+            tube = changed(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
         if not self.limit:
             return tube, None
         try:

@@ -18,6 +18,7 @@ from flockana.laws.peer_to_peer import PeerToPeer
 from flockana.scenarios.findings import ROUNDING, component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.olfati_saber.gamma_agent import consistent
 
@@ -83,7 +84,7 @@ def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:
-    return balance(run, [], tolerances)
+    return balance(Observed.alone(run), [], tolerances)
 
 
 def _start(seed: int) -> tuple[FloatArray, FloatArray]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 from flockana.base.checks import (
     ensure_count,
@@ -22,42 +22,27 @@ from flockana.scenarios.start import is_later
 from flockana.theorems import theorems
 from flockana.theorems.theorem import Status
 
-if TYPE_CHECKING:
-    from flockana.scenarios.scenario import Scenario
-
 SOURCE = "source"  # the id under which a source's own report is judged
 _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
 
 
-def ensure_parts(scenario: Scenario) -> None:
-    """Raise unless a scenario has a law, a start, a time span and statuses to expect; a start of later is not drawn.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        Just made.
-
-    Raises
-    ------
-    ArgumentError
-        Which names the part.
-    """
-    if not isinstance(scenario.name, str) or not scenario.name:
-        raise ArgumentError(f"name = {scenario.name!r}: expected the scenario's name in the catalogue")
-    ensure_law(scenario.law)
-    ensure_time_span(scenario.t_span)
-    ensure_seed(scenario.seed)
-    given = {key: vars(scenario)[key] for key in ("q0", "p0")}
-    shapes = {key: v.shape if is_later(v) else ensure_points(key, v).shape for key, v in given.items()}
+def ensure_parts(parts: Mapping[str, Any]) -> None:
+    """Raise unless the fields of a scenario are a law, a start, a time span and statuses to expect; draw no start."""
+    if not isinstance(parts["name"], str) or not parts["name"]:
+        raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
+    ensure_law(parts["law"])
+    ensure_time_span(parts["t_span"])
+    ensure_seed(parts["seed"])
+    shapes = {key: v.shape if is_later(v := parts[key]) else ensure_points(key, v).shape for key in ("q0", "p0")}
     if shapes["q0"] != shapes["p0"]:
         raise ArgumentError(
             f"q0 has shape {shapes['q0']} but p0 has shape {shapes['p0']}: expected equal shapes (n, m)"
         )
     for name in ("expected", "shipped"):
-        _ensure_statuses(name, getattr(scenario, name))
-    outside = [time for time in scenario.instants if not scenario.t_span[0] <= time <= scenario.t_span[1]]
-    if outside:
-        raise ArgumentError(f"instants = {scenario.instants!r}: expected times within t_span = {scenario.t_span}")
+        _ensure_statuses(name, parts[name])
+    (low, high), instants = parts["t_span"], parts["instants"]
+    if not all(low <= time <= high for time in instants):
+        raise ArgumentError(f"instants = {instants!r}: expected times within t_span = {parts['t_span']}")
 
 
 def _ensure_statuses(name: str, statuses: Any) -> None:
@@ -73,39 +58,13 @@ def _ensure_statuses(name: str, statuses: Any) -> None:
 
 
 def ensure_judged(names: Iterable[str]) -> None:
-    """Raise unless there are such theorems: asked before a run, as to list scenarios needs none of them.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Ids, of a scenario's expectations.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such theorem; the closest name is suggested.
-    """
+    """Raise unless there are such theorems: asked before a run, as to list scenarios needs none of them."""
     for name in names:
         ensure_known("theorem", name, theorems())
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
-    """Raise unless a scenario has such options, of such kinds; the builder checks what values they may have.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
-    build : callable
-        Makes it.
-    options : mapping
-        Its keyword arguments.
-
-    Raises
-    ------
-    ArgumentError
-        On an option that there is not, a value not of its kind, or more agents than memory holds.
-    """
+    """Raise unless a scenario has such options, of such kinds; the builder checks what values they may have."""
     known = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
     unknown = sorted(set(options) - set(known))
     if unknown:

@@ -168,20 +168,6 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
     """n agents strewn over a square, of which some, the first, feel a leader of constant velocity.
 
-    Parameters
-    ----------
-    seed : int
-        Of the start.
-    informed : int
-        How many agents are informed, 1 to n.
-    n : int
-        How many there are.
-
-    Raises
-    ------
-    ArgumentError
-        If more are informed than there are, or none.
-
     Examples
     --------
     >>> informed_survey(informed=6).law.gains.c1_gamma[5:7]

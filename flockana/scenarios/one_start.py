@@ -43,46 +43,22 @@ _STRENGTH, _CONSENSUS = 40.0, 1.0  # of Tanner's laws: forces of the size of k/d
 
 @dataclass(frozen=True)
 class Entry:
-    """A law for the common start, and what a theorem says of it.
+    """A law for the common start, and what a theorem says of it."""
 
-    Parameters
-    ----------
-    name : str
-        Of the law, for people.
-    law : callable
-        ``law(q0, p0)`` builds it.
-    theorem : str
-        Id of a theorem about its runs.
-    promise : str
-        What the theorem promises, in our words and few of them.
-    expected : {"verified", "refuted", "vacuous", "inconclusive"}, optional
-        Status that the theorem has from this start; None where nothing is expected.
-    """
-
-    name: str
-    law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]
-    theorem: str
-    promise: str
-    expected: Status | None = None
+    name: str  # of the law, for people
+    law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]  # ``law(q0, p0)`` builds it
+    theorem: str  # id of a theorem about its runs
+    promise: str  # what the theorem promises, in our words and few of them
+    expected: Status | None = None  # status that the theorem has from this start; None where nothing is expected
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of the start under one law.
+    """What came of the start under one law."""
 
-    Parameters
-    ----------
-    entry : Entry
-        The law and its theorem.
-    run : Trajectory
-        The run.
-    verdict : Verdict
-        Of the theorem on the run.
-    """
-
-    entry: Entry
+    entry: Entry  # the law and its theorem
     run: Trajectory
-    verdict: Verdict
+    verdict: Verdict  # of the theorem on the run
 
     @property
     def velocity_share(self) -> float:
@@ -107,11 +83,6 @@ class Outcome:
 
 def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
     """Ten agents near a patch of a lattice, at one speed, with headings about one direction: (q0, p0).
-
-    Parameters
-    ----------
-    seed : int
-        Of what chance adds.
 
     Examples
     --------
@@ -211,18 +182,6 @@ ENTRIES: tuple[Entry, ...] = (
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
     """The common start under each law, with the verdict of its theorem.
-
-    Parameters
-    ----------
-    names : iterable of str, optional
-        Laws by the names in `ENTRIES`; by default all.
-    seed : int
-        Of the start.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such law.
 
     Examples
     --------

@@ -24,32 +24,14 @@ from flockana.theorems.theorem import Status
 
 @dataclass(frozen=True)
 class Report:
-    """Something that the source reports of its run, and the function that judges whether it is so.
+    """Something that the source reports of its run, and the function that judges whether it is so."""
 
-    Parameters
-    ----------
-    name : str
-        Short name.
-    text : str
-        What the source reports, in our words.
-    check : callable
-        ``check(trajectory, tolerances) -> Claim``.
-    """
-
-    name: str
-    text: str
-    check: Callable[[Trajectory, Tolerances], Claim]
+    name: str  # short name
+    text: str  # what the source reports, in our words
+    check: Callable[[Trajectory, Tolerances], Claim]  # ``check(trajectory, tolerances) -> Claim``
 
     def judge(self, seen: Observed, tolerances: Tolerances) -> Claim:
-        """Return the claim on a run, its margin enclosed by the difference between the run and its second one.
-
-        Parameters
-        ----------
-        seen : Observed
-            The run.
-        tolerances : Tolerances
-            Thresholds.
-        """
+        """Return the claim on a run, its margin enclosed by the difference between the run and its second one."""
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
@@ -64,20 +46,12 @@ class Scenario:
         Name in the catalogue and one line.
     source : str
         Where it was published, and what is ours.
-    law : Law or DiscreteLaw
-        What moves the flock.
     q0, p0 : ndarray, shape (n, m)
         Start; what takes long to draw may be given as `flockana.scenarios.start.later`.
-    t_span : (float, float)
-        Start and end.
-    seed : int
-        Of the random start.
     expected : mapping of str to str
         Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
     reports : tuple of Report
         What the source says it saw; judged as one verdict under the id ``"source"``.
-    options : mapping
-        Keyword arguments of `simulate`.
     references : tuple of str
         Keys of the bibliography.
     seeds : int
@@ -121,7 +95,7 @@ class Scenario:
     enclosed: Enclosure | None = None
 
     def __post_init__(self) -> None:
-        ensure_parts(self)
+        ensure_parts(vars(self))
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
@@ -160,8 +134,6 @@ class Scenario:
         ----------
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         verdicts = tuple(self.verdict(name, trajectory, tolerances=tolerances) for name in self.theorems)
         return verdicts + self.reported(trajectory, tolerances=tolerances)
@@ -175,8 +147,6 @@ class Scenario:
             Its id.
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         if self.enclosed is not None and name in self.enclosed.theorems:
             return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)
@@ -189,8 +159,6 @@ class Scenario:
         ----------
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
-        tolerances : Tolerances, optional
-            Thresholds.
         """
         if not self.reports:
             return ()
@@ -235,13 +203,6 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
     """Return where a verdict differs from expected statuses or contradicts a proof, one line each.
 
     Statuses are keyed by theorem id and by ``"id:claim"``.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The finding.
-    expected : mapping of str to str
-        The expectation; what it does not name may be anything.
     """
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
     differ = (

@@ -21,41 +21,20 @@ class _Later:
 
 
 def later(shape: tuple[int, int], compute: Callable[[], FloatArray]) -> FloatArray:
-    """Positions or velocities for a `Scenario`, which has them computed when it is first asked for them.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        n agents in m dimensions.
-    compute : callable
-        Returns them, of that shape.
-    """
+    """Positions or velocities for a `Scenario`, which has them computed when it is first asked for them."""
     return cast("FloatArray", _Later(shape, compute))  # an array to whoever asks the scenario
 
 
 def drawn_later(
     shape: tuple[int, int], draw: Callable[[], tuple[FloatArray, FloatArray]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities for a `Scenario` that are drawn together, once.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        n agents in m dimensions.
-    draw : callable
-        Returns both, of that shape.
-    """
+    """Positions and velocities for a `Scenario` that are drawn together, once."""
     drawn = cache(draw)
     return later(shape, lambda: drawn()[0]), later(shape, lambda: drawn()[1])
 
 
 def is_later(start: Any) -> bool:
     """Whether positions or velocities were given by `later`.
-
-    Parameters
-    ----------
-    start : object
-        As given.
 
     Examples
     --------
@@ -85,11 +64,6 @@ class _Field:
 
 def given_later(*names: str) -> Callable[[type[T]], type[T]]:
     """Let fields of a dataclass be given by `later`.
-
-    Parameters
-    ----------
-    *names : str
-        The fields.
 
     Examples
     --------

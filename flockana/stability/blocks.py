@@ -96,7 +96,6 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     stiffness, damping : ndarray, shape (n m, n m)
         K and D, such as those of a `Linearisation`, dense.
     q : ndarray, shape (n, m)
-        Positions.
 
     Examples
     --------
@@ -125,10 +124,7 @@ def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bloc
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q : array_like, shape (n, m)
-        Positions.
     t : float
         When: with per-agent gains the place of the γ-agent matters.
     strict : bool

@@ -37,26 +37,16 @@ def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
 
 @dataclass(frozen=True)
 class Motion:
-    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt).
+    """q_r(t) = start + velocity t + Re(swing e^jωt) and p_r(t) = drift + factor Re(jω swing e^jωt)."""
 
-    Parameters
-    ----------
-    start, velocity, drift : ndarray, shape (m,)
-        Where it is at t = 0 but for the swing, how fast it travels, and what it says about that.
-    swing : complex ndarray, shape (m,)
-        Amplitudes.
-    omega : float
-        Angular frequency, 0 without a swing.
-    factor : float
-        p_r over dq_r/dt, of the swing.
-    """
-
+    # start, velocity, drift: shape (m,): where it is at t = 0 but for the swing, how fast it travels, and what it says
+    # about that
     start: FloatArray
     velocity: FloatArray
     drift: FloatArray
-    swing: ComplexArray
-    omega: float
-    factor: float
+    swing: ComplexArray  # shape (m,): amplitudes
+    omega: float  # angular frequency, 0 without a swing
+    factor: float  # p_r over dq_r/dt, of the swing
 
 
 def motion(target: Target) -> Motion:

@@ -37,8 +37,6 @@ class Decay:
     ----------
     name, law : str
         Of the equilibrium, and of its law.
-    n, m : int
-        Agents, dimension.
     mode : Mode
         The slowest mode that K̃ sees.
     predicted, measured : float
@@ -167,8 +165,6 @@ class LinearRange:
 
     Parameters
     ----------
-    name : str
-        Of the equilibrium.
     amplitudes : ndarray, shape (K,)
         Largest initial displacement of an agent, in units of d.
     deviations : ndarray, shape (K,)
@@ -236,8 +232,6 @@ def linear_range(
     ----------
     flock : Linearisation
         The linearised flock.
-    name : str
-        Of the equilibrium.
     amplitudes : sequence of float
         Largest displacements, in units of d, rising.
 

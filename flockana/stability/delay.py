@@ -9,7 +9,7 @@ itself are prompt).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf, nan, pi
 from typing import Any
 
 import numpy as np
@@ -19,40 +19,29 @@ from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_
 from flockana.equilibria.curvature import EPS
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import NEUTRAL, law_blocks
+from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
 from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
 
 DELAYED = ("all", "pairs", "neighbours")
-_CHECK = 0.3  # of the smallest estimate: crossings that come so close to it are located exactly
-_ALIKE = 1e-8  # moduli that differ by no more pass 1 together: of modes that a symmetry of the flock couples
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
-_LOWEST = 1e-4  # of the highest frequency at which roots can cross: the sweep begins there
+_LOWEST = 1e-6  # of the highest frequency at which roots can cross: with neutral motions the search begins there
 
 
 @dataclass(frozen=True)
 class DelaySystem:
-    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ).
+    """x'' = −K₀ x − D₀ x' − K₁ x(t−τ) − D₁ x'(t−τ)."""
 
-    Parameters
-    ----------
-    prompt : tuple of ndarray
-        (K₀, D₀), shape (N, N).
-    late : tuple of ndarray
-        (K₁, D₁).
-    neutral : int
-        Roots at s = 0, whatever the delay: of rigid motions that nothing holds.
-    """
-
-    prompt: tuple[FloatArray, FloatArray]
-    late: tuple[FloatArray, FloatArray]
-    neutral: int = 0
+    prompt: tuple[FloatArray, FloatArray]  # (K₀, D₀), shape (N, N)
+    late: tuple[FloatArray, FloatArray]  # (K₁, D₁)
+    neutral: int = 0  # roots at s = 0, whatever the delay: of rigid motions that nothing holds
 
     @property
     def highest(self) -> float:
         """No root crosses the imaginary axis above this frequency, since there s² outweighs the rest."""
         k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
-        return 0.5 * (d + float(np.sqrt(d * d + 4.0 * k)))
+        return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
         """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots."""
@@ -71,10 +60,22 @@ class DelayMargin:
         τ*; infinite if no delay does it, 0 if the flock is not stable without one, by more than rounding.
     frequency : float
         Of the oscillation that then neither grows nor decays, in radians per time unit; NaN where there is none.
+    least : float
+        Certified lower bound: no shorter delay brings a root onto the axis. By default the delay itself.
     """
 
     delay: float
     frequency: float
+    least: float = nan
+
+    def __post_init__(self) -> None:
+        if np.isnan(self.least):
+            object.__setattr__(self, "least", self.delay)
+
+    @property
+    def certified(self) -> bool:
+        """Whether the delay is the margin, to a millionth; else the margin is at most the delay."""
+        return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
 def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", strict: bool = True) -> DelaySystem:
@@ -82,8 +83,6 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q : array_like, shape (n, m)
         Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
@@ -142,71 +141,49 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
     k, d = ensure_nonnegative("k", k), ensure_nonnegative("d", d)
     if k == 0.0 and d == 0.0:
         return DelayMargin(inf, float("nan"))
+    unit = max(d, float(np.sqrt(k)))  # nothing overflows
+    k, d = k / unit / unit, d / unit
     omega = float(np.sqrt(0.5 * (d * d + np.hypot(d * d, 2.0 * k))))
-    return DelayMargin(float(np.arctan2(omega * d, k)) / omega, omega)
+    return DelayMargin(float(np.arctan2(omega * d, k)) / omega / unit, omega * unit)
 
 
-def delay_margin(system: DelaySystem, *, grid: int = 200) -> DelayMargin:
-    """The least delay at which a root reaches the imaginary axis, by a sweep over frequency.
+def delay_margin(system: DelaySystem) -> DelayMargin:
+    """The least delay at which a root reaches the imaginary axis.
 
-    s = jω is a root for the delay τ where z = e^jωτ is an eigenvalue of −(K₀ − ω² + jωD₀)⁻¹(K₁ + jωD₁): the moduli of
-    these, sorted, are continuous in ω, and each passage through 1 is one crossing, with τ from the phase. No root at
-    s = 0 is met, so neutral motions are set apart by themselves. Passages that turn back within one step of the sweep
-    would be missed; `rightmost_roots` is the check.
+    In closed form where prompt and late parts share their modes, else by a search over all frequencies that excludes
+    whole intervals by a bound (`flockana.stability.crossings`): no band is too narrow for it. Neutral motions are set
+    apart by themselves; a flock that has any is searched from a millionth of its highest frequency on.
 
     Parameters
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
-    grid : int
-        Frequencies, logarithmic.
-
-    Returns
-    -------
-    DelayMargin
 
     Examples
     --------
     >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.array([[4.0]]), np.array([[3.0]])))
     >>> bool(abs(delay_margin(one).delay - scalar_margin(4.0, 3.0).delay) < 1e-12)
     True
+
+    A lightly damped swing is unstable in a narrow band only:
+
+    >>> prompt, late = (np.array([[1.0]]), np.array([[0.01]])), (np.array([[0.0101]]), np.array([[0.0]]))
+    >>> round(delay_margin(DelaySystem(prompt, late)).delay, 5)
+    1.43389
     """
-    from scipy.optimize import brentq
-
     if not _stable(system):
-        return DelayMargin(0.0, float("nan"))
+        return DelayMargin(0.0, float("nan"), 0.0)
     if system.highest == 0.0:
-        return DelayMargin(inf, float("nan"))
-    top = 1.01 * system.highest
-    omegas = np.geomspace(_LOWEST * top, top, ensure_count("grid", grid) + 1)
-    spectra = [_phases(system, omega) for omega in omegas.tolist()]
-    above = np.array([np.abs(z) for z in spectra]) >= 1.0  # a level that is met on the grid is passed on one side of it
-    step, index = np.nonzero(above[:-1] != above[1:])
-    guesses = [_angle(spectra[k][i]) / omegas[k] for k, i in zip(step.tolist(), index.tolist(), strict=True)]
-    best = DelayMargin(inf, float("nan"))
-    for guess, k, i in sorted(zip(guesses, step.tolist(), index.tolist(), strict=True)):
-        if guess > (1.0 + _CHECK) * best.delay:
-            break
-        omega = float(
-            brentq(lambda w, i=i: float(abs(_phases(system, w)[i])) - 1.0, omegas[k], omegas[k + 1], xtol=1e-14 * top)
-        )
-        phases = _phases(system, omega)
-        delay = min(map(_angle, (phases[i], *phases[np.abs(np.abs(phases) - 1.0) <= _ALIKE]))) / omega
-        if delay < best.delay:
-            best = DelayMargin(delay, omega)
-    return best
-
-
-def _phases(system: DelaySystem, omega: float) -> ComplexArray:
-    """The values that e^jωτ would have to take, largest modulus first."""
+        return DelayMargin(inf, float("nan"), inf)
+    unit = 2.0 ** int(np.log2(system.highest))  # of frequency: exact, and nothing overflows
     (k0, d0), (k1, d1) = system.prompt, system.late
-    now = k0 - omega**2 * np.eye(len(k0)) + 1j * omega * d0
-    phases = np.linalg.eigvals(-np.linalg.solve(now, k1 + 1j * omega * d1)).astype(np.complex128)
-    return phases[np.argsort(-np.abs(phases), kind="stable")]
-
-
-def _angle(z: complex) -> float:
-    return float(np.angle(z)) % (2.0 * pi)
+    four = (k0 / unit / unit, d0 / unit, k1 / unit / unit, d1 / unit)
+    stiffness = float(np.abs(four[0] + four[2]).max())
+    found = modal_crossing(four, NEUTRAL * stiffness if system.neutral else 0.0)
+    if found is None:
+        top = 1.01 * system.highest / unit
+        found = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top)
+    return DelayMargin(found.delay / unit, found.frequency * unit, found.least / unit)
 
 
 def _stable(system: DelaySystem) -> bool:

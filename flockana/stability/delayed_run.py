@@ -35,7 +35,6 @@ class DelayedRun:
     t : ndarray, shape (T,)
         Times, one step apart.
     q, p : ndarray, shape (T, n, m)
-        Positions and velocities.
     delay : float
         τ.
     """
@@ -59,8 +58,6 @@ def simulate_delayed(
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     q0, p0 : array_like, shape (n, m)
         State at the start.
     t_span : (float, float)

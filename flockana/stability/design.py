@@ -52,19 +52,6 @@ _GRID = 10
 class GainProblem:
     """The matrix of the design problem and its eigenvalues as functions of the gains.
 
-    Parameters
-    ----------
-    stiffness : ndarray, shape (N, N)
-        c1α ∇²V, or zero in the simplified form.
-    damping : ndarray, shape (N, N)
-        c2α L̂.
-    apart : ndarray, shape (N, k)
-        Orthonormal motions that are projected out.
-    agents : int
-        n; each has N/n coordinates.
-    speeds : bool
-        Whether their velocities are projected out too, or their positions alone.
-
     Examples
     --------
     One agent, c1γ = 2 and c2γ = 3, has the roots −1 and −2:
@@ -74,11 +61,11 @@ class GainProblem:
     -1.0
     """
 
-    stiffness: FloatArray
-    damping: FloatArray
-    apart: FloatArray
-    agents: int
-    speeds: bool = True
+    stiffness: FloatArray  # shape (N, N): c1α ∇²V, or zero in the simplified form
+    damping: FloatArray  # shape (N, N): c2α L̂
+    apart: FloatArray  # shape (N, k): orthonormal motions that are projected out
+    agents: int  # n; each has N/n coordinates
+    speeds: bool = True  # whether their velocities are projected out too, or their positions alone
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
@@ -187,8 +174,6 @@ def gain_problem(
     ----------
     q : array_like, shape (n, m)
         A quasi-lattice.
-    alpha : AlphaInteraction
-        The pair law.
     gains : Gains
         c1α and c2α are used.
     form : {"full", "simplified"}

@@ -28,8 +28,6 @@ class Linearisation:
 
     Parameters
     ----------
-    law : Law
-        The law.
     q, p : ndarray, shape (n, m)
         Where it is linearised; every agent has the velocity of the frame.
     t : float

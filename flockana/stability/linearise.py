@@ -17,6 +17,7 @@ from flockana.base.checks import (
     ensure_state,
 )
 from flockana.base.errors import ArgumentError
+from flockana.equilibria.solve import Equilibrium, ensure_found
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame
@@ -73,10 +74,6 @@ def linearise(
         See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
         that lets go at r is as stiff as the solver left it).
 
-    Returns
-    -------
-    Linearisation
-
     Raises
     ------
     ArgumentError
@@ -93,6 +90,8 @@ def linearise(
     """
     if isinstance(law, DiscreteLaw) or not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law, such as Algorithm2(...); a map has no q'' = u")
+    if isinstance(equilibrium, Equilibrium):
+        ensure_found("equilibrium", equilibrium)
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     t = ensure_finite_scalar("t", t)

@@ -200,25 +200,13 @@ def _stable(a: FloatArray) -> bool:
 
 @dataclass(frozen=True)
 class NormTable:
-    """Norms of relaxed hexagonal flocks against their size.
-
-    Parameters
-    ----------
-    sizes : tuple of int
-        Numbers of agents.
-    h2, hinf : ndarray, shape (N,)
-        Norms from a force on each agent to the shape, in length over force.
-    peak : ndarray, shape (N,)
-        Frequency of the largest gain, in radians per time unit.
-    bounds : ndarray, shape (N, 2)
-        Closed-form bounds of `h2`.
-    """
+    """Norms of relaxed hexagonal flocks against their size."""
 
     sizes: tuple[int, ...]
-    h2: FloatArray
+    h2: FloatArray  # h2, hinf: shape (N,): norms from a force on each agent to the shape, in length over force
     hinf: FloatArray
-    peak: FloatArray
-    bounds: FloatArray
+    peak: FloatArray  # shape (N,): frequency of the largest gain, in radians per time unit
+    bounds: FloatArray  # shape (N, 2): closed-form bounds of `h2`
 
 
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:

@@ -58,10 +58,6 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
     count : int
         How many modes.
 
-    Returns
-    -------
-    SlowModes
-
     Raises
     ------
     ArgumentError

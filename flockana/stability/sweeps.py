@@ -27,24 +27,12 @@ GAINS = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
 
 @dataclass(frozen=True)
 class Sweep:
-    """Branches of eigenvalues against one gain.
-
-    Parameters
-    ----------
-    name : str
-        The gain.
-    values : ndarray, shape (L,)
-        Its values.
-    eigenvalues : complex ndarray, shape (L, M)
-        One column per branch, joined by continuity.
-    neutral : int
-        Columns in front that stay at 0: rigid motions that nothing holds.
-    """
+    """Branches of eigenvalues against one gain."""
 
     name: str
-    values: FloatArray
-    eigenvalues: ComplexArray
-    neutral: int
+    values: FloatArray  # shape (L,)
+    eigenvalues: ComplexArray  # shape (L, M): one column per branch, joined by continuity
+    neutral: int  # columns in front that stay at 0: rigid motions that nothing holds
 
     @property
     def abscissa(self) -> FloatArray:
@@ -158,30 +146,18 @@ def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
 
 @dataclass(frozen=True)
 class MarginSweep:
-    """Delay margin against one gain.
-
-    Parameters
-    ----------
-    name : str
-        The gain.
-    values : ndarray, shape (L,)
-        Its values.
-    margins, frequencies : ndarray, shape (L,)
-        τ* and the frequency of the oscillation there; infinite and NaN where no delay does harm.
-    delayed : str
-        Which terms are delayed.
-    """
+    """Delay margin against one gain."""
 
     name: str
-    values: FloatArray
+    values: FloatArray  # shape (L,)
+    # margins, frequencies: shape (L,): τ* and the frequency of the oscillation there; infinite and NaN where no delay
+    # does harm
     margins: FloatArray
     frequencies: FloatArray
-    delayed: str
+    delayed: str  # which terms are delayed
 
 
-def margin_sweep(
-    law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all", grid: int = 120
-) -> MarginSweep:
+def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all") -> MarginSweep:
     """Delay margin of the followed equilibrium as one gain varies.
 
     Parameters
@@ -196,8 +172,6 @@ def margin_sweep(
         Its values, rising.
     delayed : {"all", "pairs", "neighbours"}
         As in `delay_system`.
-    grid : int
-        As in `delay_margin`.
 
     Raises
     ------
@@ -218,7 +192,7 @@ def margin_sweep(
     for level in levels.tolist():
         here = replace(law, gains=replace(law.gains, **{name: level}))
         q = np.array(find_equilibrium(here, q).q)
-        delays.append(delay_margin(delay_system(here, q, delayed=delayed), grid=grid))
+        delays.append(delay_margin(delay_system(here, q, delayed=delayed)))
     margins, frequencies = (np.array([getattr(x, kind) for x in delays]) for kind in ("delay", "frequency"))
     return MarginSweep(name, levels, margins, frequencies, delayed)
 

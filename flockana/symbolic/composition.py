@@ -43,13 +43,6 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
     H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² +
     Σ (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-    informed : int
-        How many of the three agents the γ-agent pulls.
-
     Examples
     --------
     >>> given_frame_identity(1).holds
@@ -74,11 +67,6 @@ def moving_frame_identity(m: int = 2) -> Derivation:
 
     H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
     acts on all alike does no work there.
-
-    Parameters
-    ----------
-    m : int
-        Dimension.
 
     Examples
     --------

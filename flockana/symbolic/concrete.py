@@ -40,8 +40,6 @@ class ConcreteFlock:
     ----------
     law : str
         ``"algorithm1"`` or ``"algorithm2"``.
-    n, m : int
-        Number of agents, dimension.
     gains : GainSymbols
         Gains; all symbolic if not given.
     kinetic_factor : sympy.Expr

@@ -175,8 +175,6 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
 
     Parameters
     ----------
-    m : int
-        Dimension, 1, 2 or 3.
     gains : GainSymbols
         Gains; all symbolic if not given.
     kinetic_factor : sympy.Expr
@@ -218,8 +216,6 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
 
     Parameters
     ----------
-    m : int
-        Dimension, 1, 2 or 3.
     gains : GainSymbols
         Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
     lambda_ : sympy.Expr, optional

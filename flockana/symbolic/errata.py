@@ -18,11 +18,6 @@ from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
 def e1_identity(m: int = 2) -> EnergyIdentity:
     """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p, whose first term has no sign.
 
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-
     Raises
     ------
     ArgumentError

@@ -9,26 +9,33 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Mapping
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import sympy as sp
+from flint import arb
 from sympy.printing.str import StrPrinter
 
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.symbolic.enclosed import Enclosed, precision
 
 LENGTH = 4000  # characters of a formula
 DEPTH = 100  # of brackets and operations within each other
 LARGEST_POWER = 64
+NODES = 1000  # of the expression
+TOWER = 3  # exponentials, or powers of the distance, within each other
+DEGREE = 4096  # of powers of powers
 _BITS = 1024  # of a whole number or a fraction that powers give
 _MOST_EXPONENT = 600  # of e
 _GREATEST = 1e300
 _GROWING = ("exp", "sinh", "cosh")
 
+_DIVISOR_BITS = 600  # to which a divisor must differ from 0
+
 FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
     **{name: getattr(sp, name) for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")},
     **{name: getattr(sp, name) for name in ("asin", "acos", "atan", "asinh", "acosh", "atanh")},
-    **dict.fromkeys(("abs", "Abs"), lambda x: sp.Piecewise((x, x >= 0), (-x, True), evaluate=False)),
+    **dict.fromkeys(("abs", "Abs"), sp.Abs),
 }
 _CONSTANTS = {"pi": sp.pi, "True": sp.true}
 _OPERATIONS: Mapping[type, Callable[[Any, Any], Any]] = {
@@ -42,20 +49,6 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
     """The sympy expression that a text says, in the names given.
-
-    Parameters
-    ----------
-    text : str
-        At most 4000 characters.
-    symbols : mapping of str to sympy.Expr
-        What each name stands for; no other name is known, but pi and the functions.
-    where : str
-        What is read, for messages.
-
-    Raises
-    ------
-    ArgumentError
-        On anything outside the grammar, and on numbers that powers make too large.
 
     Examples
     --------
@@ -79,16 +72,55 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
     value = _Reader(text, symbols, where).expression(tree.body, 0)
     if not isinstance(value, sp.Expr):
         raise ArgumentError(f"{where}: {_short(text)} is a condition; expected a value")
-    return value
+    return _with_pieces(value, where)
+
+
+def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
+    """Number of nodes of an expression, height of its tower of exponentials, and degree of its powers.
+
+    Parameters
+    ----------
+    value : sympy.Basic
+        The expression.
+    known : dict
+        What was measured before; it is added to, so that repeated parts cost nothing.
+
+    Examples
+    --------
+    >>> s = sp.Symbol("s")
+    >>> measured(sp.exp(sp.exp(s)) + s**8, {})
+    (7, 2, 8)
+    """
+    if value not in known:
+        rows = [measured(each, known) for each in value.args] or [(0, 0, 1)]
+        nodes = 1 + sum(nodes for nodes, _, _ in rows)
+        tower, degree = (max(row[k] for row in rows) for k in (1, 2))
+        if isinstance(value, sp.Pow) and value.exp.is_number:
+            degree *= max(1, int(abs(float(value.exp))))
+        elif isinstance(value, sp.Pow) or value.func.__name__ in _GROWING:
+            tower += 1
+        known[value] = nodes, tower, degree
+    return known[value]
+
+
+def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
+    """The same with every absolute value as two pieces, also those that sympy makes of roots of squares."""
+    for inner in value.atoms(sp.Abs):
+        _ensure_plain(inner.args[0], where)
+    return value.replace(sp.Abs, lambda x: sp.Piecewise((x, x >= 0), (-x, True), evaluate=False))
+
+
+def _ensure_plain(value: sp.Expr, where: str) -> None:
+    """Refuse a condition on what has pieces itself: where they meet is not known."""
+    if value.has(sp.Piecewise, sp.Abs):
+        raise ArgumentError(
+            f"{where}: a condition, or abs, of {_short(str(value))}, which has pieces itself; expected one that is "
+            "linear in the distance: write the pieces as Piecewise((value, s < 1), ..., (value, True))"
+        )
 
 
 def write_formula(expression: sp.Expr) -> str:
     """The text that `read_formula` reads as the same expression, every number to the last bit.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        In plain symbols.
 
     Examples
     --------
@@ -119,6 +151,7 @@ class _Reader:
     def __init__(self, text: str, symbols: Mapping[str, sp.Expr], where: str) -> None:
         self.text, self.where = text, where
         self.names = {**_CONSTANTS, **symbols}
+        self._sizes: dict[sp.Basic, tuple[int, int, int]] = {}
 
     def expression(self, node: ast.AST, depth: int) -> Any:
         """What a node says."""
@@ -140,6 +173,8 @@ class _Reader:
             return self._operation(node, depth)
         if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _RELATIONS:
             left, right = (self._value(each, depth) for each in (node.left, node.comparators[0]))
+            for each in (left, right):
+                _ensure_plain(each, self.where)
             return _RELATIONS[type(node.ops[0])](left, right)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._call(node.func.id, node.args, depth)
@@ -173,19 +208,50 @@ class _Reader:
         left, right = self._value(node.left, depth), self._value(node.right, depth)
         if isinstance(node.op, ast.Pow):
             self._ensure_small_power(left, right)
+            if right.is_negative:
+                self._ensure_divisor(left, node.left)
             value = left**right
         elif type(node.op) in _OPERATIONS:
+            if isinstance(node.op, ast.Div):
+                self._ensure_divisor(right, node.right)
             value = _OPERATIONS[type(node.op)](left, right)
         else:
             raise self._refused(node)
         return self._real(value, node)
 
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
-        """The value, if it is real and a number in it is of a size that floating point knows."""
+        """The value, if it is small, real, and a number in it is of a size that floating point knows."""
+        self._ensure_small(value)
         unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
-        if unreal or (value.is_number and not abs(complex(value.evalf(15))) < _GREATEST):
+        if unreal or (value.is_number and not self._size_of(value) < _GREATEST):
             raise ArgumentError(f"{self.where}: {_short(ast.unparse(node))} is no real number below {_GREATEST:g}")
         return value
+
+    @staticmethod
+    def _size_of(value: sp.Expr) -> float:
+        try:
+            return abs(complex(value.evalf(15)))
+        except (ArithmeticError, ValueError, TypeError):
+            return inf
+
+    def _ensure_small(self, value: sp.Expr) -> None:
+        """Refuse what few characters make large: pieces within pieces, towers of powers, powers of powers."""
+        nodes, tower, degree = measured(value, self._sizes)
+        for found, most, what in ((nodes, NODES, "parts"), (tower, TOWER, "exponentials within each other"),
+                                  (degree, DEGREE, "as its degree")):  # fmt: skip
+            if found > most:
+                raise ArgumentError(f"{self.where} has {found} {what}: expected at most {most}, a simpler formula")
+
+    def _ensure_divisor(self, value: sp.Expr, node: ast.AST) -> None:
+        """Refuse a number as a divisor that is 0, or may be."""
+        if not value.is_number or value.is_Rational:
+            return
+        with precision(_DIVISOR_BITS):
+            found = Enclosed(value, sp.Dummy()).series(arb(0))
+        if found is None or found[0].contains(0):
+            raise ArgumentError(
+                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or too near to it to tell"
+            )
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
         """Refuse 9**9**9 before it is computed."""
@@ -206,6 +272,8 @@ class _Reader:
         if len(arguments) != 1:
             raise ArgumentError(f"{self.where}: {name} of {len(arguments)} arguments; expected one")
         argument = self._value(arguments[0], depth)
+        if name in ("abs", "Abs"):
+            _ensure_plain(argument, self.where)
         if argument.is_number and name in _GROWING and abs(float(argument)) > _MOST_EXPONENT:
             raise ArgumentError(f"{self.where}: {name} of {_short(str(argument))}; expected at most {_MOST_EXPONENT}")
         return self._real(FUNCTIONS[name](argument), arguments[0])

@@ -19,13 +19,6 @@ def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
 
     H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
 
-    Parameters
-    ----------
-    m : int
-        Dimension.
-    potential : bool
-        Whether there is a pair potential too (Tanner, Jadbabaie and Pappas), or none (Cucker and Smale).
-
     Examples
     --------
     >>> matching_identity(1).holds

@@ -63,7 +63,6 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         flat = [float(u) for u in self._evaluate(0, q, p)]
         return np.array(flat).reshape(self.flock.n, self.flock.m)
@@ -74,7 +73,6 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         return float(self._evaluate(1, q, p))
 
@@ -84,7 +82,6 @@ class NumericLaw:
         Parameters
         ----------
         q, p : array_like, shape (n, m)
-            Positions and velocities.
         """
         return float(self._evaluate(2, q, p))
 

@@ -164,17 +164,6 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
 class Braking:
     """What an obstacle does to the kinetic energy, <p, p_hat - p>, and its sign.
 
-    Parameters
-    ----------
-    kind : str
-        The obstacle.
-    residual : sympy.Expr
-        <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0.
-    terms : tuple of sympy.Expr
-        The terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere).
-    inside : tuple of sympy.Expr
-        The same inside (mu = 1 + tau at a sphere; nothing changes at a wall).
-
     Examples
     --------
     >>> derive_braking("sphere").holds
@@ -182,9 +171,10 @@ class Braking:
     """
 
     kind: str
-    residual: sp.Expr
+    residual: sp.Expr  # <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0
+    # the terms of the geometric form, outside the obstacle (mu = 1/(1 + tau), tau > 0, at a sphere)
     terms: tuple[sp.Expr, ...]
-    inside: tuple[sp.Expr, ...]
+    inside: tuple[sp.Expr, ...]  # the same inside (mu = 1 + tau at a sphere; nothing changes at a wall)
 
     @property
     def holds(self) -> bool:

@@ -12,11 +12,6 @@ from flockana.symbolic.pair_formula import EPS, PairFormula, S, Z
 def pair_derivation(formula: PairFormula) -> Derivation:
     """What follows from a formula, with the residual of every equation that can be checked by computing.
 
-    Parameters
-    ----------
-    formula : PairFormula
-        As read.
-
     Examples
     --------
     >>> from flockana.symbolic.pair_formula import read_pair

@@ -15,12 +15,14 @@ import mpmath  # type: ignore[import-untyped]
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic.grammar import FUNCTIONS, read_formula
+from flockana.symbolic.grammar import FUNCTIONS, measured, read_formula
 
 DIGITS = 160  # of values that decide something: they are asked for where a formula cancels almost all of them
 S, Z = sp.Symbol("s", positive=True), sp.Symbol("z", positive=True)
 SQUARE, ROOT = sp.Symbol("s2", positive=True), sp.Symbol("root", positive=True)
 EPS = sp.Symbol("eps", positive=True)
+_SLOPE, _CURVATURE = 4000, 20_000  # nodes of a first and of a second derivative
+_CUTS = 24  # distances at which pieces meet
 OWN = ("r", "d", "r_z", "d_z")  # range and length, and their σ-norms
 RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTIONS))
 
@@ -29,17 +31,6 @@ RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTION
 class PairFormula:
     """A potential or a force, and an adjacency, as read from their texts.
 
-    Parameters
-    ----------
-    main : sympy.Expr
-        ψ, or ψ' where `forces`, as a function of the distance.
-    adjacency : sympy.Expr
-        a_ij, of the same distance.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is the derivative of the potential in the distance.
-
     Examples
     --------
     >>> formula = read_pair("k*(s - d)**2/2", "", "0", ["k"])
@@ -47,10 +38,10 @@ class PairFormula:
     (s, k*(-2*d + 2*s)/2)
     """
 
-    main: sp.Expr
-    adjacency: sp.Expr
-    distance: sp.Symbol
-    forces: bool
+    main: sp.Expr  # ψ, or ψ' where `forces`, as a function of the distance
+    adjacency: sp.Expr  # a_ij, of the same distance
+    distance: sp.Symbol  # `S` or `Z`
+    forces: bool  # whether `main` is the derivative of the potential in the distance
 
     @property
     def derivative(self) -> sp.Expr:
@@ -59,22 +50,7 @@ class PairFormula:
 
 
 def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
-    """Read a pair law of which either the potential or its derivative is given.
-
-    Parameters
-    ----------
-    potential, force : str
-        One of them, the other empty.
-    adjacency : str
-        Of the same distance.
-    names : list of str
-        Parameters.
-
-    Raises
-    ------
-    ArgumentError
-        If both distances are used, a parameter is used nowhere, or has a name that means something else.
-    """
+    """Read a pair law of which either the potential or its derivative is given."""
     taken = sorted(RESERVED & {*names})
     if taken or not all(name.isidentifier() for name in names):
         bad = taken or [name for name in names if not name.isidentifier()]
@@ -120,21 +96,13 @@ class Piece:
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
     """Weight w of q_j − q_i, its slope dw/d(s²), adjacency and da/d(s²), of smooth expressions.
 
-    Parameters
-    ----------
-    main, adjacency : sympy.Expr
-        Without pieces.
-    distance : sympy.Symbol
-        `S` or `Z`.
-    forces : bool
-        Whether `main` is ψ'.
-
     Examples
     --------
     >>> piece = derive_piece(S**2 * (S - 1) ** 2 / 2, sp.Integer(1), S, forces=False)
     >>> sp.expand(piece.weight)
     -3*sqrt(s2) + 2*s2 + 1
     """
+    _ensure_derived(sp.diff(main, distance), _SLOPE)
     if distance == Z:
         action = main if forces else sp.diff(main, Z)
         slope = (sp.diff(action, Z) - EPS * action / ROOT) / (2 * ROOT**2)
@@ -148,18 +116,18 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
     return Piece(potential, force, weight, sp.diff(weight, SQUARE), adjacency, sp.diff(adjacency, SQUARE))
 
 
+def _ensure_derived(derivative: sp.Expr, most: int) -> None:
+    """Refuse a formula whose derivatives are too large to be compiled."""
+    nodes = measured(derivative, {})[0]
+    if nodes > most:
+        raise ArgumentError(
+            f"a derivative of the formula has {nodes} parts: expected at most {most}, a simpler formula"
+        )
+
+
 @dataclass(frozen=True)
 class Cut:
     """A pair formula with numbers for its parameters, cut where its pieces meet.
-
-    Parameters
-    ----------
-    formula : PairFormula
-        As read.
-    numbers : mapping of sympy.Symbol to float
-        Of the parameters, r, d and their σ-norms.
-    end : float
-        The range, in the distance of the formula.
 
     Examples
     --------
@@ -168,80 +136,95 @@ class Cut:
     (0.0, 2.0, 5.0)
     """
 
-    formula: PairFormula
-    numbers: Mapping[sp.Symbol, float]
-    end: float
+    formula: PairFormula  # as read
+    numbers: Mapping[sp.Symbol, float]  # of the parameters, r, d and their σ-norms
+    end: float  # the range, in the distance of the formula
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
         """0, the distances at which pieces meet, rising, and the end."""
-        both = sp.Tuple(self.formula.main, self.formula.adjacency)
-        meet = {self._meeting(condition) for condition in _conditions(both)}
-        return (0.0, *sorted(x for x in meet if 0.0 < x < self.end), self.end)
+        return (0.0, *self._meetings, self.end)
 
-    def _meeting(self, condition: Any) -> float:
+    @cached_property
+    def written(self) -> tuple[sp.Expr, ...]:
+        """The marks as they are written in parameters; the end as a number."""
+        return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
+
+    @cached_property
+    def _meetings(self) -> dict[float, sp.Expr]:
+        both = sp.Tuple(self.formula.main, self.formula.adjacency)
+        meet = {float(self.value(at)): at for at in map(self._meeting, _conditions(both))}
+        inside = {x: meet[x] for x in sorted(meet) if 0.0 < x < self.end}
+        if len(inside) > _CUTS:
+            raise ArgumentError(f"the formula has {len(inside) + 1} pieces: expected at most {_CUTS + 1}")
+        return inside
+
+    def _meeting(self, condition: Any) -> sp.Expr:
         """Where a condition begins or ceases to hold."""
-        y, gap = self.formula.distance, condition.lhs - condition.rhs
+        y = self.formula.distance
+        if not isinstance(condition, sp.core.relational.Relational):
+            raise ArgumentError(f"the condition {condition} is not one comparison: expected one such as {y} < r/2")
+        gap = condition.lhs - condition.rhs
         steep = sp.diff(gap, y)
         if gap.has(sp.Piecewise) or y in steep.free_symbols:
             raise ArgumentError(f"the condition {condition} is not linear in {y}: expected one such as {y} < r/2")
         if y not in gap.free_symbols:
-            return -1.0  # it holds everywhere, or nowhere
-        return float(self.value(-gap.subs(y, 0) / steep))
+            return sp.Integer(-1)  # it holds everywhere, or nowhere
+        return -gap.subs(y, 0) / steep
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """What follows from the formula between each two marks."""
-        return tuple(
+        found = tuple(
             derive_piece(
-                self._chosen(self.formula.main, 0.5 * (left + right)),
-                self._chosen(self.formula.adjacency, 0.5 * (left + right)),
+                self.chosen(self.formula.main, 0.5 * (left + right)),
+                self.chosen(self.formula.adjacency, 0.5 * (left + right)),
                 self.formula.distance,
                 forces=self.formula.forces,
             )
             for left, right in zip(self.marks[:-1], self.marks[1:], strict=True)
         )
+        for piece in found:
+            _ensure_derived(piece.slope, _CURVATURE)
+        return found
 
-    def _chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """An expression without its pieces, those chosen that hold at a distance."""
+    def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
+        """An expression without its pieces, those chosen that hold at a distance.
+
+        Parameters
+        ----------
+        expression : sympy.Expr
+            Of the distance.
+        at : float
+            In the distance of the formula.
+        """
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
-                    return self._chosen(value, at)
+                    return self.chosen(value, at)
             raise ArgumentError(f"no piece holds at {self.formula.distance} = {at:g}: end Piecewise with (0, True)")
         if not expression.args or not expression.has(sp.Piecewise):
             return expression
-        return expression.func(*(self._chosen(each, at) for each in expression.args))
+        return expression.func(*(self.chosen(each, at) for each in expression.args))
 
     def _holds(self, condition: Any, at: float) -> bool:
         sign = self.value((condition.lhs - condition.rhs).subs(self.formula.distance, sp.Rational(at)))
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """The value of an expression in parameters alone, to `DIGITS`.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Without a distance.
-        """
+        """The value of an expression in parameters alone, to `DIGITS`."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
             raise ArgumentError(f"{expression} has no value for these parameters: expected a finite number") from None
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
-        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of `SQUARE`, or of `Z` and `ROOT`.
-        """
+        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value."""
         y = Z if self.formula.distance == Z else SQUARE
         expression = expression.subs(ROOT, 1 + EPS * Z)
         symbols = list(self.numbers)
-        compiled = sp.lambdify([y, *symbols], expression, "mpmath")
+        bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
+        compiled = sp.lambdify([y, *symbols], bounded, [_BOUNDED, "mpmath"], dummify=True)
         values = [mpmath.mpf(self.numbers[symbol]) for symbol in symbols]
 
         def at(distance: Any) -> Any:
@@ -253,6 +236,30 @@ class Cut:
                 return found if isinstance(found, mpmath.mpf) else mpmath.nan
 
         return at
+
+
+_POWER = sp.Function("bounded_power")
+_LONGEST = 1e12  # argument of an exponential: beyond it the result has more digits than memory
+
+
+def _bounded_exp(x: Any) -> Any:
+    """The exponential; 0 far below any number, and no value far above."""
+    if mpmath.mpf(x) > _LONGEST:
+        raise OverflowError
+    return mpmath.exp(x) if x > -_LONGEST else mpmath.mpf(0)
+
+
+def _bounded_power(base: Any, exponent: Any) -> Any:
+    return _bounded_exp(exponent * mpmath.log(base)) if base > 0 else mpmath.power(base, exponent)
+
+
+_BOUNDED: dict[str, Callable[..., Any]] = {
+    "exp": _bounded_exp,
+    "cosh": lambda x: (_bounded_exp(abs(x)) + _bounded_exp(-abs(x))) / 2,
+    "sinh": lambda x: (_bounded_exp(x) - _bounded_exp(-x)) / 2 if abs(x) > 1 else mpmath.sinh(x),
+    "tanh": lambda x: mpmath.tanh(x) if abs(x) < _LONGEST else mpmath.sign(x),
+    "bounded_power": _bounded_power,
+}
 
 
 def _conditions(expression: sp.Basic) -> Iterator[Any]:

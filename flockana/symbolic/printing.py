@@ -38,13 +38,7 @@ class Constants:
         return list(self.places)
 
     def taken_out(self, expression: sp.Expr) -> sp.Expr:
-        """An expression with symbols for its constants.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of variables and parameters.
-        """
+        """An expression with symbols for its constants."""
         if not expression.free_symbols & self.variables:
             return self._named(expression)
         if isinstance(expression, sp.Add | sp.Mul):
@@ -108,17 +102,6 @@ class _Code(PythonCodePrinter):
 
 def function_text(name: str, arguments: str, before: list[str], expressions: list[list[sp.Expr]], after: str) -> str:
     """The text of a function of several results, of which each is one of some expressions: that of its piece.
-
-    Parameters
-    ----------
-    name, arguments : str
-        Of the function.
-    before : list of str
-        Lines that come first; they leave the piece's marks in ``m0``, ``m1``, …, the variable in ``y``.
-    expressions : list of lists of sympy.Expr
-        For every result, one for each piece.
-    after : str
-        What is returned, of the results ``v0``, ``v1``, ….
 
     Examples
     --------

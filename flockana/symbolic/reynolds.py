@@ -22,11 +22,6 @@ def _over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
 def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i.
 
-    Parameters
-    ----------
-    shift : sympy.Expr
-        By which all positions are moved; stresses depend on differences alone.
-
     Examples
     --------
     >>> sp.expand(gradient_part(SHIFT) - gradient_part())
@@ -40,13 +35,6 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
     S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
     means.
-
-    Parameters
-    ----------
-    printed : bool
-        Without - (S+ + S-) q_i, as in the slides.
-    shift : sympy.Expr
-        By which all positions are moved.
 
     Examples
     --------
@@ -63,11 +51,6 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
     """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is.
-
-    Parameters
-    ----------
-    printed : bool
-        What the slides print.
 
     Examples
     --------

@@ -29,8 +29,6 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
 
     Parameters
     ----------
-    m : int
-        Dimension, 1, 2 or 3.
     gains : GainSymbols
         Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
 

@@ -33,8 +33,6 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
     ----------
     generic : sympy.Expr
         An expression with sums up to `N` and `M`.
-    n, m : int
-        Number of agents, dimension.
 
     Examples
     --------
@@ -108,8 +106,6 @@ def half_square(base: sp.IndexedBase, m: sp.Expr = M) -> sp.Expr:
     ----------
     base : sympy.IndexedBase
         `V` for K(v), `P` for the kinetic energy, `X` for J(x).
-    m : int or sympy.Expr
-        Dimension.
 
     Examples
     --------
@@ -124,8 +120,6 @@ def hamiltonian(m: sp.Expr = M, *, gains: GainSymbols = GAINS, factor: sp.Expr =
 
     Parameters
     ----------
-    m : int or sympy.Expr
-        Dimension.
     gains : GainSymbols
         Gains; all symbolic if not given.
     factor : sympy.Expr
@@ -144,8 +138,6 @@ def structural_potential(m: sp.Expr = M, *, gains: GainSymbols = GAINS, lambda_:
 
     Parameters
     ----------
-    m : int or sympy.Expr
-        Dimension.
     gains : GainSymbols
         Gains; all symbolic if not given.
     lambda_ : sympy.Expr
@@ -164,8 +156,6 @@ def structural_hamiltonian(m: sp.Expr = M, *, gains: GainSymbols = GAINS, lambda
 
     Parameters
     ----------
-    m : int or sympy.Expr
-        Dimension.
     gains : GainSymbols
         Gains; all symbolic if not given.
     lambda_ : sympy.Expr

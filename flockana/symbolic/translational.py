@@ -110,15 +110,6 @@ def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tupl
 def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square: sp.Expr = SQUARE) -> sp.Expr:
     """Return the numerator of d|G(j omega)|^2 / d(omega^2), whose sign is that of the slope over the speed.
 
-    Parameters
-    ----------
-    scale : number or sympy.Expr
-        As in `transfer_function`, real.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-    square : sympy.Symbol
-        omega^2.
-
     Examples
     --------
     >>> gain_slope(0, gains=GainSymbols(c1_gamma=4, c2_gamma=4))
@@ -130,13 +121,6 @@ def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square:
 
 def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) -> sp.Expr:
     """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with every omega iff it is >= 0 (erratum E15).
-
-    Parameters
-    ----------
-    scale : number or sympy.Expr
-        As in `transfer_function`, real.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
 
     Examples
     --------

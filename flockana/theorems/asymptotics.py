@@ -55,8 +55,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
     end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
     caught = final_basin(seen)
     pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0
-    strain = Enclosure.around(end.strain, _strain_error(seen, caught))
-    room, known = tolerances.lattice - strain, caught.certificate.certain
+    room, known = tolerances.lattice - limit_strain(seen, end, caught), caught.certificate.certain
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
     decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known and not pressed else []
     strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None
@@ -74,7 +73,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
     )
 
 
-def _strain_error(seen: Observed, caught: Basin) -> float:
-    """How far strains of the limit may be from those of the last state: two agents move by √2 δ apart at most."""
+def limit_strain(seen: Observed, end: TerminalState, caught: Basin) -> Enclosure:
+    """Return the largest |link − d|/d of the minimum beside the last state: two agents move by √2 δ apart at most."""
     rounding = 4.0 * EPS * float(abs(seen.run.q[-1]).max())
-    return float((sqrt(2.0) * caught.distance + rounding) / seen.law.alpha.d)
+    return Enclosure.around(end.strain, (sqrt(2.0) * caught.distance + rounding) / seen.law.alpha.d)

@@ -7,8 +7,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from flockana.base.checks import ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError, UnknownNameError, told
 from flockana.base.modules import modules
+from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.observed import Observed, with_doubt
@@ -17,6 +18,9 @@ from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
     from flockana.certified.tube import Tube
+
+_RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"
+_REMEDY = "simulate(law, q0, p0, t_span) makes one; metrics, plots and the player take recordings as they are"
 
 
 @cache
@@ -118,7 +122,8 @@ def verify(
     Raises
     ------
     ArgumentError
-        If what the theorem needs is not given, or something else is; if a run's samples are not those of its law.
+        If what the theorem needs is not given, or something else is; if a run, tube or basin was made or changed by
+        hand, or a run's samples are not those of its law.
 
     Examples
     --------
@@ -164,10 +169,18 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
     if item.enclosed is None:
         able = ", ".join(name for name, one in catalogue().items() if one.enclosed is not None)
         raise ArgumentError(f"{item.id} is not decided from a tube: expected a Trajectory, or one of {able}")
+    tube.ensure_whole()
+    if basin is not None:
+        from flockana.certified.basin import Basin
+
+        if not isinstance(basin, Basin):
+            raise ArgumentError(f"basin = {told(basin)}: expected a basin, as certify(...) returns it, or None")
+        basin.ensure_whole()
     return Verdict(item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
+    ensure_sealed("trajectory", run, _RUN, _REMEDY)
     ensure_fits(run)
     seen = Observed.of(run)
     hypotheses, claims = item.examine(seen, tolerances)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from flockana.base.facts import Fact
 from flockana.interactions import AlphaInteraction, BetaInteraction, FormulaInteraction, Gains
+from flockana.interactions.weights import Weight
 from flockana.laws.composition import Composition
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
@@ -142,6 +144,18 @@ def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hy
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
+def by_fact(name: str, fact: Fact) -> Hypothesis:
+    """Return a hypothesis about a function, with the status of what is decided about it.
+
+    Examples
+    --------
+    >>> by_fact("ψ is C¹", Fact("unmet", "the force jumps at s = 1")).status
+    'unmet'
+    """
+    left = f" (open on a length of {fact.width:.2g})" if fact.status == "assumed" and fact.width > 0.0 else ""
+    return Hypothesis(name, fact.status, detail=fact.detail + left)
+
+
 def smooth_pair(run: Observed) -> Hypothesis:
     """The hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
 
@@ -152,8 +166,23 @@ def smooth_pair(run: Observed) -> Hypothesis:
     run : Observed
         A run of a law with a pair interaction.
     """
-    faults = [] if run.law.pair is None else [x for x in run.law.pair.faults if not x.startswith("coincidence")]
-    return condition("the pair law is C¹ and vanishes at its range", not faults, detail="; ".join(faults))
+    fact = Fact("met") if run.law.pair is None else run.law.pair.facts.smooth
+    return by_fact("the pair law is C¹ and vanishes at its range", fact)
+
+
+def weight_nonnegative(run: Observed) -> Hypothesis:
+    """The hypothesis that velocity consensus never drives velocities apart: no adjacency of the law is negative.
+
+    Parameters
+    ----------
+    run : Observed
+        A run of a law that may have a pair law and a net of its own.
+    """
+    law, name = run.law, "a_ij >= 0 at every distance"
+    net = getattr(law, "net", None) or law.alpha
+    if net is None or law.gains.c2_alpha == 0.0:
+        return Hypothesis(name, "met", detail="no velocities are averaged")
+    return by_fact(name, net.sign if isinstance(net, Weight) else net.facts.weight)
 
 
 def positive(run: Observed | Tube, **gains: str) -> Hypothesis:

@@ -8,7 +8,7 @@ later times, such as two groups that part. A run that decays is evidence, which 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
@@ -119,5 +119,7 @@ def limit_claim(
     margin = Enclosure.around(best.margin, best.error)
     if escape is not None and escape.certain:
         best, by_numbers, margin = escape, "refuted", Enclosure.around(-escape.margin, escape.error)
-    text = "; ".join(part for part in (detail, best.text, "" if best.certain else evidence) if part)
-    return concluded(name, by_numbers, margin, needs, about="limit", proof=proof, detail=text, **fields)
+    claim = concluded(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
+    proved = claim.status == "verified" and not best.certain
+    parts = (detail, "proved for every start") if proved else (detail, best.text, "" if best.certain else evidence)
+    return replace(claim, detail="; ".join(part for part in parts if part))

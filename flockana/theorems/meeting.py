@@ -7,10 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction
+from flockana.interactions import PairInteraction
 from flockana.theorems.theorem import Hypothesis
-
-_GRID = 4001  # distances at which a potential without a known minimum is looked at
 
 
 class Meeting(NamedTuple):
@@ -39,19 +37,28 @@ def meeting(run: Trajectory) -> Meeting:
     (True, 0.0)
     """
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
-    if isinstance(pair, AlphaInteraction):
-        return Meeting(gain * pair.c_star, 0.0)
-    reach = pair.range if np.isfinite(pair.range) else 100.0 * pair.length
-    with np.errstate(all="ignore"):
-        values = pair.energy_at(np.append(np.linspace(0.0, reach, _GRID), pair.length))
-    least = float(min(pair.far_potential, np.nanmin(values)))
-    top = float(values[0]) if np.isfinite(values[0]) else np.inf
+    (least, _), (top, most) = _bounds(pair)
+    if most == -np.inf:
+        return Meeting(0.0, -np.inf)  # a pair that meets has less energy than any bound
     return Meeting(gain * (top - least), gain * least * (run.n * (run.n - 1) // 2))
 
 
+def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Bounds of the least potential and of that at contact; where none are proved, the values at two distances."""
+    least, contact = pair.facts.least, pair.facts.contact
+    if np.isfinite(least[0]) and contact[0] > -np.inf:
+        return least, contact
+    with np.errstate(all="ignore"):
+        ends = pair.energy_at(np.array([0.0, pair.length]))
+    top = contact[0] if contact[0] > -np.inf or contact[1] == -np.inf else float(np.nan_to_num(ends[0], nan=-np.inf))
+    seen = least[0] if np.isfinite(least[0]) else float(min(pair.far_potential, np.nanmin(ends)))
+    return (seen, seen), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
+
+
 def least_is_known(run: Trajectory) -> list[Hypothesis]:
-    """The hypothesis that no pair has less energy than was seen at some distances: assumed; none of the paper's law."""
-    if isinstance(run.law.alpha, AlphaInteraction):
+    """The hypothesis that no pair has less energy than is counted with; none where a bound is proved."""
+    facts = run.law.alpha.facts
+    if np.isfinite(facts.least[0]) and facts.contact[0] > -np.inf:
         return []
-    detail = f"seen at {_GRID} distances up to the range"
+    detail = f"{type(run.law.alpha).__name__}: no bound is proved; seen at contact, at the length and at the range"
     return [Hypothesis("no pair has less potential energy than the least seen", "assumed", detail=detail)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from flockana.base.binomial import clopper_pearson
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
@@ -59,9 +61,10 @@ def _judged(name: str, holds: list[bool | None], least: float, what: str, **fiel
     count, size, (low, high) = share(holds)
     unknown = sum(each is None for each in holds)
     text = f", undecided in {unknown}" if unknown else ""
+    ends = (np.asarray(end) for end in (low, count / max(size, 1), high))
     return judged(
         name,
-        Enclosure(low, count / max(size, 1), high).widened(INTERVAL_ERROR) - least,
+        Enclosure(*ends).widened(INTERVAL_ERROR) - least,
         computed={"holds": count, "of": size, "share": (low, high)},
         detail=f"{what} in {count} of {size} seeds{text}: a share of {low:.2f} to {high:.2f} ({CONFIDENCE:.0%})",
         **fields,

@@ -43,7 +43,7 @@ TRUTHS = {
     "J13": {"r": "letter clamped", "v": "reaching stand-off"},
     "J14": {"r": "none-of-ten", "v": "one-informed none-informed two-of-ten"},
     "J15": {"r": "printed flock", "v": "rest alone"},
-    "J16": {"r": "at-rest circling fragments", "v": "growing"},
+    "J16": {"r": "at-rest at-walls fragments", "v": "growing", "maybe": "circling"},
     "J17": {"v": "delay none nearer"},
     "J18": {"r": "any-direction", "v": "flock-10 flock-100 flock-500 local"},
     "L1": {"r": "printed", "v": "corrected"},

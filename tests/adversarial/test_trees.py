@@ -69,7 +69,7 @@ def test_at_its_own_equilibrium(drawn, until, drift, data):
 
 
 @effort(0.4)
-@given(trees(off=powers(-8.0, -0.4)), powers(-8.0, -0.4), st.sampled_from((1e-6, 0.01, 3.0, 60.0)), st.data())
+@given(trees(off=powers(-8.0, -0.4)), powers(-8.0, -0.4), st.sampled_from((1e-6, 0.01, 3.0, 60.0, 1000.0)), st.data())
 def test_near_the_manifold(drawn, speed, until, data):
     law, q, rho, rng = drawn
     case = Case(law, q, speed * rho * rng.normal(size=q.shape), until, data.draw(ways(until, until / 1000.0)))

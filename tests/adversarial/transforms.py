@@ -36,11 +36,9 @@ class UnchangedError(Exception):
 def in_units(case, length, time):
     """Lengths and times in other units, tolerances and steps too."""
     options = dict(case.options)
-    for name, factor in (("t_eval", time), ("dt", time)):
+    for name, factor in (("t_eval", time), ("dt", time), ("atol", length)):
         if options.get(name) is not None:
             options[name] = np.asarray(options[name]) * factor if name == "t_eval" else options[name] * factor
-    if options.get("atol") is not None:
-        raise UnchangedError("an absolute tolerance holds for lengths and speeds at once")
     law = rescale(case.law, length=length, time=time)
     q, p = np.asarray(case.q0) * length, np.asarray(case.p0) * (length / time)
     return Case(law, q, p, case.until * time, options, case.since * time)

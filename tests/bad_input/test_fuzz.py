@@ -6,12 +6,12 @@ import json
 import os
 import re
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from flockana.base.errors import FileError
+from flockana.base.seals import sealed
 from flockana.cli.source import read_csv
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import Job, Record
@@ -89,7 +89,8 @@ def test_a_record_that_is_none_is_told(tmp_path, text, monkeypatch):
             store.read(["k"])
 
 
-COUNTEREXAMPLE = Counterexample("os-1", "i", "made up", LAW, np.array([[0.0], [8.0]]), np.zeros((2, 1)), (0.0, 1.0))
+MADE_UP = Counterexample("os-1", "i", "made up", LAW, np.array([[0.0], [8.0]]), np.zeros((2, 1)), (0.0, 1.0))
+COUNTEREXAMPLE = sealed(MADE_UP)
 
 
 def test_a_counterexample_is_that_which_was_written(tmp_path):
@@ -105,11 +106,20 @@ def test_a_counterexample_is_that_which_was_written(tmp_path):
     assert outcomes(Counterexample.load, path, shortened(whole, 60), same) == 60
 
 
-def test_a_counterexample_of_before_there_were_digests_loads(tmp_path):
-    data = json.loads(COUNTEREXAMPLE.save(tmp_path / "c.json").read_text())
-    del data["digest"]
-    (tmp_path / "c.json").write_text(json.dumps(data))
-    np.testing.assert_array_equal(Counterexample.load(tmp_path / "c.json").q0, COUNTEREXAMPLE.q0)
+def test_a_file_without_its_digest_or_with_a_key_twice_is_refused(tmp_path, pair):
+    write_equilibrium(pair, tmp_path / "e.json")
+    COUNTEREXAMPLE.save(tmp_path / "c.json")
+    for name, read in (("c.json", Counterexample.load), ("e.json", read_equilibrium)):
+        text = (tmp_path / name).read_text()
+        data = json.loads(text)
+        del data["digest"]
+        (tmp_path / name).write_text(json.dumps(data))
+        with pytest.raises(FileError, match="it has no digest, which every file is written with"):
+            read(tmp_path / name)
+        for key in ("format", "law", "type"):
+            (tmp_path / name).write_text(text.replace(f'"{key}"', f'"{key}": "x", "{key}"', 1))
+            with pytest.raises(FileError, match=f"the key '{key}' is given twice"):
+                read(tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +131,7 @@ def test_a_counterexample_of_before_there_were_digests_loads(tmp_path):
         ({"tolerances": {"quasi": "0.1"}}, "tolerances.quasi = '0.1': expected one real number"),
         ({"tolerances": {"giant": 2.0}}, "tolerances.giant = 2: expected a share below 1"),
         ({"margin": [1.0]}, "is damaged"),
-        ({"eigest": "0"}, "it holds eigest, which no counterexample has"),
+        ({"eigest": "0"}, "it holds eigest: expected format, format_version,"),
         ({"q0": [[0.0], [8.5]]}, "its digest is not that of its contents"),
     ],
 )
@@ -153,8 +163,6 @@ def test_an_equilibrium_is_that_which_was_written(tmp_path, pair):
     path.write_text(json.dumps(moved))
     with pytest.raises(FileError, match="its digest is not that of its contents"):
         read_equilibrium(path)
-    path.write_text(json.dumps({key: value for key, value in moved.items() if key != "digest"}))
-    assert read_equilibrium(path).kind == "minimum"  # of before there were digests: verified anew
 
 
 @pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium])
@@ -240,7 +248,7 @@ def test_loading_makes_no_object_but_parameters(tmp_path):
         with pytest.raises(FileError, match=r"cannot rebuild|which is not part of flockana"):
             Counterexample.load(path)
     assert "antigravity" not in sys.modules
-    replace(COUNTEREXAMPLE).save(path)
+    COUNTEREXAMPLE.save(path)
     path.write_text(path.read_text().replace("flockana:Algorithm1", "antigravity:fly"))
     with pytest.raises(FileError, match="which is not part of flockana"):
         Counterexample.load(path)

@@ -47,7 +47,7 @@ def test_of_no_trials_nothing_follows():
     assert [float(end) for end in clopper_pearson(0, 0)] == [0.0, 1.0]
 
 
-@pytest.mark.parametrize(("k", "n"), [(-1, 3), (4, 3), ([1, np.nan], 3)])
+@pytest.mark.parametrize(("k", "n"), [(-1, 3), (4, 3), ([1, np.nan], 3), (1.5, 3), (1, 2.5), (3, np.inf)])
 def test_impossible_counts_are_refused(k, n):
     with pytest.raises(ArgumentError, match="0 <= successes <= trials"):
         clopper_pearson(k, n)

@@ -12,7 +12,7 @@ from flint import arb, arb_series
 
 from flockana import Algorithm3, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import sealed
+from flockana.base.seals import with_digest
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.check_tube import Run, capped
 from flockana.certified.tube_certificate import tube_certificate
@@ -46,7 +46,7 @@ def altered(data, *at, change):
 
 
 def resealed(data):
-    return sealed({key: value for key, value in data.items() if key != "digest"})
+    return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
 def more(value):
@@ -139,8 +139,11 @@ def test_any_one_number_that_is_altered_is_rejected(data):
 
 
 def test_a_sphere_left_out_or_turned_is_rejected(data):
+    bare = altered(data, "law", "spheres", change=lambda spheres: [])
+    with pytest.raises(RejectedError, match=r"clearance = .*: expected null"):
+        check_data(resealed(bare))
     with pytest.raises(RejectedError, match="the error may exceed"):
-        check_data(resealed(altered(data, "law", "spheres", change=lambda spheres: [])))
+        check_data(resealed(bare | {"clearance": None}))
     with pytest.raises(RejectedError, match="another dimension"):
         check_data(resealed(altered(data, "law", "spheres", 0, "centre", change=lambda centre: centre[:1])))
     with pytest.raises(RejectedError, match="another dimension"):

@@ -102,6 +102,7 @@ def stored(path):
         return {}
 
 
+@pytest.mark.slow
 @posix
 def test_ctrl_c_leaves_a_store_to_go_on_from(call, tmp_path):
     """With some runs in the store, and far too many to go."""

@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import with_digest
 from flockana.cli.falsify import known_false, read_ranges
 from flockana.falsify import evaluate
 from flockana.theorems import Claim, theorems
@@ -39,9 +40,12 @@ def test_a_replay_on_which_the_claim_holds_is_3(call, tmp_path):
     data = json.loads((tmp_path / "c.json").read_text()) | {"p0": [[0.0], [0.0]]}
     (tmp_path / "c.json").write_text(json.dumps(data))
     code, _, err = call("--replay", "c.json")
-    assert (code, "after a change on purpose, take it out" in err) == (2, True)
+    assert (code, "its digest is not that of its contents" in err) == (2, True)
     del data["digest"]
     (tmp_path / "c.json").write_text(json.dumps(data))
+    code, _, err = call("--replay", "c.json")
+    assert (code, "it has no digest, which every file is written with" in err) == (2, True)
+    (tmp_path / "c.json").write_text(json.dumps(with_digest(data)))
     code, out, _ = call("--replay", "c.json")
     assert code == 3
     assert "it does not break here" in out

@@ -54,6 +54,7 @@ def test_a_home_that_can_be_written_and_a_users_choice_stay(prepared, tmp_path, 
     assert not good.exists()
 
 
+@pytest.mark.slow
 def test_matplotlib_says_nothing(no_home, tmp_path):
     script = "from flockana.cli.home import prepare_home; prepare_home(); import matplotlib; matplotlib.get_cachedir()"
     kept = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME")}

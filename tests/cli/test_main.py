@@ -367,11 +367,13 @@ def test_the_options_of_the_command_that_is_asked_for_are_read_and_no_others():
     assert len(command_line._app("").registered_commands) == len(command_line._app("--help").registered_commands) > 10
 
 
+@pytest.mark.slow
 def test_processes_work_in_parallel():
     tasks = [Task("E8", fixed=True), Task("E10", fixed=True)]
     assert sorted(page.name for page in check_all(tasks, jobs=2)) == ["E10", "E8"]
 
 
+@pytest.mark.slow
 def test_an_error_in_a_worker_arrives_with_the_name_of_its_task():
     with pytest.raises(FlockanaError, match="nothing: unknown theorem 'nothing'"):
         list(check_all([Task("nothing", fixed=True), Task("E8", fixed=True)], jobs=2))
@@ -403,6 +405,7 @@ class Broken(ThreadPoolExecutor):
         self.shutdown()
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
     pools = iter([Broken(2), ThreadPoolExecutor(2)])
     monkeypatch.setattr(executors, "ProcessPool", lambda jobs: next(pools))
@@ -410,6 +413,7 @@ def test_a_worker_that_dies_while_tasks_are_sent_loses_no_task(monkeypatch):
     assert sorted(page.name for page in check_all(tasks, jobs=2)) == ["E10", "E8"]
 
 
+@pytest.mark.slow
 def test_a_task_that_ends_its_process_is_named_when_all_others_are_done():
     tasks = [Survey("os:_exit", (0, 1)), Task("E8", fixed=True), Task("E10", fixed=True)]
     results = check_all(tasks, jobs=2)
@@ -427,6 +431,7 @@ def test_in_one_process_a_result_is_given_before_the_next_task_begins():
     assert {task.name for tasks in begun for task in tasks} == {"E8"}
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("moment", ["starting", "working"])
 def test_ctrl_c_ends_all_processes_cleanly(moment, tmp_path):
@@ -442,6 +447,7 @@ def test_ctrl_c_ends_all_processes_cleanly(moment, tmp_path):
         until(lambda: not group(command))  # that helper outlives its parent by a moment
 
 
+@pytest.mark.slow
 @posix
 def test_where_ctrl_c_is_ignored_it_stays_ignored(tmp_path):
     """So a shell starts its background jobs; theirs is not the Ctrl-C that the terminal sends."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray
 
 from flockana.base.errors import FileError
+from flockana.base.seals import is_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm1
@@ -81,15 +83,20 @@ def test_without_that_line_the_checksums_name_what_is_damaged(tmp_path, bit):
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        (lambda data: data.drop_vars("extra_work"), "extra_work"),
-        (lambda data: data.drop_vars([f"between_{name}" for name in SERIES]), "between_q"),
-        (lambda data: data.assign(extra_more=("time", data.time.values)), "extra_more"),
-        (lambda data: data.assign_attrs(message="all is well"), "attributes"),
-        (lambda data: data.assign_attrs(status="interrupted"), "attributes"),
-        (lambda data: data.assign_attrs(law=data.attrs["law"].replace("7.0", "7.5")), "attributes"),
-        (lambda data: data.assign_attrs(checksums=json.dumps({})), "attributes"),
+        (lambda data: data.drop_vars("extra_work"), "extra"),
+        (lambda data: data.drop_vars([f"between_{name}" for name in SERIES]), "between"),
+        (lambda data: data.assign(extra_more=("time", data.time.values)), "extra"),
+        (lambda data: data.assign_attrs(message="all is well"), "message"),
+        (lambda data: data.assign_attrs(status="interrupted"), "status"),
+        (lambda data: data.assign_attrs(law=data.attrs["law"].replace("7.0", "7.5")), "law"),
+        (lambda data: data.assign_attrs(stats=data.attrs["stats"].replace("1e-08", "1e-07")), "stats"),
+        (lambda data: data.assign_attrs(made_by="hand"), "made_by"),
+        (lambda data: data.assign_attrs(seal=json.dumps({})), "between, extra, law, made_by, message, p, q, stats"),
+        *((lambda data, name=name: data.assign({name: np.nextafter(data[name], 9.0)}), name) for name in "qpu"),
+        (lambda data: data.assign(between_q=np.nextafter(data.between_q, 9.0)), "between"),
+        (lambda data: data.assign_coords(time=np.nextafter(data.time, 9.0)), "t"),
     ],
-)  # fmt: skip
+)
 def test_what_is_left_out_added_or_told_otherwise_is_named(tmp_path, change, named):
     RUN.save(tmp_path / "run.nc")
     with xarray.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:
@@ -99,11 +106,19 @@ def test_what_is_left_out_added_or_told_otherwise_is_named(tmp_path, change, nam
         Trajectory.load(tmp_path / "changed.nc")
 
 
-def test_files_without_checksums_load_and_are_validated(tmp_path):
-    """Those of before there were any, and those that xarray wrote from `to_xarray`."""
-    data, path = RUN.to_xarray(), tmp_path / "old.nc"
+@pytest.mark.parametrize(("taken", "message"), [("seal", "it has no seal"), ("made_by", "KeyError")])
+def test_a_file_whose_seal_was_taken_out_is_refused(tmp_path, taken, message):
+    data, path = RUN.to_xarray(), tmp_path / "run.nc"
     data.to_netcdf(path, engine="h5netcdf")
     same(Trajectory.load(path), RUN)
+    del data.attrs[taken]
+    data.to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(FileError, match=f"is damaged: {message}"):
+        Trajectory.load(path)
+
+
+def test_what_a_dataset_was_changed_to_is_validated_like_what_is_made(tmp_path):
+    data, path = RUN.to_xarray(), tmp_path / "changed.nc"
     for values, message in ((np.nan, "expected finite"), (1e400, "expected finite")):
         edited = data.copy(deep=True)
         edited.q.values[1, 0, 0] = values
@@ -116,6 +131,15 @@ def test_files_without_checksums_load_and_are_validated(tmp_path):
     data.isel(agent=slice(0, 0)).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileError, match="expected T >= 1 samples of n >= 1 agents"):
         Trajectory.load(path)
+
+
+def test_a_recording_is_saved_and_comes_back_as_one(tmp_path):
+    """What was made or edited by hand: its numbers are whole, and it is no run before or after."""
+    for made in (Trajectory(RUN.t, RUN.q, RUN.p, RUN.u, RUN.law), replace(RUN, q=2.0 * RUN.q)):
+        again = Trajectory.load(made.save(tmp_path / "made.nc"))
+        np.testing.assert_array_equal(again.q, made.q)
+        assert not is_sealed(again)
+    assert is_sealed(Trajectory.load(RUN.save(tmp_path / "run.nc")))
 
 
 def test_what_is_no_file_is_left_alone(tmp_path):

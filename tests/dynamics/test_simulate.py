@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.iterate import _nearest
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
@@ -221,13 +222,19 @@ def test_a_law_broken_from_the_start_is_named(method, bad):
 @pytest.mark.parametrize(
     ("found", "energy", "message"),
     [
-        (None, 1.0, "Returns gives None at the start, t = 0: expected (u, dH/dt)"),
-        (np.zeros((1, 2)), 1.0, "Returns gives array([[0., 0.]]) at the start, t = 0: expected (u, dH/dt)"),
-        ((None, 0.0), 1.0, "gives u as object of shape ()"),
-        ((np.zeros((2, 1)), 0.0), 1.0, "gives u as float64 of shape (2, 1) at the start, t = 0: expected real numbers"),
+        (None, 1.0, "Returns gives None at t = 0: expected (u, dH/dt)"),
+        (np.zeros((1, 2)), 1.0, "Returns gives array([[0., 0.]]) at t = 0: expected (u, dH/dt)"),
+        ((None, 0.0), 1.0, "gives u as NoneType at t = 0: expected an array of real numbers of shape (1, 2)"),
+        (([[0.0, 0.0]], 0.0), 1.0, "gives u as list at t = 0: expected an array of real numbers"),
+        ([np.zeros((1, 2)), 0.0], 1.0, "gives [array([[0., 0.]]), 0.0] at t = 0: expected (u, dH/dt)"),
+        (
+            (np.zeros((2, 1)), 0.0),
+            1.0,
+            "gives u as float64 of shape (2, 1) at t = 0: expected an array of real numbers",
+        ),
         ((np.zeros((1, 2), complex), 0.0), 1.0, "gives u as complex128 of shape (1, 2)"),
-        ((np.zeros((1, 2)), None), 1.0, "gives dH/dt = None at the start"),
-        ((np.zeros((1, 2)), 1j), 1.0, "gives dH/dt = 1j at the start"),
+        ((np.zeros((1, 2)), None), 1.0, "gives dH/dt = None at t = 0"),
+        ((np.zeros((1, 2)), 1j), 1.0, "gives dH/dt = 1j at t = 0"),
         ((np.zeros((1, 2)), np.zeros(2)), 1.0, "gives dH/dt = array([0., 0.])"),
         ((np.zeros((1, 2)), np.nan), 1.0, "gives H = 1, but dH/dt = nan at the start, t = 0: expected the rate of"),
         ((np.zeros((1, 2)), np.inf), 1.0, "gives H = 1, but dH/dt = inf"),
@@ -239,6 +246,13 @@ def test_what_is_no_law_of_motion_is_named_before_the_run(found, energy, message
     for method in ("DOP853", "RK4"):
         with pytest.raises(ArgumentError, match=re.escape(message)):
             simulate(Returns(found, energy), [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0), **kwargs(method))
+
+
+@pytest.mark.parametrize("found", [None, [[0.0, 0.0]], (None, 0.0), ([[0.0, 0.0]], 0.0), (np.zeros((1, 2)), None)])
+def test_the_public_face_of_a_law_names_it_too(found):
+    for ask in (Returns(found).acceleration, Returns(found).energy_rate):
+        with pytest.raises(ArgumentError, match=r"^Returns gives .* at t = 2: expected"):
+            ask(2.0, [[0.0, 0.0]], [[0.0, 0.0]])
 
 
 def test_what_is_no_map_is_named_before_the_run():
@@ -389,7 +403,7 @@ def test_a_law_without_energy_has_no_balance():
         run = simulate(Drift(), [[0.0]], [[1.0]], (0.0, 1.0), **options)
         assert run.status == "complete"
         assert dict(run.extra) == {}
-        with pytest.raises(ArgumentError, match="no energy balance: its law has no energy"):
+        with pytest.raises(ArgumentError, match=r"it carries no extra\['work'\].* where the law has an energy"):
             _ = run.energy_residual
 
 
@@ -467,3 +481,21 @@ def test_a_map_ends_no_later_than_its_span():
     assert 1000 * law.dt > end == run.t[-1]
     again = simulate(law, run.q[0], run.p[0], (0.0, end), t_eval=run.t)
     np.testing.assert_array_equal(again.q, run.q)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "scipy-RK45", "LSODA"])
+def test_an_absolute_tolerance_is_a_length_so_that_units_do_not_matter(method):
+    law, q, p = Algorithm1(), np.array([[0.0], [8.0], [15.0]]), np.array([[0.3], [0.0], [-0.3]])
+    length, time = 2.0**30, 1.0  # the first step of scipy's solvers, and of ours, knows the unit of time
+    run = simulate(law, q, p, (0.0, 1.0), method=method, rtol=1e-6, atol=1e-6)
+    other = simulate(
+        fl.rescale(law, length=length, time=time), q * length, p * (length / time), (0.0, time),
+        method=method, rtol=1e-6, atol=1e-6 * length,
+    )  # fmt: skip
+    np.testing.assert_array_equal(other.q, run.q * length)
+    np.testing.assert_array_equal(other.extra["work"], run.extra["work"] * (length / time) ** 2)
+    assert other.floors == run.in_units(length, time).floors
+    assert run.floors[:2] == pytest.approx((1e-6, 1e-6 / law.scales.time))
+    slow = fl.rescale(law, time=2.0**-20)
+    there = simulate(slow, q, p * 2.0**20, (0.0, 2.0**-20), method=method, rtol=1e-6, atol=1e-6)
+    assert there.floors == run.in_units(1.0, 2.0**-20).floors

@@ -282,3 +282,27 @@ def test_floors_without_tolerances_are_roundings():
     assert run.floors.work == np.spacing(max(np.abs(run.energy()).max(), np.abs(run.extra["work"]).max()))
     parts = {name: getattr(run, name) for name in ("t", "q", "p", "u", "law")}
     assert Trajectory(**parts).floors == run.floors._replace(work=np.spacing(0.0))
+
+
+def test_nothing_is_claimed_between_samples_whose_steps_are_not_known(tmp_path):
+    """Two agents that meet and part between two samples: they come to 6.4812 of each other, by their energy."""
+    law = Algorithm1(gains=Gains(c2_alpha=0.0))
+    run = simulate(law, [[0.0, 0.0], [30.0, 0.0]], [[3.0, 0.0], [-3.0, 0.0]], (0.0, 10.0), t_eval=[0.0, 10.0])
+    assert 6.48 < run.min_distance() < 6.4812191711
+    for name in ("window", "file"):
+        again = run.window(0.0, 10.0) if name == "window" else Trajectory.load(run.save(tmp_path / "run.nc"))
+        assert again.resolved
+        assert again.min_distance() == run.min_distance()
+    sparse = Trajectory(run.t, run.q, run.p, run.u, law)
+    assert not sparse.resolved
+    assert sparse.min_distance() == 0.0
+    assert sparse.closest_approach().lower_by_interval.tolist() == [0.0]
+    assert sparse.cohesion_bound() == np.inf
+    every = simulate(law, run.q[0], run.p[0], (0.0, 10.0))
+    assert every.between is None
+    assert every.resolved
+    assert every.window(2.0, 8.0).resolved
+    thinned = {name: getattr(every, name)[:: len(every.t) - 1] for name in "tqpu"}
+    assert not Trajectory(**thinned, law=law, stats=every.stats).resolved
+    one = Trajectory(run.t[:1], run.q[:1], run.p[:1], run.u[:1], law)
+    assert one.min_distance() == 30.0

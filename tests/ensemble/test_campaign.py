@@ -47,6 +47,7 @@ def pool():
         yield executor
 
 
+@pytest.mark.slow
 def test_the_numbers_do_not_depend_on_who_computes_them(alone, pool):
     grid = {"speed": [0.1, 2.0], "n": [2, 3, 5]}
     assert same(alone, ensemble(tiny_flocks.trio, SEEDS, parameters=grid, executor=pool))
@@ -57,6 +58,7 @@ def test_the_numbers_do_not_depend_on_who_computes_them(alone, pool):
     assert same(alone, backwards.sel(seed=list(SEEDS), n=[2, 3, 5]).sel(speed=[0.1, 2.0]).transpose(*alone.dims))
 
 
+@pytest.mark.slow
 def test_theorems_with_linear_algebra_agree_to_the_bit_between_processes(pool):
     """The Hessian's spectrum: threads of linear algebra could round differently."""
     given = {"theorems": ["os-1", "os-5-terminal"], "metrics": tuple(measures())}
@@ -150,12 +152,14 @@ def test_a_run_that_fails_is_recorded_and_ends_nothing():
     assert (int(table.incomplete), table.runs.values.tolist(), table.verified.values.tolist()) == (2, [4], [1])
 
 
+@pytest.mark.slow
 def test_a_run_that_ends_its_worker_is_found_and_the_others_are_made():
     found = ensemble(tiny_flocks.deadly, range(8), theorems=["source"], metrics=[], jobs=2)
     assert found.run.values.tolist() == [0, 0, 3, 0, 0, 0, 0, 0]
     assert "worker process" in found.message.values[2]
 
 
+@pytest.mark.slow
 def test_workers_that_all_die_end_the_ensemble_with_the_remedy(monkeypatch):
     monkeypatch.setattr(batches, "HOPELESS", 2)
     with pytest.raises(SolverError, match=r"2 worker processes died .*__main__.*jobs=1"):
@@ -191,11 +195,13 @@ def test_an_executor_that_refuses_work_is_told():
         ensemble(tiny_flocks.trio, range(4), theorems=[], executor=executor)
 
 
+@pytest.mark.slow
 def test_a_broken_executor_of_the_users_is_told_from_a_bad_run():
     with ProcessPool(1) as executor, pytest.raises(SolverError, match="the executor failed: BrokenProcessPool"):
         ensemble(tiny_flocks.lethal, range(4), theorems=[], executor=executor)
 
 
+@pytest.mark.slow
 def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
     """What an earlier run compiled comes from numba's cache; the parent's own setting stays."""
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
@@ -211,6 +217,7 @@ def test_workers_load_kernels_and_keep_to_one_thread(monkeypatch):
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
+@pytest.mark.slow
 def test_workers_seldom_look_for_garbage():
     with ProcessPool(1) as pool:
         assert pool.submit(gc.get_threshold).result()[0] == SELDOM

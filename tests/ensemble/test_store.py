@@ -38,6 +38,7 @@ def records(count, status="complete"):
     return {f"key {k}": Record(Job(k), status, metrics={"order": 0.1 + k}) for k in range(count)}
 
 
+@pytest.mark.slow
 @posix
 def test_killed_in_mid_run_it_goes_on_with_what_is_missing(tmp_path, monkeypatch):
     """Both workers are held at the gate, with six runs or more in the store, when their parent is killed."""
@@ -59,6 +60,7 @@ def test_killed_in_mid_run_it_goes_on_with_what_is_missing(tmp_path, monkeypatch
     assert again.order.identical(ensemble(tiny_flocks.trio, range(runs), theorems=[], jobs=1).order)
 
 
+@pytest.mark.slow
 @posix
 def test_two_writers_at_once_do_no_harm(tmp_path):
     """The gate opens when both are held at it: each of them still has runs to write."""
@@ -202,6 +204,7 @@ def test_where_nothing_can_be_written_is_told_before_any_work(tmp_path, monkeypa
     assert not (tmp_path / "log").exists()
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_told_and_nothing_is_torn(whole):
     with Store(whole) as kept:
         kept._file.execute("PRAGMA max_page_count = 1")  # SQLite raises it to the present size

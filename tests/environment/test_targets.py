@@ -113,3 +113,20 @@ def test_the_rate_of_a_users_path_is_as_exact_in_every_unit_of_time(time):
         np.testing.assert_allclose(target.rate(t), expected, rtol=0.0, atol=2e-8 / time)
     with pytest.raises(ArgumentError, match="time = 0: expected a number > 0"):
         CallableTarget(lambda t: ((t,), (1.0,)), time=0.0)
+
+
+def test_a_function_is_never_called_outside_of_its_span():
+    """t² between 1 and 2: three points give its slope at the ends, exactly but for rounding."""
+
+    def function(t):
+        assert 1.0 <= t <= 2.0
+        return (t * t,), (2.0 * t,)
+
+    target = CallableTarget(function, span=(1.0, 2.0))
+    for t in (1.0, 1.000005, 1.5, 2.0):
+        assert target.rate(t) == pytest.approx(2.0 * t, abs=1e-9)
+    assert (target.dimension, target.position(9.0)) == (1, 4.0)
+    assert target.in_units(1.0, 60.0).span == (60.0, 120.0)
+    for span in ((1.0, 1.0), (2.0, 1.0), 3, ("a", "b")):
+        with pytest.raises(ArgumentError, match="span = "):
+            CallableTarget(function, span=span)

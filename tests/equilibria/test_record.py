@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import FileError
+from flockana.base.seals import sealed
 from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -108,8 +109,8 @@ def test_a_lattice_without_energy_reads_back(tmp_path):
     bond = find_equilibrium(LAW, [[0.0], [6.9]])
     assert abs(bond.energy) < 1e-12
     for energy in (0.0, 1e-13, -1e-28):
-        write_equilibrium(replace(bond, energy=energy), tmp_path / "bond.json")
+        write_equilibrium(sealed(replace(bond, energy=energy)), tmp_path / "bond.json")
         assert read_equilibrium(tmp_path / "bond.json").kind == "minimum"
-    write_equilibrium(replace(bond, energy=1.0), tmp_path / "bond.json")
+    write_equilibrium(sealed(replace(bond, energy=1.0)), tmp_path / "bond.json")
     with pytest.raises(FileError, match="claims an energy"):
         read_equilibrium(tmp_path / "bond.json")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana.base.seals import sealed
 from flockana.explore.answers import answer, poles
 from flockana.explore.case import Case
 from flockana.falsify.counterexample import Counterexample
@@ -107,7 +108,9 @@ def test_errors_are_the_librarys_own(case, words):
 
 def test_the_tolerances_of_a_counterexample_are_used(tmp_path):
     item, loose = fl.scenario("head-on"), fl.Tolerances(energy=1e-5)
-    found = Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
+    found = sealed(
+        Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
+    )
     (verdict,) = told(Case("file", str(found.save(tmp_path / "found.json"))))["verdict"]
     assert (verdict["theorem"], verdict["tolerances"]["energy"]) == ("energy", 1e-5)
 

@@ -10,6 +10,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, FileError
+from flockana.base.seals import sealed
 from flockana.explore.case import Case, program
 from flockana.falsify.counterexample import Counterexample
 
@@ -76,7 +77,9 @@ def test_a_saved_run_is_shown_as_it_is_until_something_changes(tmp_path):
 
 def test_a_counterexample_brings_its_theorem_and_tolerances(tmp_path):
     item, loose = fl.scenario("head-on"), fl.Tolerances(energy=1e-5)
-    found = Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
+    found = sealed(
+        Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
+    )
     case = Case("file", str(found.save(tmp_path / "found.json")))
     assert (case.parts.theorems, case.parts.tolerances) == (("energy",), loose)
     assert "tolerances=found.tolerances" in program(case.parts)

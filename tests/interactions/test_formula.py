@@ -158,6 +158,32 @@ def test_bad_formulas(change, says):
         fl.pair_law(**(good | change))
 
 
+@pytest.mark.parametrize(
+    "formula",
+    ["exp(exp(1e9*s))", "exp(exp(exp(s)))", "*".join(f"sin({k}*s)" for k in range(1, 60)), "sin(" * 90 + "s" + ")" * 90,
+     "*".join(f"(s + {k})" for k in range(45)),
+     "Piecewise(" + "".join(f"({k}, s < {0.01 * k}), " for k in range(1, 80)) + "(0, True))"],
+    ids=["double exponential", "triple exponential", "factors", "nested", "product", "pieces"],
+)  # fmt: skip
+def test_short_formulas_that_grow_are_refused_by_counts(formula):
+    """None of them takes long, and each is answered by an error with a remedy."""
+    with pytest.raises(ArgumentError, match="expected"):
+        fl.pair_law(formula, adjacency=0, range=3.0, length=1.0)
+
+
+@pytest.mark.parametrize("name", ["mpf", "lambda_", "mpmath", "x0", "inf", "nan", "par", "root_", "max"])
+def test_a_parameter_may_have_any_name(name):
+    law = fl.pair_law(f"{name}*s**2", adjacency=0, range=3.0, length=1.0, parameters={name: 2.0})
+    assert law.force(1.0) == 4.0
+    assert law.facts.least[0] == 0.0
+
+
+def test_the_root_of_a_square_has_two_pieces():
+    law = fl.pair_law("sqrt((s - 1.3)**2)*(r - s)**2", adjacency=0, range=3.0, length=1.0)
+    assert law.surfaces == (1.3, 3.0)
+    assert law.energy_at([0.3, 2.3]) == pytest.approx([2.7**2, 0.7**2], rel=1e-14)
+
+
 def test_parameters_are_given_later_and_compile_nothing():
     law = spring()
     other = law.given(k=2.0)

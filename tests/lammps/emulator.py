@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-SKIPPED = ("units", "boundary", "atom_style", "neighbor", "neigh_modify", "comm_modify", "thermo", "dump_modify")
+SKIPPED = ("units", "atom_style", "neighbor", "neigh_modify", "comm_modify", "thermo", "dump_modify")
 
 
 def read_data(path: Path):
@@ -67,6 +67,9 @@ class Lammps:
                 name, _, rest = line.partition(" ")
                 if name not in SKIPPED:
                     getattr(self, f"do_{name}")(*rest.split(None, 2 if name == "variable" else -1))
+
+    def do_boundary(self, *faces):
+        self.faces = " ".join(2 * face for face in faces)
 
     def do_dimension(self, m):
         self.m = int(m)
@@ -168,7 +171,7 @@ class Lammps:
             data |= {axis: self.x[:, k], f"v{axis}": self.v[:, k], f"f{axis}": force[:, k]}
         box = "".join(f"{low!r} {high!r}\n" for low, high in self.box.tolist())
         self.dump += f"ITEM: TIME\n{self.step * self.dt!r}\nITEM: TIMESTEP\n{self.step}\n"
-        self.dump += f"ITEM: NUMBER OF ATOMS\n{len(self.x)}\nITEM: BOX BOUNDS ss ss pp\n{box}"
+        self.dump += f"ITEM: NUMBER OF ATOMS\n{len(self.x)}\nITEM: BOX BOUNDS {self.faces}\n{box}"
         self.dump += f"ITEM: ATOMS {' '.join(self.columns)} \n"
         for i in order.tolist():
             self.dump += " ".join(repr(data[name][i].item()) for name in self.columns) + " \n"

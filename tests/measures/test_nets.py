@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from flockana.base.errors import ArgumentError
 from flockana.measures import metrics, nets
@@ -57,6 +58,17 @@ def test_e8_rank_of_adjacency_against_rank_of_laplacian():
     assert nets.printed_rank_connectivity(3, pairs, typeset=True) == 1.0  # diag(1, 1, 0) and the path: determinant -1
     assert nets.printed_rank_connectivity(2, pairs[:0], typeset=True) == 0.5
     assert metrics.connectivity(PATH, 1.5) == 1.0  # as meant
+
+
+@pytest.mark.parametrize("typeset", [False, True])
+def test_ranks_of_adjacency_are_those_of_exact_elimination(typeset):
+    rng = np.random.default_rng(3)
+    for n in range(2, 12):
+        pairs = nets.links(rng.uniform(0.0, 3.0 * np.sqrt(n), (n, 2)), 5.0)
+        matrix = sp.diag(*[int(typeset)] * (n - 1), 0)
+        for i, j in pairs.tolist():
+            matrix[i, j] = matrix[j, i] = 1
+        assert nets.printed_rank_connectivity(n, pairs, typeset=typeset) == matrix.rank() / n
 
 
 def test_connectivity_is_the_rank_of_the_laplacian():

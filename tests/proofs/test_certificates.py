@@ -16,6 +16,7 @@ from flockana.theorems.theorem import Theorem
 from proofs.proof import load, names
 
 IDS = set(names())
+TABLES = ("THEOREM", "RIGOUR", "CITES")  # of all proofs, or followed by themselves
 
 
 @cache
@@ -49,10 +50,10 @@ def cited(module, name, seen):
         return set()
     seen.add((module, name))
     node, found = own[name], set()
-    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name != "THEOREM":
+    if isinstance(node, (ast.Assign, ast.AnnAssign)) and name.lstrip("_").isupper() and name not in TABLES:
         found |= strings(node.value)  # PROOF = "..."
     for one in ast.walk(node):
-        if isinstance(one, ast.keyword) and one.arg == "proof":
+        if isinstance(one, ast.keyword) and one.arg in ("proof", "disproof"):
             found |= strings(one.value)
         elif isinstance(one, ast.Call) and getattr(one.func, "id", "") == "proved":
             found |= strings(one) or {"energy-identities"}  # which it names by default

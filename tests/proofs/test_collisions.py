@@ -274,10 +274,10 @@ def test_the_energies_of_lattices_are_those_of_the_kernels():
 def test_claims_name_these_proofs():
     case = scenario("three-agents-1d")
     run = simulate(case.law, case.q0, case.p0, (0.0, 0.03))
-    named = {claim.name: claim.proof for claim in verify("E13", run).claims}
-    assert named == {"printed": "distinct-pairs", "corrected": "collisions"}
+    named = {claim.name: (claim.proof, claim.disproof) for claim in verify("E13", run).claims}
+    assert named == {"printed": (None, "distinct-pairs"), "corrected": ("collisions", None)}
     other = simulate(case.law, case.q0, 1.01 * case.p0, (0.0, 0.03))
-    assert verify("E13", other).claim("printed").proof is None
+    assert verify("E13", other).claim("printed").disproof is None
     names = {claim.name: claim.proof for claim in verify("os-3", run).claims}
     assert (names["iv-printed"], names["iv-instant"], names["iv-none"]) == (None, "collisions", "collisions")
 

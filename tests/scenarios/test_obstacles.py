@@ -123,7 +123,7 @@ def test_passing_the_gap_is_not_going_round_it():
 def test_an_agent_that_tunnels_between_two_samples_is_seen():
     entry = scenario("paper-split-rejoin")
     q, p = np.array([[[80.0, 20.0]], [[120.0, 20.0]]]), np.full((2, 1, 2), (40.0, 0.0))
-    run = Trajectory(np.array([0.0, 1.0]), q, p, 0.0 * p, entry.law)
+    run = Trajectory(np.array([0.0, 1.0]), q, p, 0.0 * p, entry.law, stats={"steps": 1})
     found = report(entry, "clear")(run, FINDS)
     assert found.status == "refuted"
     assert found.computed == pytest.approx(-10.0, abs=1e-6)

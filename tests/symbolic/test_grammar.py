@@ -41,6 +41,18 @@ HOSTILE = [
     ("q*s", "unknown name 'q'"),
     ("\x00", "cannot be read"),
     ("", "cannot be read"),
+    ("exp(exp(exp(exp(s))))", "exponentials within each other"),
+    ("s**(s**(s**(s**s)))", "exponentials within each other"),
+    ("2**(2**(2**(2**(2**s))))*s**2", "exponentials within each other"),
+    ("cosh(sinh(cosh(exp(s))))", "exponentials within each other"),
+    ("((s**64)**64)**64", "as its degree"),
+    ("((((s + 1)**64 + 1)**64 + 1)**64)", "as its degree"),
+    ("abs(" * 8 + "s" + " - 0.1)" * 8, "has pieces itself"),
+    ("abs(abs(s - 1) - 0.5)", "has pieces itself"),
+    ("sqrt((abs(s - 1) - 0.5)**2)", "has pieces itself"),
+    ("Piecewise((1, Piecewise((s, s < 1), (2*s, True)) < 1.5), (0, True))", "has pieces itself"),
+    ("s/(sqrt(2) + sqrt(3) - sqrt(5 + 2*sqrt(6)))", "is 0, or too near to it"),
+    ("(sin(1)**2 + cos(1)**2 - 1)**-2", "is 0, or too near to it"),
 ]
 
 

@@ -17,7 +17,7 @@ def made_up(law, q, p=None, t=None, u=None):
     p = np.zeros_like(q) if p is None else np.array(p, dtype=float)
     u = np.zeros_like(q) if u is None else np.array(u, dtype=float)
     t = np.arange(float(len(q))) if t is None else np.array(t, dtype=float)
-    return Trajectory(t, q, p, u, law, {"work": np.zeros(len(q))})
+    return Trajectory(t, q, p, u, law, {"work": np.zeros(len(q))}, stats={"steps": len(q) - 1})
 
 
 def judged(name, run, tolerances=None):

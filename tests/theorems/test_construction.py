@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-import flockana.theorems as room
+import flockana
 from flockana.theorems.proofs import CITES, RIGOUR
 from proofs.proof import load
 
-FILES = sorted(Path(room.__file__).parent.rglob("*.py"))
+FILES = sorted((Path(flockana.__file__).parent / "theorems").rglob("*.py"))
 ALLOWED = {
     "simulate": {"observed.py", "second_run.py", "catalogue.py"},
     "Claim": {"claims.py", "theorem.py"},

@@ -12,6 +12,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import changed
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, Tolerances, verify
@@ -106,7 +107,7 @@ EDITS = {
 def test_an_edited_run_is_refused(edit, how: dict) -> None:
     run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), **how)
     verify("energy", run)
-    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+    with pytest.raises(ArgumentError, match="was made or changed by hand: expected a run as simulate returned it"):
         verify("energy", edit(run))
 
 
@@ -118,15 +119,15 @@ def test_a_state_from_elsewhere_is_refused_even_with_its_own_input() -> None:
         for name in "qpu"
     }
     with pytest.raises(ArgumentError, match=r"is off by .* from where Algorithm1 leads"):
-        verify("energy", replace(run, **mixed))
+        ensure_fits(replace(run, **mixed))
 
 
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))], ids=["copy", "pickle"])
-def test_a_copy_is_not_taken_for_what_simulate_returned(copied) -> None:
-    """Of that fewer intervals are looked at; a copy can be written to. The edit is between those."""
+def test_an_edit_of_a_copy_is_seen(copied) -> None:
+    """A copy can be written to."""
     run = copied(fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
     run.q[7] += 1e-4
-    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+    with pytest.raises(ArgumentError, match=r"was changed by hand since \(q\)"):
         verify("energy", run)
 
 
@@ -144,7 +145,7 @@ def test_a_copy_remembers_no_check_of_what_it_was_copied_from() -> None:
     verify("energy", run)
     later = copy.deepcopy(run)
     later.q[7] += 1e-4
-    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+    with pytest.raises(ArgumentError, match=r"was changed by hand since \(q\)"):
         verify("energy", later)
 
 
@@ -153,7 +154,7 @@ def test_an_edit_past_the_flags_is_seen() -> None:
     run.q.setflags(write=True)
     run.q[7] += 1e-4
     run.q.setflags(write=False)
-    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+    with pytest.raises(ArgumentError, match=r"was changed by hand since \(q\)"):
         verify("energy", run)
 
 
@@ -181,13 +182,6 @@ def test_an_interval_that_is_not_integrated_to_its_end_accuses_nobody(monkeypatc
 def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:
     with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
         verify("energy", fl.simulate(Gusty(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
-
-
-def test_an_edited_map_is_refused() -> None:
-    run = fl.simulate(SemiImplicitEuler(fl.DeadZoneFlocking(), dt=0.02), *PAIR, (0.0, 2.0))
-    verify("dead-zone-1-printed", run)
-    with pytest.raises(ArgumentError, match=r"is off by .* from where SemiImplicitEuler leads from the sample"):
-        verify("dead-zone-1-printed", replace(run, q=run.q + (np.arange(len(run.t)) == 1)[:, None, None] * 1e-3))
 
 
 @pytest.mark.parametrize(

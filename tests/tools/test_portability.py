@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
-from collections import Counter
 
 import numpy as np
 import pytest
@@ -14,10 +16,8 @@ import pytest
 from flockana import scenario
 from flockana.theorems import Tolerances
 from tools.portability import __main__ as command
-from tools.portability import crew, worker
-from tools.portability.crew import Unit, WorkerError, carry_out
-from tools.portability.findings import Findings, Row, differences, table
-from tools.portability.variants import NATIVE, Change, Environment, changes, environments, no_effect
+from tools.portability import worker
+from tools.portability.__main__ import NATIVE, Matrix, Row, changes, differences, environments, table
 
 AVX512 = {
     "machine": "x86_64",
@@ -38,8 +38,7 @@ def verdicts(statuses=(), *, run="complete", expected=(), residual=None):
 
 
 def test_a_machine_with_everything_gives_every_environment():
-    found, notices = environments(AVX512)
-    given = {one.name: dict(one.settings) for one in found}
+    given, notices = environments(AVX512)
     cores = {name: one["OPENBLAS_CORETYPE"] for name, one in given.items() if name.startswith("blas-")}
     assert list(cores.values()) == ["Prescott", "Nehalem", "Sandybridge", "Haswell", "SkylakeX"]
     assert not notices
@@ -57,19 +56,25 @@ def test_a_machine_with_everything_gives_every_environment():
 
 def test_what_a_machine_lacks_is_left_out_and_said():
     found, notices = environments(AVX512 | {"libc": "musl", "processor": ["SSE42", "AVX"], "numpy": ["AVX"]})
-    names = [one.name for one in found]
-    assert names == ["blas-prescott", "blas-nehalem", "blas-sandybridge", "numba-generic", "numpy-generic", "generic"]
+    assert list(found) == [
+        "blas-prescott",
+        "blas-nehalem",
+        "blas-sandybridge",
+        "numba-generic",
+        "numpy-generic",
+        "generic",
+    ]
     assert [notice.split(":")[0] for notice in notices] == [
         "blas-haswell is left out",
         "blas-skylakex is left out",
         "libm is left out",
     ]
     assert notices[0].endswith("the processor has no AVX2, FMA3")
-    assert "GLIBC_TUNABLES" not in dict(found[-1].settings)
+    assert "GLIBC_TUNABLES" not in found["generic"]
 
 
 def test_other_processors_vary_no_machine_code():
-    assert environments(AVX512 | {"machine": "arm64"}) == ([], ["machine code is not varied: arm64 is no x86-64"])
+    assert environments(AVX512 | {"machine": "arm64"}) == ({}, ["machine code is not varied: arm64 is no x86-64"])
 
 
 @pytest.mark.parametrize(
@@ -92,21 +97,12 @@ def test_other_processors_vary_no_machine_code():
     ],
 )
 def test_an_environment_without_its_effect_is_told(settings, here, reason):
-    told = no_effect(Environment("x", settings), AVX512, AVX512 | here)
+    told = worker.unfit(settings, AVX512, AVX512 | here)
     assert reason in told
     assert bool(told) is bool(reason)
 
 
 # what is changed in an entry
-
-
-def test_changes_that_share_a_run_are_asked_of_it_together():
-    units = command.plan(["a", "b"], [Environment("generic")], changes(2))
-    runs = [(unit.environment.name, unit.name, len(unit.changes)) for unit in units]
-    own = [("native", "a", 5), ("native", "b", 5)]  # own start: unchanged, thresholds and definitions, each twice
-    one_each = [("native", name, 1) for _ in range(7) for name in ("a", "b")]  # solver twice, three units, two draws
-    assert runs == [*own, *one_each, ("generic", "a", 1), ("generic", "b", 1)]
-    assert units[0].changes[0].name == NATIVE
 
 
 def test_a_start_is_moved_by_so_much_of_each_value():
@@ -140,19 +136,19 @@ def test_the_name_of_every_threshold_is_known():
 
 
 def test_a_worker_tells_statuses_as_an_entry_expects_them():
-    found = worker.outcome("three-agents-1d", **Change("").request())
+    found = worker.outcome("three-agents-1d")
     assert found["run"] == "complete"
     assert set(found["expected"]) <= set(found["statuses"])
     assert found["statuses"]["E13:printed"] == "refuted"
-    alone = worker.outcome("E8", **Change("").request())
+    alone = worker.outcome("E8")
     assert alone["expected"]["E8"] == alone["statuses"]["E8"] == "refuted"
     assert alone["statuses"]["E8:printed"] == "refuted"
-    assert worker.outcome("E8", **Change("", draw=1).request()) is None
-    assert worker.outcome("msn-case2-printed", **Change("", solver=0.5).request()) is None
+    assert worker.outcome("E8", draw=1) is None
+    assert worker.outcome("msn-case2-printed", solver=0.5) is None
 
 
 def test_a_worker_tells_an_error_and_goes_on():
-    told = worker.answer({"name": "nowhere", "changes": {"native": Change("").request()}})
+    told = worker.answer({"name": "nowhere", "changes": {"native": {}}})
     assert told["outcomes"]["native"]["run"].startswith("UnknownNameError: ")
 
 
@@ -219,161 +215,107 @@ def test_the_table_has_a_column_for_each_field():
 
 FAKE = f"""
 import json, os, sys, time
+told = json.loads(sys.stdin.readline())
 with open(__file__ + ".starts", "a") as starts:
-    print(os.environ.get("OPENBLAS_CORETYPE"), file=starts)
-print(json.dumps({AVX512!r} | {{"numba": [os.environ.get("NUMBA_CPU_NAME", "znver5"), []]}}), flush=True)
-for line in sys.stdin:
+    print(os.environ.get("OPENBLAS_CORETYPE"), os.environ.get("NUMBA_CACHE_DIR"), file=starts)
+unfit = "too old" if os.environ.get("OPENBLAS_CORETYPE") == "Nehalem" else ""
+here = {AVX512!r} | {{"unfit": unfit, "scenarios": ["deadly", "endless", "a", "b", "c"], "fixed": ["E8"]}}
+print(json.dumps(here), flush=True)
+for line in sys.stdin if not unfit else ():
     request = json.loads(line)
     if request["name"] == "deadly" and "NUMBA_CPU_NAME" in os.environ:
-        print("illegal", file=sys.stderr)
+        print("illegal", file=sys.stderr, flush=True)
         os.kill(os.getpid(), {int(signal.SIGILL)})
     if request["name"] == "endless":
         open(__file__ + ".endless", "w").close()
         time.sleep(600)
-    status = os.environ.get("NUMBA_CPU_NAME", "native") + os.environ.get("OPENBLAS_CORETYPE", "")
+    status = "refuted" if request["name"] == "a" and "NUMBA_CPU_NAME" in os.environ else "verified"
     one = {{"run": "complete", "statuses": {{"E:i": status}}, "expected": {{}}}}
     print(json.dumps({{"outcomes": dict.fromkeys(request["changes"], one), "seconds": 1.0}}), flush=True)
 """
+GENERIC = {"NUMBA_CPU_NAME": "generic"}
 
 
 @pytest.fixture
 def fake_worker(tmp_path, monkeypatch):
-    """Children that run no flock; whatever chooses machine code outside must not reach them."""
+    """Children that run no flock; what chooses machine code outside must not reach them."""
     (tmp_path / "worker.py").write_text(FAKE)
-    monkeypatch.setattr(crew, "HERE", tmp_path)
+    monkeypatch.setattr(command, "HERE", tmp_path)
     monkeypatch.setenv("OPENBLAS_CORETYPE", "outside")
+    return tmp_path
 
 
-def matrix(environments, names, jobs=2):
-    units = [Unit(one, name, (Change(NATIVE),)) for one in environments for name in names]
-    findings = Findings(AVX512, Counter(unit.environment.name for unit in units))
-    carry_out(units, findings, jobs=jobs)
-    return findings
-
-
-@pytest.mark.parametrize("kept", [True, False])
-def test_what_is_compiled_for_another_processor_has_a_folder_of_its_own(tmp_path, monkeypatch, kept):
-    given = []
-
-    class Asked(crew.Child):
-        def __init__(self, environment, caches):
-            given.append(caches)
-            raise WorkerError("asked")
-
-    monkeypatch.setattr(crew, "Child", Asked)
-    generic = Environment("generic", {"NUMBA_CPU_NAME": "generic"})
-    units = [Unit(generic, "a", (Change(NATIVE),))]
-    carry_out(units, Findings(AVX512, Counter()), jobs=1, caches=tmp_path if kept else None)
-    assert (given[0] == tmp_path) is kept
+def carried_out(folder, where, names, *, jobs=2, asked=None):
+    matrix = Matrix(folder / "caches")
+    matrix.carry_out(where, names, asked or {NATIVE: {}}, jobs)
+    return matrix
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_every_entry_is_run_once_in_every_environment(fake_worker, jobs):
-    generic = Environment("generic", {"NUMBA_CPU_NAME": "generic"})
-    findings = matrix([Environment(NATIVE), generic], [f"flock-{k}" for k in range(7)], jobs)
-    assert {name: len(found) for name, found in findings.outcomes.items()} == {NATIVE: 7, "generic": 7}
-    assert findings.seconds == {NATIVE: 7.0, "generic": 7.0}
-    assert {row.there for row in findings.rows(["generic"])} == {"generic"}
-    assert {row.here for row in findings.rows(["generic"])} == {NATIVE}
+    asked = {NATIVE: {}, "moved-1": {"draw": 1}}
+    matrix = carried_out(fake_worker, {NATIVE: {}, "generic": GENERIC}, ["a", "b", "c"], jobs=jobs, asked=asked)
+    assert set(matrix.outcomes) == {NATIVE, "moved-1", "generic"}
+    assert all(sorted(found) == ["a", "b", "c"] for found in matrix.outcomes.values())
+    assert matrix.seconds == {NATIVE: 1.5, "moved-1": 1.5, "generic": 3.0}
+    assert matrix.rows(None) == [Row("a", "E", "i", "generic", "refuted", "verified", "")]
+    starts = {tuple(line.split()) for line in (fake_worker / "worker.py.starts").read_text().splitlines()}
+    assert starts == {("None", "None"), ("None", str(fake_worker / "caches/generic"))}
 
 
 def test_a_child_that_dies_costs_its_entry_alone(fake_worker):
-    generic = Environment("generic", {"NUMBA_CPU_NAME": "generic"})
-    findings = matrix([Environment(NATIVE), generic], ["deadly", "flock"], jobs=1)
-    assert findings.outcomes["generic"]["deadly"]["run"] == "the worker ended by SIGILL: illegal"
-    assert findings.outcomes["generic"]["flock"]["run"] == "complete"
+    matrix = carried_out(fake_worker, {NATIVE: {}, "generic": GENERIC}, ["b", "deadly", "c"], jobs=1)
+    assert matrix.outcomes["generic"]["deadly"]["run"] == "the worker ended by SIGILL: illegal"
+    assert matrix.outcomes["generic"]["b"]["run"] == matrix.outcomes["generic"]["c"]["run"] == "complete"
 
 
-def test_ctrl_c_ends_the_children_and_what_they_did_not_do_is_not_found(fake_worker, tmp_path, monkeypatch):
-    interrupts = []
-
-    class Waiting(threading.Thread):
-        """Whoever waits for it is interrupted, once, when the child is at work."""
-
-        def join(self, timeout=None):
-            while not interrupts:
-                if (tmp_path / "worker.py.endless").exists():
-                    interrupts.append(True)
-                    raise KeyboardInterrupt
-                time.sleep(0.01)
-            super().join(timeout)
-
-    monkeypatch.setattr(crew.threading, "Thread", Waiting)
-    findings = Findings(AVX512, Counter())
-    with pytest.raises(KeyboardInterrupt):
-        carry_out(
-            [Unit(Environment(NATIVE), name, (Change(NATIVE),)) for name in ("flock", "endless")], findings, jobs=1
-        )
-    assert list(findings.outcomes[NATIVE]) == ["flock"]
+def test_an_environment_without_effect_is_left_out_and_said_once(fake_worker, capsys):
+    matrix = carried_out(fake_worker, {NATIVE: {}, "old": {"OPENBLAS_CORETYPE": "Nehalem"}}, ["a", "b"], jobs=2)
+    assert list(matrix.outcomes) == [NATIVE]
+    assert matrix.left_out == {"old": "too old"}
+    assert capsys.readouterr().err.count("old is left out: too old") == 1
 
 
-def test_a_child_that_never_answers_is_ended(fake_worker, tmp_path, monkeypatch):
-    """The limit is over as soon as it is at work on what never ends."""
-    limits = []
+def test_an_interrupt_ends_the_children_and_what_was_found_is_told(fake_worker, monkeypatch, capsys):
+    class Interrupted(Matrix):
+        def work(self, *given):
+            super().work(*given)
+            raise KeyboardInterrupt  # as the main thread has it from `result`
 
-    class Limit(threading.Thread):
-        def __init__(self, seconds, end):
-            super().__init__(daemon=True)
-            limits.append(seconds)
-            self.end, self.cancelled = end, threading.Event()
+    def end():
+        while not (fake_worker / "worker.py.endless").exists():
+            time.sleep(0.01)
+        for child in list(matrices[0].children):
+            child.kill()
 
-        def run(self):
-            while not self.cancelled.wait(0.01):
-                if (mark := tmp_path / "worker.py.endless").exists():
-                    mark.unlink()  # the next child's limit is not over
-                    return self.end()
-
-        def cancel(self):
-            self.cancelled.set()
-
-    monkeypatch.setattr(crew.threading, "Timer", Limit)
-    findings = matrix([Environment(NATIVE)], ["endless", "flock"], jobs=1)
-    assert findings.outcomes[NATIVE]["endless"]["run"] == "the worker ended by SIGKILL: nothing said"
-    assert findings.outcomes[NATIVE]["flock"]["run"] == "complete"
-    assert {*limits} == {1800.0}
+    matrices = []
+    monkeypatch.setattr(command, "Matrix", lambda caches: matrices.append(Interrupted(caches)) or matrices[0])
+    threading.Thread(target=end, daemon=True).start()
+    assert command.main(["a", "endless", "--variants", "moved-1", "--jobs", "1"]) == 130
+    assert "worker ended by SIGKILL" in capsys.readouterr().out
+    assert list(matrices[0].outcomes["moved-1"]) == ["a", "endless"]
+    assert not matrices[0].children
 
 
-def test_an_environment_without_effect_is_left_out(fake_worker, tmp_path, capfd):
-    nehalem = Environment("blas-nehalem", {"OPENBLAS_CORETYPE": "Nehalem"})
-    findings = matrix([Environment(NATIVE), nehalem], ["a", "b"], jobs=1)
-    assert (tmp_path / "worker.py.starts").read_text().splitlines() == ["None", "Nehalem"]  # tried once, not per entry
-    assert list(findings.outcomes) == [NATIVE]
-    assert "asked for the core Nehalem" in findings.left_out["blas-nehalem"]
-    assert capfd.readouterr().err.count("blas-nehalem is left out") == 1
+def test_a_child_that_never_answers_ends_by_itself():
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import worker, time; worker.LIMIT = 0.5; "
+    code += "worker.machine = dict; worker.answer = lambda request: time.sleep(600); worker.main()"
+    given = '{"settings": {}, "native": null}\n{"name": "E8", "changes": {}}\n'
+    folder = str(command.HERE)
+    done = subprocess.run(
+        [sys.executable, "-c", code, folder], input=given, capture_output=True, text=True, env=os.environ
+    )
+    assert done.returncode == 1
+    assert "Timeout" in done.stderr
 
 
-def test_a_listener_that_fails_ends_the_work(fake_worker):
-    class Broken(Findings):
-        def found(self, unit, answer):
-            raise RuntimeError("full")
-
-    with pytest.raises(RuntimeError, match="full"):
-        carry_out([Unit(Environment(NATIVE), "a", (Change(NATIVE),))], Broken(AVX512, Counter()), jobs=2)
-
-
-def test_a_child_that_does_not_begin_is_bad_input(fake_worker, tmp_path, capsys):
-    (tmp_path / "worker.py").write_text("raise SystemExit('no numba')")
+def test_a_child_that_does_not_begin_is_bad_input(fake_worker, capsys):
+    (fake_worker / "worker.py").write_text("raise SystemExit('no numba')")
     assert command.main(["E8"]) == 2
     assert "the worker ended by exit status 1: no numba" in capsys.readouterr().err
 
 
 # the command
-
-
-def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_worker, tmp_path):
-    def interrupted(units, findings, *, jobs, caches):
-        assert caches == tmp_path
-        for unit, status in zip(units, ("verified", "refuted"), strict=False):
-            outcomes = {one.name: verdicts({"E:i": status}) for one in unit.changes}
-            findings.found(unit, {"outcomes": outcomes, "seconds": 1.0})
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(command, "ask_machine", lambda: AVX512 | {"scenarios": ["flock", "other"], "fixed": []})
-    monkeypatch.setattr(command, "carry_out", interrupted)
-    assert command.main(["flock", "--variants", "moved-1", "--caches", str(tmp_path)]) == 130
-    printed = capsys.readouterr().out
-    assert "i      moved-1  refuted  verified" in printed
-    assert printed.endswith("interrupted: some was not tried\n")
 
 
 @pytest.mark.parametrize(
@@ -384,21 +326,17 @@ def test_what_was_found_before_an_interrupt_is_told(monkeypatch, capsys, fake_wo
         (["--jobs", "0"], "--jobs 0 --draws 5: expected at least 1 and 0"),
     ],
 )
-def test_bad_input_is_2_and_says_what_there_is(monkeypatch, capsys, given, message):
-    monkeypatch.setattr(command, "ask_machine", lambda: AVX512 | {"scenarios": ["flock"], "fixed": ["E8"]})
+def test_bad_input_is_2_and_says_what_there_is(fake_worker, capsys, given, message):
     assert command.main(given) == 2
     assert message in capsys.readouterr().err
 
 
 def test_what_is_claimed_is_changed_only_on_demand():
-    names = [one.name for one in changes(1)]
+    names = list(changes(1))
     assert "definitions-halved" in names
     assert not any(name.startswith("definitions") for name in command.choose(names, ()))
-    assert command.choose(names, ("definitions-*", "moved-1")) == [
-        "definitions-halved",
-        "definitions-doubled",
-        "moved-1",
-    ]
+    chosen = command.choose(names, ("definitions-*", "moved-1"))
+    assert chosen == ["definitions-halved", "definitions-doubled", "moved-1"]
 
 
 def test_a_moved_start_of_a_small_flock_changes_nothing(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""A child of the matrix: tells what machine code it has, then runs and verifies what it is asked to.
+"""A child of the matrix: reports its machine code, then runs and verifies the entries that it is asked for.
 
 It is run as a script in an environment of its own. One JSON object a line: requests come by standard input, answers go
 to what was standard output. Everything else that libraries print goes to standard error.
@@ -7,6 +7,7 @@ to what was standard output. Everything else that libraries print goes to standa
 from __future__ import annotations
 
 import ctypes
+import faulthandler
 import hashlib
 import importlib
 import json
@@ -31,6 +32,8 @@ from flockana import Scenario, Tolerances, Trajectory, Verdict, rescale, scenari
 from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import DiscreteLaw
 
+LIMIT = 1800  # seconds for one answer: what takes longer hangs
+OTHER_NAMES = {"Prescott": ("Katmai",)}  # under which OpenBLAS reports a core
 MOVED = 1e-13  # relative: what rounding does to a start that is written down elsewhere
 # These do not stand for zero: they are part of what is claimed (a quasi-α-lattice *is* one within δ = 0.1 d).
 DEFINITIONS = ("quasi", "deviation", "mismatch", "agreement")
@@ -146,29 +149,15 @@ def _run(name: str, draw: int, solver: float, length: float, time: float) -> tup
 def outcome(
     name: str,
     *,
-    draw: int,
-    solver: float,
-    thresholds: float,
-    definitions: float,
-    length: float,
-    time: float,
-    verdicts: bool,
+    draw: int = 0,
+    solver: float = 1.0,
+    thresholds: float = 1.0,
+    definitions: float = 1.0,
+    length: float = 1.0,
+    time: float = 1.0,
+    verdicts: bool = True,
 ) -> dict[str, Any] | None:
-    """Run and verify one entry with one change; None if the change means nothing there.
-
-    Parameters
-    ----------
-    name : str
-        A scenario, or a theorem that is checked by itself.
-    draw : int
-        Which moved start; 0 for its own.
-    solver, thresholds, definitions : float
-        Factors of the solver's tolerances, of thresholds that stand for zero, and of those that are part of a claim.
-    length, time : float
-        Factors of all lengths and times.
-    verdicts : bool
-        Whether the run is judged.
-    """
+    """Run and verify one entry from a moved start or with numbers times factors; None if that means nothing there."""
     tolerances = scaled(thresholds, definitions)
     if name not in scenarios():
         if (draw, solver, length, time) != (0, 1.0, 1.0, 1.0):
@@ -185,8 +174,27 @@ def outcome(
     return {"run": run.status, "statuses": found, "expected": expected, "residual": unbalanced(run)}
 
 
+def unfit(settings: Mapping[str, str], native: Mapping[str, Any] | None, here: Mapping[str, Any]) -> str:
+    """Return why an environment is not the one asked for, or just the machine as it is; empty if all is well."""
+    if not settings or native is None:
+        return ""
+    if core := settings.get("OPENBLAS_CORETYPE"):
+        dynamic = {name: one for name, (one, chosen) in here["openblas"].items() if chosen}
+        wrong = {name: one for name, one in dynamic.items() if one not in (core, *OTHER_NAMES.get(core, ()))}
+        if wrong or not dynamic:
+            return f"asked for the core {core}, got {wrong or 'no OpenBLAS whose core can be chosen'}"
+    if "GLIBC_TUNABLES" in settings and here["libm"] == native["libm"]:
+        return "libm computes the same with and without AVX2 and FMA"
+    if here["numba"][0] != settings.get("NUMBA_CPU_NAME", here["numba"][0]):
+        return f"asked numba for {settings['NUMBA_CPU_NAME']}, got {here['numba'][0]}"
+    if still := set(settings.get("NPY_DISABLE_CPU_FEATURES", "").split()) & set(here["numpy"]):
+        return f"numpy still uses {', '.join(sorted(still))}"
+    same = all(json.dumps(here[what]) == json.dumps(native[what]) for what in ("openblas", "libm", "numba", "numpy"))
+    return "this is the machine as it is" if same else ""
+
+
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
-    """What comes of a request ``{"name", "changes": {label: change}}``, by label; errors are told, not raised."""
+    """Return the outcomes of a request ``{"name", "changes": {label: change}}``, by label; errors are not raised."""
     started, found = time.process_time(), {}
     for label, change in request["changes"].items():
         try:
@@ -202,8 +210,11 @@ def main() -> None:
     """Answer until standard input ends."""
     with os.fdopen(os.dup(1), "w", buffering=1) as channel:
         os.dup2(2, 1)  # IPOPT greets on standard output
-        channel.write(json.dumps(machine()) + "\n")
-        for line in sys.stdin:
+        told, here = json.loads(sys.stdin.readline()), machine()
+        reason = unfit(told["settings"], told["native"], here)
+        channel.write(json.dumps(here | {"unfit": reason}) + "\n")
+        for line in sys.stdin if not reason else ():
+            faulthandler.dump_traceback_later(LIMIT, exit=True)
             channel.write(json.dumps(answer(json.loads(line))) + "\n")
 
 

@@ -12,11 +12,6 @@ from flockana.scenarios.given import SOURCE
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
     """Id in the report by reference; of a theorem that is checked on several runs, that of the first.
 
-    Parameters
-    ----------
-    pages : iterable of ScenarioPage or FixedPage
-        All that the report shows.
-
     Examples
     --------
     >>> anchors([])
@@ -42,13 +37,6 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
 def verdict_id(subject: str, theorem: str) -> str:
     """The id of a verdict in the report.
 
-    Parameters
-    ----------
-    subject : str
-        What it is on: a scenario, or ``"fixed"``.
-    theorem : str
-        Its theorem.
-
     Examples
     --------
     >>> verdict_id("fixed", "E1")
@@ -63,11 +51,6 @@ def verdict_id(subject: str, theorem: str) -> str:
 
 def scenario_id(name: str) -> str:
     """The id of a scenario's section in the report, which no other part of the page has.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
 
     Examples
     --------

@@ -25,26 +25,14 @@ _CHECKOUT = Path(__file__).resolve().parents[3]  # the folder that holds the pac
 class Reference:
     """A name in flockana, and what it is the name of.
 
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
-    name : str
-        Such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``.
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such kind, or no name.
-
     Examples
     --------
     >>> locate(Reference("erratum", "E4"))
     'flockana/theorems/slides/e04.py'
     """
 
-    kind: str
-    name: str
+    kind: str  # one of `KINDS`
+    name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS or not self.name:
@@ -57,20 +45,7 @@ class Reference:
 
 
 def locate(reference: Reference) -> str:
-    """The file that holds what a reference names, from the folder of the package on; nothing is run to find it.
-
-    Parameters
-    ----------
-    reference : Reference
-        What to look up.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is nothing of that name; the closest names are told.
-    FileError
-        Of a proof or a notebook, which stand beside the package, where there is no checkout.
-    """
+    """The file that holds what a reference names, from the folder of the package on; nothing is run to find it."""
     return KINDS[reference.kind](reference.name)
 
 

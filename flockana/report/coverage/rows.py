@@ -23,35 +23,17 @@ _MARK = "|"  # between columns; texts write a norm as ‖
 class Row:
     """An item of a source and what holds it.
 
-    Parameters
-    ----------
-    place : str
-        Where it stands in the source: section, slide, equation, figure, theorem.
-    what : str
-        What it is, in our words.
-    standing : {"held", "weaker", "prose"}
-        Whether it is held, held in part or not at all, or a text that says nothing which could be.
-    held_by : tuple of Reference
-        What holds it; of prose, what has to do with it.
-    remark : str
-        Of what is weaker or prose, why; else empty, or what a reader should know.
-
-    Raises
-    ------
-    ArgumentError
-        If what is held names nothing that holds it, or what is weaker gives no reason.
-
     Examples
     --------
     >>> Row("Theorem 1", "flocks of Algorithm 1", "held", (Reference("theorem", "os-1"),)).held_by[0].name
     'os-1'
     """
 
-    place: str
-    what: str
-    standing: Standing
-    held_by: tuple[Reference, ...] = ()
-    remark: str = ""
+    place: str  # where it stands in the source: section, slide, equation, figure, theorem
+    what: str  # what it is, in our words
+    standing: Standing  # whether it is held, held in part or not at all, or a text that says nothing which could be
+    held_by: tuple[Reference, ...] = ()  # what holds it; of prose, what has to do with it
+    remark: str = ""  # of what is weaker or prose, why; else empty, or what a reader should know
 
     def __post_init__(self) -> None:
         if not self.place or not self.what:
@@ -71,15 +53,6 @@ class Row:
 class Source:
     """A source and its rows, in its order.
 
-    Parameters
-    ----------
-    key : str
-        Of the bibliography.
-    title : str
-        What it is.
-    rows : tuple of Row
-        Its items.
-
     Examples
     --------
     >>> Source("jond-2025", "A paper", (Row("section 1", "related work", "prose", remark="no claim"),)).count("prose")
@@ -87,17 +60,11 @@ class Source:
     """
 
     key: str
-    title: str
+    title: str  # what it is
     rows: tuple[Row, ...]
 
     def count(self, standing: Standing) -> int:
-        """How many rows are so.
-
-        Parameters
-        ----------
-        standing : {"held", "weaker", "prose"}
-            How.
-        """
+        """How many rows are so."""
         return sum(row.standing == standing for row in self.rows)
 
 
@@ -114,18 +81,7 @@ def coverage() -> tuple[Source, ...]:
 
 
 def read_table(path: str | os.PathLike[str]) -> Source:
-    """Read one table: ``# title``, the names of the columns, then a row a line, with | between its columns.
-
-    Parameters
-    ----------
-    path : path-like
-        The file; its name is the source's key.
-
-    Raises
-    ------
-    ArgumentError
-        On a line that is no row, a row twice, or a key that the bibliography does not have; file and line are named.
-    """
+    """Read one table: ``# title``, the names of the columns, then a row a line, with | between its columns."""
     path = Path(path)
     if path.stem not in bibliography():
         raise ArgumentError(f"{path.name}: expected a key of the bibliography: {', '.join(bibliography())}")
@@ -137,11 +93,6 @@ def read_table(path: str | os.PathLike[str]) -> Source:
 
 def faults(sources: Iterable[Source]) -> tuple[str, ...]:
     """Every reference that leads nowhere, one line each, with its source and place; empty if all lead somewhere.
-
-    Parameters
-    ----------
-    sources : iterable of Source
-        Their rows' references are looked up.
 
     Examples
     --------

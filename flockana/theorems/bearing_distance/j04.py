@@ -46,11 +46,10 @@ def _loop() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
+    signs = "(28) as printed has the wrong sign before q", "so has the identity before (34)"
     return [
-        _identity(
-            "28", "separation = -(d W Dᵀ) p + (d W) q", "(28) as printed has the wrong sign before q", disproof=_PROOF
-        ),
-        _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", "so has the identity before (34)", disproof=_PROOF),
+        _identity("28", "separation = -(d W Dᵀ) p + (d W) q", signs[0], disproof=_PROOF),
+        _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", signs[1], disproof=_PROOF),
         _identity("34", "separation = -(d W (I - α r W^q) Dᵀ) p", "the two errors cancel: (34) is right", proof=_PROOF),
         _loop(),
     ]

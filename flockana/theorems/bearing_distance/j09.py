@@ -8,7 +8,7 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import DURATION, runs_from_random_starts
-from flockana.theorems.claims import erratum, of_map, of_state
+from flockana.theorems.claims import erratum, of_map
 from flockana.theorems.observed import observed
 from flockana.theorems.shares import always
 from flockana.theorems.theorem import Claim, Tolerances

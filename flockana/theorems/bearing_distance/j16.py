@@ -55,7 +55,7 @@ def _at_walls() -> Claim:
     """
     law = ZoneFlocking(_RADII, _PRINTED, _WALLED, u_max=_UNBOUNDED)
     q, p = np.array([[_C, 25.0], [_SIDE - _C, 25.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
-    g, w, dt = _PRINTED.speed, _PRINTED.obstacle, law.dt
+    g, w, dt = float(np.max(_PRINTED.speed)), float(np.max(_PRINTED.obstacle)), law.dt
     step = np.array([[1.0 - g * dt, w * dt], [-dt * (1.0 - g * dt), 1.0 - w * dt**2]])
     fast, slow = np.sort(np.linalg.eigvals(step))
     e = _SPEED * g / w  # d - d* at d = c
@@ -149,7 +149,8 @@ THEOREM = erratum(
     statement=(
         "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
         "attraction may grow until a flockmate is found. Agents at rest never meet, nor do two that head for opposite "
-        "walls; others run along the walls one behind the other, for as long as is seen. Growing radii bring lone agents back; fragments of two or more they leave apart."
+        "walls; others run along the walls, one behind the other, for as long as is seen. Growing radii bring lone "
+        "agents back; fragments of two or more they leave apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,

@@ -21,8 +21,6 @@ from flockana.theorems.rounding import EPS
 from flockana.theorems.sampling import least_distance
 from flockana.theorems.theorem import Hypothesis
 
-PROOF = "bearing-distance"
-
 
 @dataclass(frozen=True)
 class TreeCase:
@@ -97,11 +95,6 @@ class TreeCase:
         """Tails and heads of the edges."""
         tails, heads = np.array(self.links, dtype=np.intp).T
         return tails, heads
-
-    @property
-    def proved(self) -> str | None:
-        """Id of the proof, which is about edges with one weight of alignment, 1, on a directed tree."""
-        return PROOF if self.root is None or bool((self.align == 1.0).all()) else None
 
     def edges_of(self, x: FloatArray, error: FloatArray) -> Enclosure:
         """Enclose the length of x_j − x_i over each edge, of vectors that are known to an error each."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.theorems.bearing_distance.tree_case import PROOF, TreeCase
+from flockana.theorems.bearing_distance.tree_case import TreeCase
 from flockana.theorems.claims import judged, undecided, vacuous
 from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.hypotheses import positive_room
@@ -16,7 +16,12 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
 
-PROVED_IN = (2, 3)  # dimensions of the proof
+_PROOF = "bearing-distance"
+
+
+def proof_of(case: TreeCase, m: int) -> str | None:
+    """Id of the proof, which is of the plane and of space, and on directed trees of alignment with the weight 1."""
+    return _PROOF if m in (2, 3) and (case.root is None or bool((case.align == 1.0).all())) else None
 
 
 def _room(case: TreeCase, seen: Observed, energy: Enclosure, edges: list[int], share: float) -> Enclosure:
@@ -47,7 +52,7 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
         computed={"least distance to the bound": float(room.worst.mid), "largest rise of V in a step": rises},
         stated="|x(t)| >= ρ - sqrt(2V(0)/μ) > 0 on edges from the root, with V never rising",
         witness={f"edge {case.links[e]}": {"V(0)": float(V.mid[0, k])} for k, e in enumerate(edges)},
-        proof=case.proved if seen.m in PROVED_IN else None,
+        proof=proof_of(case, seen.m),
         detail=f"{len(edges)} edges from the root start below μρ²/2; their V rises by {rises:.1g} of that at most "
         f"from sample to sample, and the shortest is {case.shortest(seen).mid[edges].min():.4g} long at least",
     )
@@ -76,7 +81,7 @@ def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolera
         computed=rate,
         stated="dH/dt = -Σ σ |v_i - v_j|² <= 0",
         witness={"H(0)": float(H[0]), "H(T)": float(H[-1]), "residual": off},
-        proof=PROOF if apart and seen.m in PROVED_IN else None,
+        proof=proof_of(case, seen.m) if apart else None,
         detail=f"H falls from {H[0]:.4g} to {H[-1]:.3g}; its rate is never above {rate:.1g}, and accounts for H to "
         f"{off:.1g}",
     )
@@ -94,7 +99,7 @@ def edge_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
         computed=float(case.lengths(seen.run.q).min()),
         stated="|x(t)| >= ρ - sqrt(2H(0)/μ) > 0 on every edge",
         witness={"H(0)": float(start.mid), "least μρ²/2": barrier},
-        proof=PROOF if seen.m in PROVED_IN else None,
+        proof=proof_of(case, seen.m),
         detail=f"{text}, and a collision of an edge costs {barrier:.4g}; the shortest edge is "
         f"{case.lengths(seen.run.q).min():.3g}",
     )

@@ -103,4 +103,4 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
 def kept(case: TreeCase, end: End) -> float:
     """Return the least |x|/ρ that the edge farthest from collision keeps for ever; <= 0 where nothing is known."""
     share = float(edge_shares(case, end).min())
-    return 1.0 - sqrt(share) - sqrt(_ERROR) if share < 4.0 else -1.0
+    return 1.0 - sqrt(share) - 4.0 * EPS if share < 4.0 else -1.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
-from flockana.theorems.bearing_distance.tree_energy import PROVED_IN, edge_claim, energy_claim, root_claim
+from flockana.theorems.bearing_distance.tree_energy import edge_claim, energy_claim, proof_of, root_claim
 from flockana.theorems.bearing_distance.tree_limits import settles, velocity_claim
 from flockana.theorems.bearing_distance.tree_spectrum import Spectrum, tree_spectrum
 from flockana.theorems.claims import spectral
@@ -55,7 +55,7 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
         },
         stated=f"a semisimple zero of multiplicity (n - 1)(m - 1) = {expected}, and {factors}",
         witness="the law linearised in edge coordinates, at the end's bearings and the desired lengths",
-        proof=case.proved if directed and m in PROVED_IN else None,
+        proof=proof_of(case, m) if directed else None,
         detail=f"zero has a kernel of dimension {spectrum.zeros}, that of the manifold of equilibria; the rest decays "
         f"at {spectrum.slowest:.4g} or faster; {factors}",
     )

@@ -22,7 +22,7 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     least = kept(case, state(q, 0.0 * q))
     return judged(
         "equilibrium",
-        Enclosure(-1.0, -least, -least),
+        Enclosure.of(-least),
         needs,
         about="all",
         computed=least * float(case.rho.min()),
@@ -64,11 +64,12 @@ def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     """
     at = case.lengths(seen.run.q) / case.rho
+    sampled = (case.edges_of(seen.run.q, seen.shape_error) / case.rho - 1.0).worst
     k = int(np.argmin(at.min(axis=1)))
     abscissa = _abscissa(case, at[k] * case.rho)
     return judged(
         "hurwitz",
-        case.shortest(seen) / case.rho - 1.0,
+        sampled if sampled.hi < 0.0 else case.shortest(seen) / case.rho - 1.0,
         needs,
         computed=abscissa,
         stated="all eigenvalues of A_cl have negative real parts",

@@ -9,14 +9,14 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
-from flockana.measures.perception import both_ways, edge_vectors
+from flockana.measures.perception import both_ways
 from flockana.theorems.claims import erratum, judged
 from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.observed import observed
 from flockana.theorems.theorem import Claim, Tolerances
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
-_PERIODS = 20
+_PERIODS, _PER_PERIOD = 20, 40  # how many, and samples of each
 _PATH = both_ways([(0, 1), (1, 2), (2, 3), (3, 4)])
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 
@@ -32,12 +32,12 @@ def _pair(tolerances: Tolerances) -> Claim:
     """Two agents, without turning: y = ‖x‖ − ρ obeys y'' = −2μ y, a harmonic oscillation."""
     law = MinimalFlocking(edges=both_ways([(0, 1)]), spacing=_RHO, mu=_MU, sigma=0.0)
     period = 2.0 * pi / sqrt(2.0 * _MU)
-    times = np.linspace(0.0, _PERIODS * period, 400 * _PERIODS + 1)
+    times = np.linspace(0.0, _PERIODS * period, _PER_PERIOD * _PERIODS + 1)
     start = np.array([[0.0, 0.0], [_RHO + _STRETCH, 0.0]])
     seen = observed(law, start, 0.0 * start, (0.0, times[-1]), t_eval=times, **_TIGHT)
     y = seen.distances([0], [1])[:, 0] - _RHO
     measured = float(np.diff(_crossings(seen.t, y.mid)).mean())
-    amplitude = float(np.abs(y.mid[-400:]).max())
+    amplitude = float(np.abs(y.mid[-_PER_PERIOD:]).max())
     return judged(
         "alone",
         tolerances.agreement - abs(y - _STRETCH * np.cos(2.0 * pi / period * times)) / _STRETCH,
@@ -77,10 +77,10 @@ def _resonance(tolerances: Tolerances) -> Claim:
     a, omega = 0.01, sqrt(_MU)
     start = np.array([[0.0], [_RHO + a], [2.0 * _RHO + a]])
     end = 2.0 * pi * _PERIODS / omega
-    times = np.linspace(0.0, end, 400 * _PERIODS + 1)
+    times = np.linspace(0.0, end, _PER_PERIOD * _PERIODS + 1)
     seen = observed(law, start, 0.0 * start, (0.0, end), t_eval=times, **_TIGHT)
     y = seen.distances([1], [2])[:, 0] - _RHO
-    ratio, stated = float(np.abs(y.mid[-400:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
+    ratio, stated = float(np.abs(y.mid[-_PER_PERIOD:]).max()) / a, 0.5 * omega * (end - 0.5 * pi / omega)
     return judged(
         "chain",
         tolerances.agreement - abs(y / a - 0.5 * omega * times * np.sin(omega * times)) / stated,

@@ -56,11 +56,11 @@ def constant_velocity(run: Trajectory) -> Hypothesis:
     target, name = run.law.target, "the leader's velocity is constant"
     if type(target) in (LinearTarget, StaticTarget):
         return Hypothesis(name, "met", detail=type(target).__name__)
-    told = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.t])
+    told = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
     spread = float(np.abs(told - told[0, 1]).max())
     if spread > 64.0 * EPS * float(np.abs(told).max()):
         return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or is not what is told")
-    return Hypothesis(name, "assumed", detail="it is, at all samples")
+    return Hypothesis(name, "assumed", detail="it is, at all steps")
 
 
 def as_the_leader_sees(seen: Observed) -> Observed:

@@ -20,9 +20,11 @@ from flockana.theorems.composed.cohesion import stays_within
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is_or_composed, positive
 from flockana.theorems.limits import Certificate
+from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
+from flockana.theorems.olfati_saber.energy import pairs_dissipate
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 PROOF = "informed-agents"
@@ -106,10 +108,12 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
+    needs += [*pairs_dissipate(observed), *least_is_known(observed)]
     if unmet(needs):
         return needs, []
     seen, gains = as_the_leader_sees(observed), run.law.gains
-    below = below_multiple(seen.energy[0], gains.c1_alpha * run.law.alpha.c_star)
+    pairs = meeting(seen)
+    below = below_multiple(seen.energy[0] - pairs.floor, pairs.c_star)
     return [*needs, below], [
         _centre(seen, gains, needs),
         comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _caught(seen, gains)),

@@ -22,7 +22,7 @@ from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import counted, judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, positive_room
-from flockana.theorems.observed import Observed
+from flockana.theorems.observed import DOUBT, Observed
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
@@ -110,6 +110,14 @@ def energy_at_start(seen: Observed) -> Enclosure:
     run = seen.run
     energy = run.law.structural_energy(run.q[0], run.p[0])
     return Enclosure.around(energy, energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
+
+
+def energy_at_end(seen: Observed) -> Enclosure:
+    """Return the energy of the last state in the moving frame, as far as both runs agree on it."""
+    best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
+    rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
+    known = DOUBT * abs(best - other) + seen.floors.work + rounding
+    return Enclosure.around(best, np.inf if seen.doubt else known)
 
 
 def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:

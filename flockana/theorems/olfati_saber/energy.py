@@ -10,13 +10,12 @@ from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere, Wall
-from flockana.interactions import FormulaInteraction
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair
+from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair, weight_nonnegative
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
@@ -165,20 +164,18 @@ def stays_outside(run: Observed) -> Hypothesis:
 
 
 def smooth_where_needed(run: Observed) -> list[Hypothesis]:
-    """The hypothesis that the pair law is C¹, of one that says that it is not."""
-    return [smooth_pair(run)] if run.law.pair is not None and run.law.pair.faults else []
+    """The hypothesis that the pair law is C¹, unless it is proved."""
+    return [need for need in [smooth_pair(run)] if need.status != "met"]
 
 
-def _heeding(run: Observed) -> list[Hypothesis]:
-    """The hypothesis that a consensus draws velocities together, of a formula whose adjacency is negative somewhere."""
-    pairs = [getattr(run.law, name, None) for name in ("alpha", "net")]
-    least = min((pair.least_weight for pair in pairs if isinstance(pair, FormulaInteraction)), default=0.0)
-    return [condition("a_ij >= 0 at every distance", False, least, f"it is {least:.3g}")] if least < 0.0 else []
+def pairs_dissipate(run: Observed) -> list[Hypothesis]:
+    """What it takes that pairs add no energy, as far as it is not proved: a C¹ potential, no negative adjacency."""
+    return [need for need in (smooth_pair(run), weight_nonnegative(run)) if need.status != "met"]
 
 
 def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
     """What it takes that no term of the law adds energy, in the frame that the energy is in."""
-    law, needs = run.law, [*smooth_where_needed(run), *_heeding(run)]
+    law, needs = run.law, pairs_dissipate(run)
     if law.target is not None and not law.moving:
         needs.append(target_rests(run.run, told=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:

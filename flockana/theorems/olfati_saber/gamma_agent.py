@@ -2,7 +2,8 @@
 
 A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
 each interval between samples is compared with the integral of what it declares, and rest means that no position seen
-differs. A function cannot be seen everywhere: of a target of a user's own, rest that was seen is assumed.
+differs. A function cannot be seen everywhere: of a target of a user's own each half of the solver's steps is such an
+interval, and rest that was seen is assumed.
 """
 
 from __future__ import annotations
@@ -31,6 +32,14 @@ def _known(target: Target) -> bool:
     return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
 
 
+def _looked(run: Trajectory) -> FloatArray:
+    """When the γ-agent is looked at: at the samples, of another's path at the solver's steps and amid them too."""
+    if _known(run.law.target) or len(run.t) < 2:
+        return run.t
+    steps = run.path.t
+    return np.sort(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))
+
+
 def _between(t: FloatArray) -> FloatArray:
     """Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
     middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
@@ -41,8 +50,8 @@ def _between(t: FloatArray) -> FloatArray:
 
 def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
     """The hypothesis that the γ-agent rests during the whole run; if `told`, with a constant p_r, else with p_r = 0."""
-    target = run.law.target
-    times = np.concatenate([run.t, _between(run.t).ravel()])
+    target, at = run.law.target, _looked(run)
+    times = np.concatenate([at, _between(at).ravel()])
     states = [target.state(float(time)) for time in times]
     q_r, p_r = (np.array(series) for series in zip(*states, strict=True))
     speed = run.scales.speed
@@ -83,12 +92,13 @@ class Slip:
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
     """The difference between a declared velocity and the one that the γ-agent's positions show over a run."""
-    target, h = run.law.target, np.diff(run.t)
+    target, t = run.law.target, _looked(run)
+    h = np.diff(t)
     if h.size == 0:
         return Slip(0.0, float("inf"))
-    q_r = np.array([target.state(float(time))[0] for time in run.t])
-    nodes = _between(run.t)
-    coarse = (0.5 * (run.t[:-1] + run.t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
+    q_r = np.array([target.state(float(time))[0] for time in t])
+    nodes = _between(t)
+    coarse = (0.5 * (t[:-1] + t[1:]))[:, None] + 0.5 * h[:, None] * _NODES
     fine, rough = _mean(velocity, nodes).mean(axis=1), _mean(velocity, coarse)
     off = np.linalg.norm(np.diff(q_r, axis=0) / h[:, None] - fine, axis=1)
     rounding = 4.0 * EPS * np.abs(q_r).max() / h + 8.0 * EPS * np.abs(fine).max()

@@ -15,7 +15,13 @@ from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.olfati_saber.collisions import below_multiple, below_the_barrier, energy_at_start, no_collision
+from flockana.theorems.olfati_saber.collisions import (
+    below_multiple,
+    below_the_barrier,
+    energy_at_end,
+    energy_at_start,
+    no_collision,
+)
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.sampling import nets_at
 from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
@@ -45,9 +51,10 @@ def _stays_together(seen: Observed) -> Hypothesis:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
         return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
     parted = (seen.n - 1) * seen.law.gains.c1_alpha * seen.law.alpha.far_potential
-    if energy.hi < parted:
-        detail = f"H(0) = {energy.mid:.5g} < {parted:.5g} = (n-1) c1α ψ_α(r_α), and no state below that is disconnected"
-        return Hypothesis(name, "met", parted - float(energy.mid), detail, float(energy.half_width))
+    for t, height in ((seen.t[0], energy), (seen.t[-1], energy_at_end(seen))):
+        if height.hi < parted:  # limits are those of the start at that time
+            detail = f"at t = {t:.4g} H = {height.mid:.5g}: a disconnected state has (n-1) c1α ψ_α(r_α) = {parted:.5g}"
+            return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 

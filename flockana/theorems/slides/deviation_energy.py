@@ -12,6 +12,7 @@ from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.theorem import Claim, Tolerances
 
 _NEAR = 2.0**-20  # of r: how close to the range from within, and of d to coincidence
+_ROUNDING = 1e-13  # relative, of an energy of two agents
 PROOF = "deviation-energy"
 
 
@@ -41,7 +42,7 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
     return of_state(
         name,
         32.0 * _NEAR * scale - abs(within - at - stated),
-        0.0,
+        _ROUNDING * scale,
         computed=within - at,
         stated=f"{symbol}(r⁻) − {symbol}(r) = {stated:.6g}",
         witness={"distance": [r * (1.0 - _NEAR), r], symbol: [within, at]},
@@ -60,7 +61,7 @@ def _corner(
     return of_state(
         name,
         64.0 * _NEAR * units[0] - abs(change - stated),
-        0.0,
+        _ROUNDING * max(energy(0.0), energy(step)) / step,
         computed=change,
         stated=f"{symbol}'(0⁻) − {symbol}'(0⁺) = {stated:.6g}",
         witness={"step": step},

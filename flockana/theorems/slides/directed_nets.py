@@ -5,17 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.claims import erratum, judged, of_state
+from flockana.theorems.enclosure import stacked
+from flockana.theorems.observed import Observed, observed
+from flockana.theorems.slides.claims_on_energy import rises
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
+_ENDS = 1e-3  # relative: as near as the end of the run is to the limit
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -56,6 +60,7 @@ def _momentum() -> Claim:
         "momentum",
         -total,
         _ROUNDING,
+        about="all",
         computed=total,
         stated="Σ u_i = 0",
         witness={"q": [0.0, 7.5], "u": u.ravel().tolist()},
@@ -65,44 +70,57 @@ def _momentum() -> Claim:
 
 def _following() -> list[Claim]:
     """Agent 0 at rest at the distance d from agent 1, which moves away at a constant velocity and is followed."""
-    law, speed = _pair(), 1.0
-    run = simulate(law, [[0.0], [7.0]], [[0.0], [speed]], (0.0, 30.0))
-    alpha, gains = law.alpha, law.law.gains
-    energy: FloatArray = np.array([law.law.energy(0.0, q, p) for q, p in zip(run.q, run.p, strict=True)])
-    rise = float(energy[-1] - energy[0])
-    lengths, slip = np.abs(run.q[:, 1, 0] - run.q[:, 0, 0]), run.p[:, 0, 0] - run.p[:, 1, 0]
-    own = gains.c1_alpha * alpha.energy_at(lengths) + 0.5 * slip**2
-    climbed, size = float(np.diff(own).max()), float(own[0])
-    swerve, off = float(np.abs(run.p[:, 1, 0] - speed).max()), abs(float(lengths[-1]) / alpha.d - 1.0)
+    speed = 1.0
+    return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [speed]], (0.0, 30.0), rtol=1e-10), speed)
+
+
+def _own_energy(run: Trajectory) -> FloatArray:
+    """c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
+    apart, slip = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
+    own: FloatArray = run.law.law.gains.c1_alpha * run.law.alpha.energy_at(np.abs(apart)) + 0.5 * slip**2
+    return own
+
+
+def _claims_on(seen: Observed, speed: float) -> list[Claim]:
+    law, run = seen.law, seen.run
+    energy = seen.series(
+        lambda run: np.array([law.law.energy(0.0, q, p) for q, p in zip(run.q, run.p, strict=True)]),
+        floor=seen.floors.work,
+    )
+    own, rise = seen.series(_own_energy, floor=seen.floors.work), energy[-1] - energy[0]
+    climbed, size = rises(own), float(own.mid[0])
+    swerve = seen.series(lambda run: np.abs(run.p[:, 1, 0] - speed), floor=seen.floors.speed)
+    slip = seen.series(lambda run: np.abs(run.p[:, 0, 0] - run.p[:, 1, 0]), floor=2.0 * seen.floors.speed)[-1]
+    length = seen.distances([0], [1])[-1, 0] / law.alpha.d
     return [
-        of_state(
+        judged(
             "energy",
             -rise,
-            _NUMERICAL * float(energy.max()),
-            computed=rise,
+            about="all",
+            computed=float(rise.mid),
             stated="H = V + ½Σ‖p_i‖² never rises",
-            witness={"H": [float(energy[0]), float(energy[-1])]},
-            detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: H rises by {rise:.6g} = ½v²",
+            witness={"H": [float(energy.mid[0]), float(energy.mid[-1])]},
+            detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: from start to end H changes by "
+            f"{rise.mid:.6g}; ½v² = {0.5 * speed**2:g}",
         ),
-        of_state(
+        judged(
             "follower",
             _NUMERICAL * size - climbed,
-            0.0,
-            computed=climbed,
+            computed=float(climbed.mid.max()),
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
-            witness={"from": size, "to": float(own[-1])},
-            detail=f"it falls from {size:.4g} to {float(own[-1]):.2g} and between no two samples rises",
+            witness={"from": size, "to": float(own.mid[-1])},
+            detail=f"it goes from {size:.4g} to {float(own.mid[-1]):.2g}, and is {climbed.mid.max():.2g} above an "
+            "earlier value at most",
         ),
-        of_state(
+        judged(
             "leader",
-            float(np.minimum(_NUMERICAL - swerve, 1e-3 - off)),
-            0.0,
-            computed={"swerve": swerve, "length over d": float(lengths[-1]) / alpha.d},
+            stacked([_NUMERICAL - swerve.max(), _ENDS - slip / speed, _ENDS - abs(length - 1.0)]),
+            computed={"swerve": float(swerve.mid.max()), "length over d": float(length.mid)},
             stated="the velocity of an agent that sees nobody is that of all who follow it, at the distance d",
             witness={"p": run.p[-1].ravel().tolist()},
-            detail=f"agent 1 keeps its velocity to {swerve:.1g}; agent 0 ends {float(lengths[-1]):.6g} behind it, "
-            f"at {float(run.p[-1, 0, 0]):.6g}",
+            detail=f"agent 1 keeps its velocity to {swerve.mid.max():.1g}; agent 0 ends {length.mid * law.alpha.d:.6g} "
+            f"behind it, at {float(run.p[-1, 0, 0]):.6g}",
         ),
     ]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import combinations, product
 from math import sqrt
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
-from flockana.theorems.claims import by_count, erratum
+from flockana.theorems.claims import by_count, erratum, of_state
 from flockana.theorems.olfati_saber.os_5 import check
 from flockana.theorems.theorem import Claim, Tolerances
 
@@ -120,10 +119,20 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
             stated="the graph is planar",
             witness={"q": q} | (vars(witness) if witness else {}),
             disproof=_PROOF,
-            detail=f"{len(sites)} face-centred cubic sites: the graph of {len(edges)} links is {kind}; a planar one has "
-            f"at most {bound}",
+            detail=f"{len(sites)} face-centred cubic sites: the graph of {len(edges)} links is {kind}; a planar one "
+            f"has at most {bound}",
         ),
-        replace(uncrossed, name=f"uncrossed-{name}"),
+        of_state(
+            f"uncrossed-{name}",
+            uncrossed.margin or 0.0,
+            uncrossed.error or 0.0,
+            uncrossed.needs,
+            computed=uncrossed.computed,
+            stated=uncrossed.stated,
+            witness=uncrossed.witness,
+            proof=_PROOF,
+            detail=f"in space its edges do not cross: {uncrossed.detail}",
+        ),
     ]
 
 

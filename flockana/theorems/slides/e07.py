@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from flockana.base.checks import FloatArray
@@ -48,7 +50,7 @@ def _relative(name: str, share: float, witness: str) -> Claim:
 
 def _number(name: str, share: float, of: int, count: int, stated: str, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a whole number of so many."""
-    proof = {"disproof" if name == "printed" else "proof": "net-measures"}
+    proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": "net-measures"}
     off = abs(round(of * share) - count)
     return by_count(name, off, computed=share, stated=stated, witness=witness, detail=detail, **proof)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.theorems.claims import by_count, erratum
@@ -20,8 +22,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
 
 
-def _rank(name: str, share: float, full: int, detail: str, **proof: str) -> Claim:
-    """Return the claim that the measure is 1, as it must be on a connected net: by the rank it comes from, a whole number."""
+def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Claim:
+    """Return the claim that a connected net has the measure 1: by the rank that it comes from, a whole number."""
     return by_count(
         name,
         full - round(full * share),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from flockana.environment.targets import StaticTarget
@@ -54,7 +56,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
 
 
-def _by_algebra(name: str, v: str, factor: float, **proof: str) -> Claim:
+def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
     """The claim that a step goes as far as a constant u does, with the velocity of its start or of its end."""
     text, zero = _symbolic_excess(v)
     measured, swept = _step(factor)

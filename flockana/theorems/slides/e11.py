@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
-from math import isnan, log, sqrt
+from math import isnan
 from typing import Any
 
+import numpy as np
+
 from flockana.base.errors import SolverError
-from flockana.dynamics.trajectory import Trajectory
 from flockana.equilibria.collapse import CONTACT, natural_ratio, nudged, squeezed, threshold
 from flockana.equilibria.gradient_flow import gradient_flow
-from flockana.equilibria.terminal import TerminalState, surroundings, terminal_state
+from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2, paper_pair
-from flockana.measures.metrics import coincident_pairs, velocity_mismatch
-from flockana.theorems.claims import of_state
+from flockana.measures.metrics import coincident_pairs
+from flockana.theorems.asymptotics import limit_strain
+from flockana.theorems.claims import judged, undecided
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is
+from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
@@ -40,7 +45,7 @@ def collapse_threshold(law: Algorithm2, rings: int) -> tuple[float, float]:
     return threshold(lambda ratio: collapses(law, rings, ratio), lowest=lowest, factor=_FACTOR, halvings=_HALVINGS)
 
 
-def _gains(run: Trajectory) -> Hypothesis:
+def _gains(run: Observed) -> Hypothesis:
     gains = run.law.gains
     if gains.per_agent:
         return Hypothesis("one c1γ for all agents", "unmet", detail="gains are given per agent")
@@ -48,48 +53,38 @@ def _gains(run: Trajectory) -> Hypothesis:
     return condition("c1α > 0 and c1γ > 0", least > 0.0, least)
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = [_gains(run)]
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = [_gains(seen)]
     if unmet(needs):
         return needs, []
-    end = terminal_state(run.law, run.q[-1], run.p[-1], contact=tolerances.contact)
-    caught = _caught(run, end, tolerances)
-    return needs, [_printed(run, end, caught, tolerances), _minimum(end, caught, tolerances), _thresholds(run.law)]
+    end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
+    return needs, [_printed(seen, end, needs, tolerances), _minimum(seen, end, needs), _thresholds(seen.law)]
 
 
-def _caught(run: Trajectory, end: TerminalState, tolerances: Tolerances) -> bool:
-    """Whether the last state is at rest beside a strict minimum that it has not the energy to leave."""
-    still = end.mismatch <= tolerances.velocity * run.law.scales.energy and end.force <= tolerances.force
-    around = surroundings(run.law, run.q[-1], force=end.force * run.law.scales.force * sqrt(run.n))
-    return bool(still and around is not None and around.holds(velocity_mismatch(run.p[-1])))
-
-
-def _printed(run: Trajectory, end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
-    """The claim as printed, by the strain of the limit, where a distance differs by √2 of that to it at most."""
-    margin, error = tolerances.quasi - end.strain, sqrt(2.0) * end.distance
-    ratio = run.law.gains.c1_gamma / run.law.gains.c1_alpha
-    at_rest = "" if caught else "; it is not known to rest there"
+def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+    """Return the claim as printed: decided by the strain of the strict minimum that the flock is certain to stay at."""
+    caught = final_basin(seen)
+    room, known = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
+    ratio = seen.law.gains.c1_gamma / seen.law.gains.c1_alpha
     lengths = f"{end.coincident} coincident pairs; its shortest link is {end.shortest:.3g}"
-    return of_state(
+    return limit_claim(
         "printed",
-        margin,
-        error,
-        verifies=caught,
-        refutes=caught,
+        needs,
+        [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known else [],
+        escape=Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None,
         computed=end.strain,
         stated=f"the limit is a quasi-α-lattice at least: |link - d|/d <= {tolerances.quasi:g}",
         witness={"coincident pairs": end.coincident, "shortest link": end.shortest},
-        detail=f"with c1γ/c1α = {ratio:.3g} the limit has {'no links' if isnan(end.strain) else lengths}{at_rest}",
+        detail=f"with c1γ/c1α = {ratio:.3g} the last state has {'no links' if isnan(end.strain) else lengths}"
+        + ("" if known else f"; {caught.certificate.text}"),
     )
 
 
-def _minimum(end: TerminalState, caught: bool, tolerances: Tolerances) -> Claim:
-    return of_state(
+def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Claim:
+    return limit_claim(
         "minimum",
-        end.curvature - tolerances.curvature,
-        end.curvature_error,
-        verifies=caught,
-        about="limit",
+        needs,
+        [final_basin(seen).certificate],
         computed=end.curvature,
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
         witness={"force": end.force, "K̃": end.mismatch},
@@ -108,23 +103,19 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    """The claim that the ratio falls: the brackets' middles differ by more than their widths, as logarithms."""
+    """Return the claim that the ratio falls: the brackets, as logarithms, lie below each other."""
     brackets = _brackets(law.alpha)
     about: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",
         "witness": "hexagonal patches relaxed by gradient flow, ratio bisected",
     }
     if isinstance(brackets, str):
-        return Claim("threshold", "inconclusive", detail=f"no threshold was found: {brackets}", **about)
-    spans = [(log(low), log(high)) for low, high in brackets.values()]
-    # from the middle of one bracket to that of the next, and half of both widths
-    falls = [(0.5 * (a + b - c - d), 0.5 * (b - a + d - c)) for (a, b), (c, d) in pairwise(spans)]
-    margin, error = min(falls, key=lambda fall: fall[0] - fall[1])
+        return undecided("threshold", f"no threshold was found: {brackets}", **about)
+    at = Enclosure.between(*np.log(list(brackets.values())).T)
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in brackets.items())
-    return of_state(
+    return judged(
         "threshold",
-        margin,
-        error,
+        at[:-1] - at[1:],
         computed={n: list(pair) for n, pair in brackets.items()},
         detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
         **about,

@@ -5,17 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi
 
-import numpy as np
-
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.centre_path import centre_path, motion, path_and_factor
-from flockana.stability.tracking import response_ratio, whole_period
+from flockana.stability.centre_path import path_and_factor
+from flockana.stability.tracking import whole_period
 from flockana.stability.translational import predicted_gain
-from flockana.theorems.claims import of_state
+from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition
+from flockana.theorems.observed import Observed, observed
+from flockana.theorems.rounding import EPS
+from flockana.theorems.slides.measured_ratio import measured_ratio
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
@@ -34,55 +35,45 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     ]
 
 
-def _agrees(name: str, ratio: tuple[float, float], gain: float, tolerances: Tolerances, detail: str) -> Claim:
-    """The claim that a measured ratio and its error agree with a predicted gain, relative to that unless it is 0."""
-    (measured, error), scale = ratio, gain or 1.0
-    return of_state(
+def _agrees(
+    name: str, ratio: Enclosure, gain: float, needs: list[Hypothesis], tolerances: Tolerances, detail: str
+) -> Claim:
+    """Return the claim that a measured ratio agrees with a predicted gain, relative to that unless it is 0."""
+    return judged(
         name,
-        tolerances.agreement - abs(measured - gain) / scale,
-        error / scale,
-        computed=measured,
+        tolerances.agreement - abs(ratio - gain) / (gain or 1.0),
+        needs,
+        computed=float(ratio.mid),
         stated=gain,
-        detail=f"{detail}: measured ratio {measured:.4f}, transfer function {gain:.4f}",
+        detail=f"{detail}: measured ratio {ratio.mid:.4f}, transfer function {gain:.4f}",
     )
 
 
-def _consistent(run: Trajectory, path: SineTarget | CircleTarget) -> tuple[float, float]:
-    """The measured ratio, and its error, of the same flock behind the same γ-agent with its true p_r."""
-    law = replace(run.law, target=path)
-    again = simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
-    ratio, error = response_ratio(again)
-    if law.gains.c1_gamma == 0.0:
-        return ratio, error
-    size = float(np.linalg.norm(motion(path).swing))
-    centre = again.q.mean(axis=1)
-    exact = centre_path(law.gains, path, again.t, centre[0], again.p[0].mean(axis=0))
-    return ratio, error + float(np.abs(centre - exact).max()) / size
-
-
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = _hypotheses(run)
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = _hypotheses(seen.run)
     if unmet(needs):
         return needs, []
-    law = run.law
+    run, law = seen.run, seen.law
     path, factor = path_and_factor(law.target)
     assert isinstance(path, SineTarget | CircleTarget)
-    omega = 2.0 * pi * path.frequency
-    handed, (true, error) = response_ratio(run), _consistent(run, path)
-    predicted = predicted_gain(law.gains, omega, factor=factor)
+    omega, gains = 2.0 * pi * path.frequency, law.gains
+    consistent = observed(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
+    handed, true = measured_ratio(seen), measured_ratio(consistent)
+    slow = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
+    told = f"with the p_r that was handed over, {factor:g} dq_r/dt"
     return needs, [
-        _agrees("predicted", handed, predicted, tolerances, f"with the p_r that was handed over, {factor:g} dq_r/dt"),
-        _agrees("consistent", (true, error), predicted_gain(law.gains, omega), tolerances, "with p_r = dq_r/dt"),
-        of_state(
+        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, told),
+        _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
+        judged(
             "printed",
             1.0 - true,
-            error,
-            computed=true,
+            needs,
+            computed=float(true.mid),
             stated="the ratio is below 1 because the γ-agent turns",
-            witness={"handed p_r": handed[0], "true p_r": true},
-            proof="tracking-gain" if omega**2 < 2.0 * law.gains.c1_gamma else None,
-            detail=f"the same turning γ-agent with its true p_r is followed at {true:.4f} of its size, not less "
-            f"than 1: it is the wrong p_r that makes the ratio {handed[0]:.4f}",
+            witness={"handed p_r": float(handed.mid), "true p_r": float(true.mid)},
+            disproof="tracking-gain" if slow else None,
+            detail=f"the same turning γ-agent with its true p_r is followed at {true.mid:.4f} of its size; with the "
+            f"p_r that was handed over, at {handed.mid:.4f}",
         ),
     ]
 

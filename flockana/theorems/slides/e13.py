@@ -12,8 +12,8 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.leads import pairs_apart
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import distinct_pairs, pairs_at_one_instant
-from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
 _UNTIL = 0.03  # by then both pairs have coincided
@@ -28,13 +28,13 @@ def _enclosed(run: Trajectory) -> str | None:
     return "distinct-pairs" if its_own else None
 
 
-def _check(run: Trajectory, tolerances: Tolerances) -> Checked:
-    needs = alpha_gain(run)
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = alpha_gain(seen)
     if unmet(needs):
         return needs, []
     return needs, [
-        distinct_pairs(run, needs, tolerances, name="printed", proof=_enclosed(run)),
-        pairs_at_one_instant(run, needs, tolerances, name="corrected", proof=proved(run, "collisions")),
+        distinct_pairs(seen, needs, tolerances, name="printed", disproof=_enclosed(seen.run)),
+        pairs_at_one_instant(seen, needs, tolerances, name="corrected", proof="collisions"),
     ]
 
 

@@ -9,6 +9,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
 from flockana.theorems.claims import equal, erratum, of_state
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SHIFT = 10.0  # of d
@@ -58,7 +59,8 @@ def _example() -> Claim:
     return of_state(
         "translation",
         -abs(there - here),
-        16.0 * np.finfo(float).eps * size,
+        16.0 * EPS * size,
+        about="all",
         computed={"here": here, "there": there},
         stated="the force does not depend on where the origin is",
         witness={"q": q.tolist(), "moved by": _SHIFT * alpha.d},
@@ -74,7 +76,7 @@ def _law(alpha: AlphaInteraction, q: FloatArray) -> FloatArray:
 def _state() -> Claim:
     """The corrected form against the law itself on the same agents, here and moved."""
     alpha, q = _three()
-    bound = 64.0 * np.finfo(float).eps * (1.0 + _SHIFT) * alpha.strength * 2.0
+    bound = 64.0 * EPS * (1.0 + _SHIFT) * alpha.strength * 2.0
     moved = [q + w for w in (0.0, _SHIFT * alpha.d)]
     worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in moved]))
     return of_state(

@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import CentreOfMass, predicted_gain
-from flockana.theorems.claims import equal, erratum, of_state
+from flockana.theorems.claims import equal, erratum, judged
+from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.observed import observed
+from flockana.theorems.slides.measured_ratio import measured_ratio
 from flockana.theorems.theorem import Claim, Tolerances
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's
@@ -25,11 +26,10 @@ _FREQUENCY = 0.025 / 5.0 / _DT
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
 _GAINS = Gains(c1_alpha=100.0, c2_alpha=20.0, c1_gamma=70.0, c2_gamma=2.0 * sqrt(70.0))
 _SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of the project's γ-agent
+_PROOF = "tracking-gain"
 _AWAY = 3.0  # radii from the centre of the circle to where a flock outside starts
 _PERIODS = 3.0  # at least: the fit takes the last whole ones of half a run
 _LASTING = 4.5  # time units at least, after half of which what is left of the start is e^-19 of it
-
-Ratio = tuple[float, float]
 
 
 def circle_law(speed: float, factor: float) -> Algorithm2:
@@ -38,14 +38,14 @@ def circle_law(speed: float, factor: float) -> Algorithm2:
     return Algorithm2(_ALPHA, _GAINS, RescaledVelocity(circle, factor))
 
 
-def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Ratio:
-    """Ratio, and its error, of the circle of 19 agents that start so many radii from the circle's centre."""
+def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclosure:
+    """Return the ratio of the circle of 19 agents that start so many radii from the circle's centre."""
     path: Any = law.target
     start: FloatArray = hexagonal_patch(2, _ALPHA.d) + np.array(_CENTRE) + (away * _RADIUS, 0.0)
     end = max(_PERIODS / path.target.frequency, _LASTING)
     if isinstance(law, MSNDiscretisation):
         end = law.dt * round(end / law.dt)
-    return response_ratio(simulate(law, start, 0.0 * start, (0.0, end)))
+    return measured_ratio(observed(law, start, 0.0 * start, (0.0, end)))
 
 
 def _condition() -> Any:
@@ -61,32 +61,55 @@ def _condition() -> Any:
     return sp.expand(gain_slope(factor, square=w) - told)
 
 
-def _least_sure(margins: list[tuple[float, float]]) -> tuple[float, float]:
-    """Of several (margin, error) that must all be positive the one that decides; NaN goes before all."""
-    return margins[int(np.argmin([margin - error for margin, error in margins]))]
-
-
-def _falls(name: str, ratios: list[Ratio], stated: str, text: str) -> Claim:
-    """The claim that each ratio is below the one before; the margin is the drop that is least sure."""
-    margin, error = _least_sure([(a - b, e + f) for (a, e), (b, f) in pairwise(ratios)])
-    values = [ratio for ratio, _ in ratios]
-    listed = ", ".join(f"{value:.3f}" for value in values)
+def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
+    """Return the claim that each ratio is below the one before."""
+    values, listed = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listed}"
-    return of_state(name, margin, error, computed=values, stated=stated, detail=detail)
+    drops = stacked([a - b for a, b in pairwise(ratios)])
+    return judged(name, drops, computed=values, stated=stated, detail=detail, **proof)
 
 
-def _agree(ratios: list[Ratio], gains: list[float], tolerances: Tolerances) -> Claim:
-    off = [(abs(ratio / gain - 1.0), error / gain) for (ratio, error), gain in zip(ratios, gains, strict=True)]
-    margin, error = _least_sure([(tolerances.agreement - each, error) for each, error in off])
-    worst = tolerances.agreement - margin
-    return of_state(
+def _values(ratios: list[Enclosure]) -> list[float]:
+    return [float(ratio.mid) for ratio in ratios]
+
+
+def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) -> Claim:
+    off = stacked([abs(ratio / gain - 1.0) for ratio, gain in zip(ratios, gains, strict=True)])
+    return judged(
         "predicted",
-        margin,
-        error,
-        computed=[ratio for ratio, _ in ratios],
+        tolerances.agreement - off,
+        computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=f"inside or outside, at each speed, with either p_r: off by {worst:.1g} at most",
+        detail=f"inside or outside, at each speed, with either p_r: off by {off.mid.max():.1g} at most",
     )
+
+
+def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> list[Claim]:
+    """Return what the project holds: that from outside, or at another speed, the circle is not smaller."""
+    largest = stacked(others).max()
+    return [
+        judged(
+            "printed-start",
+            outside - 1.0,
+            about="all",
+            computed=float(outside.mid),
+            stated="from outside the circle the flock's is not smaller",
+            witness={"inside": float(inside.mid), "outside": float(outside.mid)},
+            disproof=_PROOF,
+            detail=f"from {_AWAY:g} radii away it describes {outside.mid:.4f} of the γ-agent's circle, from the centre "
+            f"{inside.mid:.4f}: smaller wherever it starts",
+        ),
+        judged(
+            "printed-speed",
+            largest - 1.0,
+            about="all",
+            computed=_values(others),
+            stated="at some other speed the flock's circle is not smaller",
+            disproof=_PROOF,
+            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed it is {largest.mid:.4f} of the γ-agent's "
+            "at most: no speed is just great enough",
+        ),
+    ]
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -95,7 +118,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     mapped = [followed(MSNDiscretisation(circle_law(speed, _DT), _DT)) for speed in _SPEEDS]
     inside, outside = ran[_SPEEDS.index(1.0)], followed(circle_law(1.0, _DT), away=_AWAY)
     others = [ratio for speed, ratio in zip(_SPEEDS, ran, strict=True) if speed != 1.0]
-    largest, error = others[int(np.argmax([ratio + error for ratio, error in others]))]
     gains = [
         predicted_gain(_GAINS, 2.0 * pi * _FREQUENCY * speed, factor=factor)
         for factor in (_DT, 1.0)
@@ -103,35 +125,18 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
     home = predicted_gain(_GAINS, 2.0 * pi * _FREQUENCY, factor=_DT)
     margin = CentreOfMass(_GAINS, _DT).falling
+    faster = "the faster the γ-agent, the smaller the circle"
     return [
-        of_state(
-            "printed-start",
-            outside[0] - 1.0,
-            outside[1],
-            computed=outside[0],
-            stated="from outside the circle the flock's is not smaller",
-            witness={"inside": inside[0], "outside": outside[0]},
-            detail=f"from {_AWAY:g} radii away it describes {outside[0]:.4f} of the γ-agent's circle, from the centre "
-            f"{inside[0]:.4f}: smaller wherever it starts",
-        ),
-        of_state(
-            "printed-speed",
-            largest - 1.0,
-            error,
-            computed=[ratio for ratio, _ in others],
-            stated="at some other speed the flock's circle is not smaller",
-            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed it is {largest:.4f} of the γ-agent's at "
-            "most: no speed is just great enough",
-        ),
+        *_printed(inside, outside, others),
         _agree([*ran, *true, outside], [*gains, home], tolerances),
-        _falls("faster", ran, "the faster the γ-agent, the smaller the circle", "and its p_r per iteration"),
+        _falls("faster", ran, faster, "and its p_r per iteration", proof=_PROOF),
         _falls("faster-as-run", mapped, "the same of the project's own map", "and the map, agent by agent in place,"),
-        _falls("faster-true", true, "the same with the true p_r", "and its true p_r"),
+        _falls("faster-true", true, "the same with the true p_r", "and its true p_r", disproof=_PROOF),
         equal(
             "condition",
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
-            proof="tracking-gain",
+            proof=_PROOF,
             detail=f"so never with the true p_r; the project's gains and p_r meet it, {margin:.3g} times over",
         ),
     ]

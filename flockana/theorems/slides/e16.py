@@ -11,7 +11,10 @@ from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch
-from flockana.theorems.claims import erratum, of_state
+from flockana.theorems.basin import Basin
+from flockana.theorems.claims import counted, erratum, judged, of_state
+from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.theorem import Claim, Tolerances
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's
@@ -20,24 +23,28 @@ _MANY, _FEW = 4, 1  # rings of the patches: 61 and 7 agents
 
 
 @lru_cache(maxsize=8)
-def pressed_patch(rings: int, ratio: float, contact: float) -> TerminalState:
-    """Where a hexagonal patch, slightly disturbed, comes to rest downhill under the project's pair law."""
+def pressed_patch(rings: int, ratio: float, contact: float) -> tuple[TerminalState, Basin]:
+    """Return where a hexagonal patch, slightly disturbed, rests downhill under the project's pair law."""
     law = squeezed(_ALPHA, ratio)
     limit = gradient_flow(law, nudged(hexagonal_patch(rings, _ALPHA.d), _ALPHA.d))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
-    return terminal_state(law, limit.q, 0.0 * limit.q, contact=contact)
+    still = 0.0 * limit.q
+    return terminal_state(law, limit.q, still, contact=contact), attraction(law, limit.q, still)
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
     """61 agents at the project's coefficients, and seven with the γ coefficient the greater."""
-    many, few = (pressed_patch(*case, tolerances.contact) for case in ((_MANY, _RATIO), (_FEW, _REVERSED)))
-    least = min((many, few), key=lambda end: end.curvature - end.curvature_error)
+    cases = ((_MANY, _RATIO), (_FEW, _REVERSED))
+    (many, at_many), (few, at_few) = (pressed_patch(*case, tolerances.contact) for case in cases)
+    off = sqrt(2.0) * at_few.distance / _ALPHA.d  # two agents move apart by √2 of the distance to the minimum at most
+    basins = [Enclosure.around(basin.certificate.margin, basin.certificate.error) for basin in (at_many, at_few)]
     return [
-        of_state(
+        counted(
             "sufficient",
-            0.5 - many.coincident,
-            0.0,
+            0,
+            many.coincident if at_many.certificate.certain else 0,
+            many.coincident,
             about="all",
             computed=many.coincident,
             stated="no pair coincides as long as c1α > c1γ",
@@ -48,25 +55,25 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         of_state(
             "necessary",
             tolerances.contact - few.shortest / _ALPHA.d,
-            sqrt(2.0) * few.distance,
+            off,
             about="all",
             computed=few.shortest / _ALPHA.d,
             stated="pairs coincide unless c1α > c1γ",
             witness="a hexagonal patch of 7 agents relaxed by gradient flow, c1γ/c1α = 2",
             detail=f"with c1γ = 2 c1α seven agents rest {few.shortest:.3g} or more apart, where d = {_ALPHA.d:g}",
         ),
-        of_state(
+        judged(
             "minima",
-            least.curvature - tolerances.curvature,
-            least.curvature_error,
-            computed=least.curvature,
+            stacked(basins),
+            computed=min(many.curvature, few.curvature),
             stated="both are strict local minima of U_λ off the rotations, so that they attract open sets",
-            detail=f"least curvatures {many.curvature:.3g} and {few.curvature:.3g} of the largest",
+            detail=f"least curvatures {many.curvature:.3g} and {few.curvature:.3g} of the largest; of 61 agents "
+            f"{at_many.certificate.text}",
         ),
         of_state(
             "lattice",
             few.strain - tolerances.quasi,
-            few.distance,
+            off,
             computed=few.strain,
             stated="a flock that stays apart is no lattice yet: |link - d|/d > the tolerance of a quasi-lattice",
             detail=f"the seven are strained by {few.strain:.0%}; from which c1γ/c1α on, and that it falls with n: E11",

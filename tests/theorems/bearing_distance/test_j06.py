@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -18,15 +20,12 @@ LAWS = {
 CASES = [("directed", 2), ("directed", 3), ("undirected", 2), ("undirected", 3)]
 
 
-def made(statuses, modes):
-    """Claims as the corrected theorem may have them."""
+def corrected(statuses, modes):
+    """A theorem whose claims are as given."""
     named = [Claim(f"c{k}", status) for k, status in enumerate(statuses)]
     computed = None if modes is None else {"zero modes": modes}
-    return (), (
-        *named,
-        Claim("lengths", "verified", detail="as long"),
-        Claim("spectrum", "verified", computed=computed),
-    )
+    claims = (*named, Claim("lengths", "verified", detail="as long"), Claim("spectrum", "verified", computed=computed))
+    return SimpleNamespace(id="made-up", examine=lambda seen, tolerances: ((), claims))
 
 
 @pytest.mark.parametrize(
@@ -37,8 +36,13 @@ def made(statuses, modes):
 @pytest.mark.parametrize("modes", [4, None])
 def test_one_claim_stands_for_all(monkeypatch, statuses, status, modes):
     runs = []
-    monkeypatch.setattr(j06, "simulate", lambda law, q, p, span: runs.append((law, q, p, span)))
-    monkeypatch.setattr(j06, "examined_twice", lambda item, run, tolerances: made(statuses, modes))
+
+    def noted(*given):
+        runs.append(given)
+        return SimpleNamespace(doubt="")
+
+    monkeypatch.setattr(j06, "observed", noted)
+    monkeypatch.setattr(j06.zone_1_corrected, "THEOREM", corrected(statuses, modes))
     claims = theorem("J6").examine(Tolerances())[1]
     assert [claim.name for claim in claims] == [f"{name}-{m}" for name, m in CASES]
     for claim, (law, q, p, span), (name, m) in zip(claims, runs, CASES, strict=True):
@@ -59,4 +63,3 @@ def test_the_theorem_is_as_it_says(verdict_of):
     assert {claim.name: claim.status for claim in verdict.claims} == {f"{name}-{m}": "verified" for name, m in CASES}
     for claim, (_, m) in zip(verdict.claims, CASES, strict=True):
         assert claim.detail.endswith(f"; {4 * (m - 1)} zero modes")
-        assert claim.proof == "bearing-distance"

@@ -23,6 +23,28 @@ def test_nobody_moves_and_pairs_go_straight_on(verdict_of):
     assert list(growing.values())[2] < 5.0
 
 
+def test_two_at_opposite_walls_obey_the_recursion_that_keeps_them_there(verdict_of):
+    """λ² − 1.45 λ + ½ = 0 has two roots in (0, 1): with x = (v, e), v' = (v + e)/2 and e' = e − v'/10."""
+    claim = verdict_of("J16").claim("at-walls")
+    assert (claim.status, claim.about) == ("refuted", "limit")
+    assert claim.computed["eigenvalues"] == pytest.approx(np.sort(np.roots([1.0, -1.45, 0.5])), rel=1e-12)
+    off, eigenvalues = claim.computed.values()
+    assert off < 1e-12
+    assert claim.margin == pytest.approx(-(1.0 - (eigenvalues[0] - 0.5) / 0.5), rel=1e-9)
+
+
+def test_weights_that_let_an_agent_swing_certify_nothing(monkeypatch):
+    """g = 2 < √(4w): it turns round, and may come back."""
+    monkeypatch.setattr(j16, "_PRINTED", ZoneWeights(speed=2.0, obstacle=5.0))
+    assert j16._at_walls().status == "inconclusive"
+
+
+def test_ten_minutes_decide_nothing_about_sooner_or_later(verdict_of):
+    claim = verdict_of("J16").claim("circling")
+    assert (claim.status, claim.about) == ("inconclusive", "limit")
+    assert 0 < claim.computed["meet"] < claim.computed["of"] == 40
+
+
 @pytest.mark.parametrize("gaps", [(4.0, 740.0, 1.0), (740.0, 4.0, 1.0), (740.0, 740.0, 6.0)])
 def test_growing_is_refuted_by_any_one_of_its_three_gaps(monkeypatch, gaps):
     monkeypatch.setattr(j16, "_last_gap", lambda growth, q, p: gaps[(0.0, 5.0, 10.0).index(growth)])

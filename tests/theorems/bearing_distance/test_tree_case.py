@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
 from flockana.stability import linearise
-from flockana.theorems.bearing_distance.tree_case import characteristic_residual, length_error, tree_case
+from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
 
 STAR, CHAIN, MIXED = ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (2, 3)), ((0, 1), (1, 2), (1, 3), (0, 4))
 
@@ -85,9 +83,12 @@ def test_no_tree_no_case():
     assert tree_case(MinimalFlocking(edges=((0, 1),)), 3) is None  # agent 2 stands apart
 
 
-@pytest.mark.parametrize(("far", "shortest"), [(1000.0, 1.0), (1000.0, 0.5), (3.0, 4.0)])
-def test_lengths_round_by_how_far_from_the_origin_agents_are(far, shortest):
-    """Eight roundings of a length, and of positions in units of the shortest edge."""
-    run = SimpleNamespace(q=np.array([[[0.0, 1.0], [-far, 0.0]]]))
-    case = SimpleNamespace(rho=np.array([2.0 * shortest, shortest]))
-    assert length_error(case, run) == pytest.approx(8.0 * 2.0**-52 * (1.0 + far / shortest), rel=1e-14, abs=0.0)
+@pytest.mark.parametrize("error", [0.0, 1e-3])
+def test_an_edge_is_as_long_as_its_ends_may_be_apart(error):
+    """Each end is known to an error; V = ½|x'|² + ½μ(|x| − ρ)² at both ends of the length."""
+    case = tree_case(MinimalFlocking(edges=((0, 1),), spacing=2.0, mu=3.0), 2)
+    length = case.edges_of(np.array([[0.0, 0.0], [0.0, 2.5]]), np.full(2, error))
+    assert (length.lo[0], length.hi[0]) == pytest.approx((2.5 - 2.0 * error, 2.5 + 2.0 * error), abs=1e-14)
+    energy = case.energies(length, case.edges_of(np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros(2)))
+    ends = [0.5 + 1.5 * (0.5 + sign * 2.0 * error) ** 2 for sign in (-1.0, 1.0)]
+    assert (energy.lo[0], energy.hi[0]) == pytest.approx(ends, abs=1e-14)

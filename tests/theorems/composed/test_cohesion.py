@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana import compose, simulate, verify
+from flockana import compose, pair_law, simulate, verify
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
@@ -105,7 +105,7 @@ def test_thrust_makes_the_collision_bound_vacuous():
 
 
 def test_a_meeting_s_energy_counts_from_the_least_of_a_pair():
-    """ψ(0) = 3, the least −5 at the distance 1, −1 beyond: 8 c1 for a meeting, −5 c1 for each of three pairs."""
-    pair = SimpleNamespace(range=2.0, length=1.0, far_potential=-1.0, energy_at=lambda s: 8.0 * (s - 1.0) ** 2 - 5.0)
+    """ψ(0) = 3, the least −5 at the distance 1, 3 beyond: 8 c1 for a meeting, −5 c1 for each of three pairs."""
+    pair = pair_law("8*(s - 1)**2 - 5", adjacency=0, range=2.0, length=1.0)
     law = SimpleNamespace(alpha=pair, gains=Gains(c1_alpha=2.0))
     assert meeting(SimpleNamespace(law=law, n=3)) == (16.0, -30.0)

@@ -137,7 +137,7 @@ class TestBetweenSamples:
         law = fl.Algorithm2(target=fl.StaticTarget((0.0,) * m))
         dense = simulate(law, q, p, (0.0, 0.4), t_eval=np.linspace(0.0, 0.4, 161))
         keep = slice(0, None, 8)
-        sparse = fl.Trajectory(dense.t[keep], dense.q[keep], dense.p[keep], dense.u[keep], law)
+        sparse = fl.Trajectory(dense.t[keep], dense.q[keep], dense.p[keep], dense.u[keep], law, stats={"steps": 20})
         nets, radius = nets_between(sparse), radius_between(sparse)
         for k, first in enumerate(range(0, 160, 8)):
             inside = dense.q[first : first + 9]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, simulate, verify
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import (
@@ -68,7 +69,7 @@ def test_rest_and_the_velocity_that_is_told_beside_it():
 def test_a_function_that_was_seen_at_rest_is_assumed_to_be():
     found = target_rests(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), told=False)
     assert found.status == "assumed"
-    assert "as seen at 281 times" in found.detail  # 41 samples and six points in each of 40 intervals
+    assert "as seen at 561 times" in found.detail  # 41 samples, 40 middles and six points in each of 80 halves
 
 
 def test_a_constant_that_only_rounding_moves_is_at_rest():
@@ -106,3 +107,15 @@ def test_units(target, scaling):
         lambda each: target_rests(each, told=False),
     ):
         assert check(one).status == check(two).status
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "RK4", "dt": 0.05}], ids=["adaptive", "fixed steps"])
+@pytest.mark.parametrize("instants", [[0.0, 1.0, 2.0, 3.0], None], ids=["sparse", "default"])
+def test_a_jump_between_samples_is_seen_at_the_solver_s_steps(instants, options):
+    """The target is away for 1.2 < t < 1.3 only, and rests at all whole times."""
+    jumps = CallableTarget(lambda t: ((400.0 if 1.2 < t < 1.3 else 0.0, 0.0), (0.0, 0.0)))
+    q = np.array([[0.0, 0.0], [6.0, 0.0], [3.0, 5.0]])
+    seen = simulate(Algorithm3(target=jumps), q, 0.0 * q, (0.0, 3.0), t_eval=instants, **options)
+    verdict = verify("energy", seen)
+    assert {one.status for one in verdict.hypotheses if "declared rate" in one.name} == {"unmet"}
+    assert verdict.claim("balance").status == "vacuous"

@@ -38,9 +38,17 @@ def test_the_figures_of_the_erratum(verdict_of):
 
 
 @pytest.mark.parametrize("reach", [13, 15])
-def test_another_largest_lattice_is_refuted(monkeypatch, reach):
+def test_another_largest_lattice_contradicts_the_proof(monkeypatch, reach):
     monkeypatch.setattr(e04, "lattice_reach", lambda alpha: reach)
-    assert e04._reached(ALPHA).status == "refuted"
+    claim = e04._reached(ALPHA)
+    assert (claim.status, claim.contradicts) == ("inconclusive", "n-max")
+
+
+def test_the_margin_of_the_barrier_is_a_lower_bound(verdict_of):
+    """Of seven agents: a triangle of pairs that may be bound, so that three of fifteen pairs of six are not."""
+    claim = verdict_of("E4").claim("barrier")
+    assert claim.margin == pytest.approx(3.0 * ALPHA.far_potential, rel=1e-9)
+    assert claim.margin < claim.computed[7]["together"] - ALPHA.c_star
 
 
 def test_the_barrier_at_seven_is_a_count_of_links():

@@ -21,6 +21,13 @@ from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
 from flockana.theorems import Tolerances, theorem, verify
+from flockana.theorems.observed import Observed, observed
+from flockana.theorems.slides.measured_ratio import measured_ratio
+
+
+def examined(seen):
+    return theorem("E12").examine(seen, Tolerances())[1]
+
 
 OMEGA = 2 * pi * 0.025 / 0.045
 STRONG = scenario("msn-case4").law.gains
@@ -57,7 +64,7 @@ def test_the_proof_is_of_targets_that_turn_slowly(frequency, proof):
     )
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     claim = verify("E12", run).claim("printed")
-    assert (claim.proof, claim.status) == (proof, "refuted" if proof else "verified")
+    assert (claim.disproof, claim.status) == (proof, "refuted" if proof else "verified")
 
 
 def test_e12_does_not_pass_a_gain_that_is_wrong():
@@ -65,9 +72,9 @@ def test_e12_does_not_pass_a_gain_that_is_wrong():
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
-    with pytest.raises(ArgumentError, match="of another law"):
+    with pytest.raises(ArgumentError, match="made or changed by hand"):
         verify("E12", mislabelled)
-    claims = {claim.name: claim.status for claim in theorem("E12").examine(mislabelled, Tolerances())[1]}
+    claims = {claim.name: claim.status for claim in examined(Observed.alone(mislabelled))}
     assert (claims["predicted"], claims["consistent"]) == ("refuted", "verified")
 
 
@@ -80,7 +87,9 @@ def test_e12_knows_what_is_left_of_the_start(periods):
     off = abs(response_ratio(run)[0] / predicted_gain(law.gains, pi, factor=0.25) - 1.0)
     assert off > 3.0 * Tolerances().agreement
     claims = verify("E12", run).claims
-    assert [claim.status for claim in claims] == ["inconclusive"] * 3
+    assert [claim.status for claim in claims] == ["inconclusive", "inconclusive", "refuted"]
+    assert claims[2].disproof == "tracking-gain"  # the numbers alone leave it open
+    assert claims[2].error > abs(claims[2].margin)
     assert claims[0].error > off
 
 
@@ -88,11 +97,22 @@ def test_e12_is_the_same_in_every_unit():
     path = CircleTarget((0.0, 0.0), 2.0, 0.5)
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 8.0))
-    here = theorem("E12").examine(run, Tolerances())[1]
+    here = examined(Observed.of(run))
     for length, time in ((1e-6, 1e3), (1e3, 1e-3)):
-        there = theorem("E12").examine(rescale(run, length=length, time=time), Tolerances())[1]
+        there = examined(Observed.of(rescale(run, length=length, time=time)))
         assert [claim.status for claim in there] == [claim.status for claim in here]
         assert [claim.margin for claim in there] == pytest.approx([claim.margin for claim in here], abs=1e-5)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7, 1e-10])
+def test_the_measured_ratio_encloses_the_gain_of_loose_runs_too(rtol):
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
+    ratio, gain = (
+        measured_ratio(observed(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0), rtol=rtol)),
+        predicted_gain(law.gains, pi),
+    )
+    assert ratio.lo <= gain <= ratio.hi
+    assert ratio.half_width < 30.0 * rtol
 
 
 def test_e12_needs_damping_and_something_to_follow():

@@ -16,7 +16,7 @@ def own():
 
 
 def proof_of(law, q, p, t_span):
-    return verify("E13", simulate(law, q, p, t_span)).claim("printed").proof
+    return verify("E13", simulate(law, q, p, t_span)).claim("printed").disproof
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ def test_ratios_over_the_speed():
     assert verdict.claim("faster").computed == pytest.approx(told, rel=1e-7)
     assert verdict.claim("printed-start").computed == pytest.approx(told[2], rel=1e-7)
     assert verdict.claim("printed-speed").computed == pytest.approx(np.delete(told, 2), rel=1e-7)
+    assert all(claim.error < 1e-3 * abs(claim.margin) for claim in verdict.claims if "printed" in claim.name)
 
 
 def test_the_symbolic_condition_is_that_of_the_slope():

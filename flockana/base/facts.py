@@ -1,0 +1,94 @@
+"""Facts about a function over its whole range: proved, disproved by a witness, or assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+FactStatus = Literal["met", "unmet", "assumed"]
+_ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One property of a function.
+
+    Parameters
+    ----------
+    status : {"met", "unmet", "assumed"}
+        Proved, false on the witness, or neither.
+    detail : str
+        The proof, the fault or what is left open, in words.
+    witness : tuple of float, optional
+        Ends of an interval of distances on which the property fails, or is open.
+    width : float
+        Total length of the distances that are left open; 0 unless assumed.
+
+    Examples
+    --------
+    >>> Fact("unmet", "the force jumps at s = 1", (1.0, 1.0)).status
+    'unmet'
+    """
+
+    status: FactStatus
+    detail: str = ""
+    witness: tuple[float, float] | None = None
+    width: float = 0.0
+
+
+def together(facts: Iterable[Fact], proof: str = "") -> Fact:
+    """All of several facts: unmet if one is, else assumed if one is, else met.
+
+    Parameters
+    ----------
+    facts : iterable of Fact
+        The parts.
+    proof : str
+        Detail if all are met.
+
+    Examples
+    --------
+    >>> together([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
+    'a'
+    """
+    facts = list(facts)
+    worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), "met")
+    told = [fact for fact in facts if fact.status == worst]
+    if worst == "met":
+        return Fact("met", proof)
+    detail = "; ".join(dict.fromkeys(fact.detail for fact in told if fact.detail))
+    return Fact(worst, detail, told[0].witness, sum(fact.width for fact in told))
+
+
+@dataclass(frozen=True)
+class PairFacts:
+    """What is known about a pair law over all distances up to its range.
+
+    Attributes
+    ----------
+    smooth : Fact
+        ψ is C¹ on (0, r], its force vanishes at the range, and so does the adjacency, which is continuous.
+    weight : Fact
+        The adjacency is nowhere negative.
+    inside : Fact
+        The adjacency is positive at every distance below the range.
+    least : tuple of float
+        Bounds of the least potential of a pair, far ones included.
+    contact : tuple of float
+        Bounds of the limit of the potential where two agents meet; infinite at a barrier.
+    least_weight : tuple of float
+        Bounds of the least adjacency within the range.
+    """
+
+    smooth: Fact
+    weight: Fact
+    inside: Fact
+    least: tuple[float, float]
+    contact: tuple[float, float]
+    least_weight: tuple[float, float]
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What the pair law certainly lacks of `smooth`, each in words."""
+        return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()

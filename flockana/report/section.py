@@ -1,0 +1,15 @@
+"""Sections of the report beside its verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section to be made: a name (`MANY_LAWS` or `LINEARISED`) and the seed of its start, so it can be sent."""
+
+    name: str
+    seed: int = 0

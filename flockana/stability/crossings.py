@@ -1,0 +1,218 @@
+"""Least delay at which a root of a delayed flock crosses the imaginary axis: in closed form mode by mode, or bracketed.
+
+s = jω is a root for the delay τ where z = e^jωτ makes z A + B singular, A = K₀ − ω² + jωD₀ and B = K₁ + jωD₁. With
+z = (μ + j)/(μ − j), so that μ = cot(ωτ/2) is real on the unit circle, that is an eigenvalue problem in which nothing is
+infinite where the flock without delay has no root: μ is an eigenvalue of W = −j (A + B)⁻¹(A − B).
+
+Where all four matrices commute each mode has two crossings at most, in closed form. Else frequencies are excluded a
+whole interval at a time: about ω the matrix (A + B)(μ − W), in the eigenvectors of W at ω, is diagonally dominant for
+every real μ as long as the interval is short against the eigenvalues' distances from the real axis. So no band is
+narrow enough to be missed.
+"""
+
+from __future__ import annotations
+
+from math import inf, pi, sqrt, tan
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.equilibria.curvature import EPS
+
+ComplexArray = npt.NDArray[np.complex128]
+Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+
+CLOSE = 1e-6  # relative: the certified lower bound of a margin lies that close to the margin
+MOST = 3000  # spectra: a search that needs more certifies nothing
+_ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes are taken
+_STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative
+_POWERS = 20  # of a matrix, for its Perron vector
+_WIDE = 2.0  # ratio of the ends of an interval that is looked at as a whole
+_SAFE = 0.99  # of an interval that exact arithmetic would exclude
+
+
+class Crossing(NamedTuple):
+    """Delay and frequency of a root on the axis, and the delay below which there certainly is none."""
+
+    delay: float
+    frequency: float
+    least: float
+
+
+def modal_crossing(four: Four, neutral: float) -> Crossing | None:
+    """The least crossing of K₀, D₀, K₁, D₁ that are symmetric and commute, mode by mode; None of others.
+
+    |k₀ − ω² + jωd₀| = |k₁ + jωd₁| is a quadratic equation in ω². Stiffness up to `neutral` is 0.
+
+    Examples
+    --------
+    x'' = −x'(t − τ) crosses at π/2:
+
+    >>> one, zero = np.ones((1, 1)), np.zeros((1, 1))
+    >>> modal_crossing((zero, zero, zero, one), 0.0)
+    Crossing(delay=1.5707963267948966, frequency=1.0, least=1.5707963267948966)
+    """
+    values = _common_modes(four)
+    if values is None:
+        return None
+    best = Crossing(inf, float("nan"), inf)
+    for k0, d0, k1, d1 in values.T.tolist():
+        if k1 == 0.0 and d1 == 0.0:
+            continue
+        whole = k0 + k1 if abs(k0 + k1) > neutral else 0.0
+        for omega in _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, whole * (k0 - k1), 2.0 * abs(k0) + d1 * d1 + d0 * d0):
+            delay = phase(-complex(k1, omega * d1) * complex(k0 - omega * omega, -omega * d0)) / omega
+            if delay < best.delay:
+                best = Crossing(delay, omega, delay)
+    return best
+
+
+def _common_modes(four: Four) -> FloatArray | None:
+    """Eigenvalues of four matrices in their common eigenvectors, shape (4, N); None if they have none."""
+    sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
+    used = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
+    if any(np.abs(x - x.T).max() > rounding * size for x, size in used):
+        return None
+    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used)), np.zeros_like(four[0]))
+    modes, values = np.linalg.eigh(mixed)[1], np.zeros((4, len(mixed)))
+    for k, (x, size) in enumerate(zip(four, sizes, strict=True)):
+        there = modes.T @ x @ modes
+        values[k] = np.where(np.abs(np.diag(there)) > rounding * size, np.diag(there), 0.0)
+        if np.abs(there - np.diag(np.diag(there))).max() > rounding * size:
+            return None
+    return values
+
+
+def _frequencies(total: float, product: float, size: float) -> list[float]:
+    """ω > 0 with ω⁴ − total ω² + product = 0; a double root to the rounding of terms of that size is one."""
+    square = total * total - 4.0 * product
+    if square < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
+        return []
+    far = 0.5 * (total + (sqrt(max(square, 0.0)) if total >= 0.0 else -sqrt(max(square, 0.0))))
+    return [sqrt(x) for x in (far, product / far if far else 0.0) if x > 0.0]
+
+
+def phase(z: complex) -> float:
+    """Angle of a complex number, from 0 to 2π."""
+    return float(np.angle(z)) % (2.0 * pi)
+
+
+class _Spectrum(NamedTuple):
+    """Eigenvalues μ of W at a frequency, dμ/dω, and how fast W leaves their frame: by |dω|, and by its square.
+
+    Row i of what is left at μ is at most √(μ² + size_i²) times the rows of `first` and `second`, whatever the sizes.
+    """
+
+    values: ComplexArray
+    slopes: ComplexArray
+    sizes: FloatArray
+    first: FloatArray
+    second: FloatArray
+
+    def crossings(self, omega: float) -> tuple[FloatArray, FloatArray]:
+        """Frequencies at which eigenvalues become real, to first order, and their delays there."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            move = -self.values.imag / self.slopes.imag
+            there = self.values.real + self.slopes.real * move
+            delays = 2.0 * (0.5 * pi - np.arctan(there)) / (omega + move)
+        return omega + move, np.where(np.isfinite(delays) & (omega + move > 0.0), delays, inf)
+
+
+def _spectrum(four: Four, omega: float) -> _Spectrum:
+    """All that is asked of a frequency."""
+    k0, d0, k1, d1 = four
+    one = np.eye(len(k0))
+    inverse = np.linalg.inv(k0 + k1 - omega**2 * one + 1j * omega * (d0 + d1))
+    values, vectors = np.linalg.eig(-1j * inverse @ (k0 - k1 - omega**2 * one + 1j * omega * (d0 - d1)))
+    left = np.linalg.solve(vectors, inverse)
+    mass = left @ vectors
+    of_mu = 1j * (left @ (d0 + d1) @ vectors) - 2.0 * omega * mass
+    alone = -(left @ (d0 - d1) @ vectors) - 2j * omega * mass
+    slopes = -(values * np.diag(of_mu) + np.diag(alone))
+    sizes = np.hypot(1.0, np.abs(values))
+    first = np.hypot(np.abs(of_mu), np.abs(alone) / sizes[:, None])
+    return _Spectrum(values, slopes, sizes, first, np.abs(mass) * np.hypot(1.0, 1.0 / sizes)[:, None])
+
+
+def _distances(at: _Spectrum, lowest: float) -> FloatArray:
+    """Least |μ − μ_i|/√(μ² + size_i²) over all real μ from `lowest` on."""
+    a, b, least = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
+    total = 1.0 + a * a + b * b
+    square = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        nearest = np.where(square < 1.0, a / (1.0 - square), inf)
+        ends = np.minimum(np.hypot(least - a, b) / np.hypot(1.0, least), 1.0)
+    return np.where(nearest >= least, np.sqrt(square), ends)
+
+
+def _free(at: _Spectrum, angle: float) -> float:
+    """How far from a frequency there certainly is no crossing with ωτ up to an angle.
+
+    Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less than
+    s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
+    """
+    gaps = _distances(at, 1.0 / tan(0.5 * angle) if angle < 2.0 * pi else -inf)
+    if not np.isfinite(at.first).all() or gaps.min() <= 0.0:
+        return 0.0
+    rows, scale = at.first / gaps[:, None], np.ones(len(gaps))
+    for _ in range(_POWERS):
+        scale = rows @ scale
+        scale = np.maximum(scale / scale.max(), EPS)
+    linear, square = (float(np.max((x @ scale) / (gaps * scale))) for x in (at.first, at.second))
+    return _SAFE * 2.0 / (linear + sqrt(linear * linear + 4.0 * square))
+
+
+def least_crossing(four: Four, low: float, high: float) -> Crossing:
+    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular.
+
+    The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are needed.
+
+    Examples
+    --------
+    >>> turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    >>> prompt, late = np.diag([3.0, 1.0]), turn @ np.diag([2.0, 0.5]) @ turn.T
+    >>> found = least_crossing((prompt, np.eye(2), late, np.zeros((2, 2))), 0.0, 4.0)
+    >>> bool(0.0 < found.least <= found.delay <= 1.00001 * found.least)
+    True
+    """
+    best, todo, left = Crossing(inf, float("nan"), inf), [(low, high)], MOST
+    while todo:
+        a, b = todo.pop()
+        if b > _WIDE * a > 0.0:
+            middle = max(sqrt(a * b), b / _WIDE)
+            todo += [(a, middle), (middle, b)]  # from the top: the least delays belong to the highest frequencies
+            continue
+        middle = 0.5 * (a + b) if a > 0.0 else 0.0
+        at, left = _spectrum(four, middle), left - 1
+        places, delays = at.crossings(middle)
+        delays = np.where((places >= a) & (places <= b), delays, inf)
+        if middle > 0.0 and delays.min() < best.least:
+            found, tried = _refined(four, middle, at, int(delays.argmin()), best.delay)
+            best, left = min(best, found), left - tried
+        reach = _free(at, min(b * best.least, 2.0 * pi))
+        if left <= 0 or middle + reach == middle:
+            return best._replace(least=0.0)
+        if a < middle - reach:
+            todo.append((a, middle - reach))
+        if b > middle + reach:
+            todo.append((middle + reach, b))
+    return best
+
+
+def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
+    """A crossing by Newton's method on Im μ(ω) = 0, and how many spectra it took; an infinite one if it finds none."""
+    nothing = Crossing(inf, float("nan"), inf)
+    for tried in range(_STEPS):
+        value, slope = complex(at.values[index]), complex(at.slopes[index])
+        move = -value.imag / slope.imag if slope.imag else inf
+        if not 0.0 < omega + move < inf:
+            return nothing, tried
+        omega += move
+        if abs(move) <= _TINY * omega:
+            delay = phase(complex(value.real, 1.0) / complex(value.real, -1.0)) / omega
+            return (Crossing(delay, omega, (1.0 - CLOSE) * delay) if delay < worst else nothing), tried
+        at = _spectrum(four, omega)
+        index = int(np.argmin(np.abs(at.values - (value + move * slope))))
+    return nothing, _STEPS

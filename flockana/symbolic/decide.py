@@ -1,0 +1,328 @@
+"""Decisions about a formula over a whole interval by branch and bound: smoothness, sign and least value.
+
+Intervals are halved until an enclosure decides. What decides is the number of intervals, never the clock, so that the
+answer is the same on every machine.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable
+from itertools import count
+from math import inf, nextafter
+from typing import NamedTuple
+
+import sympy as sp
+from flint import arb, fmpq
+
+from flockana.base.facts import Fact
+from flockana.symbolic.enclosed import NONNEGATIVE, POSITIVE, Enclosed, interval, precision
+
+MOST = 6000  # intervals looked at
+_DEEPEST = 130  # halvings; then the point is looked at from both sides
+_FEW = 4  # points that stay open
+_SEEN = 1e-6  # of the scale: a change within less than 1e-15 of the interval that counts as a jump
+_STRICT = 12  # halvings, for a sign that is not certainly strict
+_ORDERS = 8  # of the first derivative that is not 0
+_CLOSED, _CLOSED_OF_SCALE = 1e-13, 1e-15  # to which a least value is known, relative to it or to the scale
+_NARROWEST = 80  # halvings of an interval on which a least value is sought
+_BITS = 96
+Place = Callable[[float], float]
+
+
+def down(x: arb) -> float:
+    """A float that is not above a ball."""
+    value = float(x.lower())
+    return value if arb(value) <= x.lower() else nextafter(value, -inf)
+
+
+def up(x: arb) -> float:
+    """A float that is not below a ball."""
+    return 0.0 - down(-x)
+
+
+def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | None:
+    """Whether a number is 0: by algebra, or certainly not by its enclosure; None if that is open.
+
+    Examples
+    --------
+    >>> k = sp.Symbol("k")
+    >>> is_zero(k - 2, {k: sp.Integer(2)}), is_zero(k - sp.pi, {k: sp.Integer(3)})
+    (True, False)
+    """
+    if expression == 0:
+        return True
+    exact = expression.xreplace(numbers)
+    if exact == 0:
+        return True
+    with precision(600):
+        value = Enclosed(exact, sp.Dummy()).series(arb(0))
+    if value is None:
+        return None
+    if not value[0].contains(0):
+        return False
+    return True if sp.expand(exact) == 0 or sp.expand(sp.together(exact)) == 0 else None
+
+
+class Region(NamedTuple):
+    """A formula in parameters, their numbers, and two points between which it is decided.
+
+    `left` and `right` hold the exact points `ends` between them; `place` gives the distance for messages.
+    """
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    numbers: dict[sp.Symbol, sp.Expr]
+    left: fmpq
+    right: fmpq
+    ends: tuple[sp.Expr, sp.Expr]
+    place: Place
+
+    @property
+    def exact(self) -> sp.Expr:
+        """The formula with its numbers."""
+        return self.expression.xreplace(self.numbers)
+
+    @property
+    def enclosed(self) -> Enclosed:
+        """The formula as a function of balls."""
+        return Enclosed(self.exact, self.variable)
+
+
+def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: str = "") -> list[Fact]:
+    """Whether a formula is analytic inside an interval and up to its ends: nothing if it is, else what is the matter.
+
+    Parameters
+    ----------
+    region : Region
+        Formula and interval.
+    name : str
+        The formula, in messages.
+    scale, slope : float
+        Of its values and slopes: what a jump is compared with.
+    kinks : str
+        What jumps where the slope does, in messages; nothing if kinks are allowed, whose points then stay open.
+    """
+    of, whole = region.enclosed, region.right - region.left
+    stack, open_, looked = [(region.left, region.right, 0)], [], 0
+    while stack:
+        left, right, depth = stack.pop()
+        looked += 1
+        if looked > MOST or len(open_) >= _FEW:
+            stack.append((left, right, depth))
+            break
+        with precision(64 + 4 * depth, 2):
+            if of.series(interval(left, right)) is not None:
+                continue
+        if depth < _DEEPEST:
+            middle = (left + right) / 2
+            stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+            continue
+        fact = _looked_at(of, region, (left + right) / 2, name, (scale, slope), kinks)
+        if fact.status == "unmet":
+            return [fact]
+        open_.append(fact)
+    rest = float(sum(float(arb(right - left)) for left, right, _ in stack))
+    if rest:
+        text = f"whether {name} is smooth is open from s = {region.place(_float(stack[-1][0])):.6g} on"
+        open_.append(Fact("assumed", text, _ends(region, stack[-1][0], stack[0][1]), rest))
+    elif open_:
+        open_[0] = Fact("assumed", open_[0].detail, open_[0].witness, len(open_) * float(arb(whole)) * 2.0**-_DEEPEST)
+    return open_[:1] if not rest else open_[-1:]
+
+
+def _float(x: fmpq) -> float:
+    return float(arb(x))
+
+
+def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
+    return region.place(_float(left)), region.place(_float(right))
+
+
+def _looked_at(
+    of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
+) -> Fact:  # fmt: skip
+    """What values and slopes beside a point show: a jump, a pole, a kink, no value; open if nothing."""
+    whole, place = region.right - region.left, region.place(_float(at))
+    near, far = whole / 2**100, whole / 2**50
+    sides: list[list[list[arb] | None]] = []
+    witness = _ends(region, max(at - near, region.left), min(at + near, region.right))
+    with precision(900, 2):
+        for sign in (-1, 1):
+            points = [at + sign * step for step in (near, far)]
+            if region.left <= points[0] <= region.right:
+                sides.append([of.series(arb(point)) for point in points])
+    if any(all(values is None for values in side) for side in sides):
+        return Fact("unmet", f"{name} has no finite real value at s = {place:.6g}", witness)
+    if any(values is None for side in sides for values in side):
+        return Fact("assumed", f"whether {name} is defined at s = {place:.6g} is open", witness)
+    for order, (scale, word) in enumerate(zip(scales, (name, kinks), strict=True)):
+        if not word:
+            continue
+        least = _SEEN * (scale or 1.0)
+        changes = [abs(side[0][order] - side[1][order]) for side in sides]  # type: ignore[index]
+        if any(change > least for change in changes):
+            return Fact("unmet", f"{word} has no limit at s = {place:.6g}", witness)
+        if len(sides) == 2 and abs(sides[0][0][order] - sides[1][0][order]) > least:  # type: ignore[index]
+            return Fact("unmet", f"{word} jumps at s = {place:.6g}", witness)
+    return Fact("assumed", f"whether {name} is smooth at s = {place:.6g} is open", witness)
+
+
+def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
+    """Whether a formula is nonnegative on an interval, and positive inside it.
+
+    Parameters
+    ----------
+    region : Region
+        Formula and interval; zeros at its ends are decided by the first derivative that is not 0.
+    name : str
+        The formula, in messages.
+    """
+    if region.expression == 0:
+        return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", _ends(region, region.left, region.right))
+    left, right = region.left, region.right
+    for side in (0, 1):
+        sign, width = _at_end(region, side)
+        if sign < 0:
+            box = (left, left + width) if side == 0 else (right - width, right)
+            fact = Fact("unmet", f"{name} is negative beside s = {region.place(_float(box[side])):.6g}",
+                        _ends(region, *box))  # fmt: skip
+            return fact, fact
+        left, right = (left + width, right) if side == 0 else (left, right - width)
+    return _sign_inside(region, left, right, name)
+
+
+def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
+    """Sign of a formula beside an end at which it vanishes, and how far it holds; (0, 0) if it does not vanish."""
+    derivative, whole = region.expression, region.right - region.left
+    end = region.ends[side]
+    for order in range(_ORDERS):
+        zero = is_zero(derivative.subs(region.variable, end), region.numbers)
+        if zero is None or (order == 0 and not zero):
+            return 0, fmpq(0)
+        if not zero:
+            break
+        derivative = sp.diff(derivative, region.variable)
+    else:
+        return 0, fmpq(0)
+    of = region.enclosed
+    for halving in range(2, 60):
+        width = whole / 2**halving
+        ball = interval(region.left, region.left + width) if side == 0 else interval(region.right - width, region.right)
+        with precision(_BITS + halving, order + 1):
+            found = of.series(ball)
+        if found is not None and not found[order].contains(0):
+            sign = 1 if found[order] > 0 else -1
+            return sign * (-1) ** (order * side), width
+    return 0, fmpq(0)
+
+
+def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fact, Fact]:
+    of = region.enclosed
+    stack, weak, looked = [(left, right, 0)], [], 0
+    while stack and looked <= MOST:
+        left, right, depth = stack.pop()
+        looked += 1
+        with precision(_BITS + 2 * depth, 2):
+            sign = _sign_of(of, left, right)
+            middle = (left + right) / 2
+            at = of.series(arb(middle))
+            if at is not None and at[0] < 0:
+                value, place = float(at[0]), region.place(_float(middle))
+                fact = Fact("unmet", f"{name} is {value:.3g} at s = {place:.6g}", (place, place))
+                return fact, fact
+        if sign == POSITIVE or (sign == NONNEGATIVE and depth >= _STRICT):
+            weak += [(left, right)] * (sign == NONNEGATIVE)
+            continue
+        if depth >= _DEEPEST:
+            stack.append((left, right, depth))
+            break
+        stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
+    rest = sum(_float(b) - _float(a) for a, b, _ in stack)
+    if stack:
+        where = _ends(region, stack[-1][0], stack[0][1])
+        fact = Fact("assumed", f"whether {name} is negative is open from s = {where[0]:.6g} on", where, rest)
+        return fact, fact
+    met = Fact("met", f"{name} is enclosed at every distance")
+    if weak:
+        where = _ends(region, weak[0][0], weak[-1][1])
+        width = sum(_float(b) - _float(a) for a, b in weak)
+        return met, Fact("assumed", f"whether {name} vanishes is open near s = {where[0]:.6g}", where, width)
+    return met, met
+
+
+def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
+    """The certain sign on an interval: by its enclosure, or where it is monotone by its ends."""
+    ball = interval(left, right)
+    sign, found = of.sign(ball), of.series(ball)
+    if sign == POSITIVE or found is None or found[1].contains(0):
+        return sign
+    lower = of.series(arb(left if found[1] > 0 else right))
+    if lower is None or not lower[0] >= 0:
+        return sign
+    return POSITIVE if lower[0] > 0 else NONNEGATIVE
+
+
+class Least(NamedTuple):
+    """Bounds of the least value, and where the upper one is reached."""
+
+    low: float
+    high: float
+    at: float
+
+
+def least_on(region: Region, scale: float) -> Least:
+    """The least value on an interval, as an enclosure; −∞ from below where the formula has none.
+
+    Parameters
+    ----------
+    region : Region
+        Formula and interval.
+    scale : float
+        Of its values: the width that is enough is 1e-15 of it, or 1e-13 of the value.
+    """
+    of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
+    best, where, looked = arb.pos_inf(), region.left, 0
+    heap: list[tuple[float, int, fmpq, fmpq]] = []
+
+    def take(left: fmpq, right: fmpq) -> None:
+        nonlocal best, where
+        low, high, at = _lowest(of, left, right)
+        if high < best:
+            best, where = high, at
+        heapq.heappush(heap, (down(low) if low.is_finite() else -inf, next(number), left, right))
+
+    with precision(_BITS, 3):
+        take(region.left, region.right)
+        while looked < MOST // 2:
+            looked += 1
+            low, _, left, right = heap[0]
+            if low >= down(best) - max(_CLOSED_OF_SCALE * scale, _CLOSED * abs(down(best))):
+                break
+            if (right - left) * 2**_NARROWEST < region.right - region.left:
+                break
+            heapq.heappop(heap)
+            middle = (left + right) / 2
+            take(left, middle)
+            take(middle, right)
+        return Least(min(heap[0][0], down(best)), up(best), region.place(_float(where)))
+
+
+def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
+    """A lower bound on an interval, a value in it and where."""
+    middle = (left + right) / 2
+    found, at = of.series(interval(left, right)), of.series(arb(middle))
+    seen = arb.pos_inf() if at is None else at[0].upper()
+    if found is None:
+        return arb.neg_inf(), seen, middle
+    if not found[1].contains(0):
+        end = left if found[1] > 0 else right
+        value = of.series(arb(end))
+        if value is not None:
+            return value[0].lower(), value[0].upper(), end
+    low = found[0].lower()
+    if at is not None:
+        off = interval(left - middle, right - middle)
+        square = (off * off).nonnegative_part()
+        low = low.max((at[0] + at[1] * off + found[2] * square).lower())
+    return low, seen, middle

@@ -1,0 +1,321 @@
+"""Enclosures of a formula over an interval, with its Taylor coefficients, by ball arithmetic (Arb).
+
+An enclosure exists only where every operation of the formula is analytic on the whole interval: no divisor may vanish,
+no argument of a root or logarithm may reach 0. So it proves that the formula has all derivatives there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
+
+import sympy as sp
+from flint import arb, arb_series, ctx, fmpq
+
+POSITIVE, NONNEGATIVE, OPEN = 2, 1, 0  # what is certain about a sign
+_LARGEST = 2**120  # argument of an exponential
+
+
+@contextmanager
+def precision(bits: int, terms: int = 1) -> Iterator[None]:
+    """Compute with some bits, and series with some terms."""
+    kept = ctx.prec, ctx.cap
+    ctx.prec, ctx.cap = bits, terms
+    try:
+        yield
+    finally:
+        ctx.prec, ctx.cap = kept
+
+
+def rational(number: Any) -> fmpq:
+    """A rational number of sympy, or a Fraction, as Arb's."""
+    fraction = Fraction(int(number.p), int(number.q)) if isinstance(number, sp.Rational) else Fraction(number)
+    return fmpq(fraction.numerator, fraction.denominator)
+
+
+def interval(left: fmpq, right: fmpq) -> arb:
+    """The ball around an interval."""
+    return arb(left).union(arb(right))
+
+
+class UndefinedError(ArithmeticError):
+    """An operation is not analytic on an interval."""
+
+
+class Enclosed:
+    """A formula in one variable as a function of balls.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Without pieces, all numbers exact.
+    variable : sympy.Symbol
+        Its only symbol.
+
+    Examples
+    --------
+    >>> s = sp.Symbol("s", positive=True)
+    >>> with precision(64, 3):
+    ...     values = Enclosed(sp.exp(s) * s, s).series(arb(1))
+    >>> [round(float(value), 12) for value in values]
+    [2.718281828459, 5.436563656918, 4.077422742689]
+    """
+
+    def __init__(self, expression: sp.Expr, variable: sp.Symbol) -> None:
+        self.variable = variable
+        self._steps: list[tuple[Callable[..., Any], tuple[int, ...], sp.Expr, bool]] = []
+        self._at: dict[sp.Expr, int] = {}
+        self._constants: dict[tuple[int, int], dict[int, arb_series]] = {}
+        self._add(sp.sympify(expression))
+
+    def _add(self, node: sp.Expr) -> int:
+        """Number of a node, after those that it is made of."""
+        if node not in self._at:
+            arguments = tuple(self._add(each) for each in _arguments(node))
+            self._steps.append((_operation(node, self.variable), arguments, node, self.variable in node.free_symbols))
+            self._at[node] = len(self._steps) - 1
+        return self._at[node]
+
+    def series(self, x: arb) -> list[arb] | None:
+        """Taylor coefficients that hold for every centre in a ball, `ctx.cap` of them; None where not analytic."""
+        found = self._run(x)
+        return None if found is None else _coefficients(found[-1][0])
+
+    def sign(self, x: arb) -> int:
+        """Whether the formula is certainly positive, or nonnegative, on a ball."""
+        found = self._run(x)
+        return OPEN if found is None else found[-1][1]
+
+    def _run(self, x: arb) -> list[tuple[Any, int]] | None:
+        kept = self._constants.setdefault((ctx.prec, ctx.cap), {})
+        values: list[tuple[Any, int]] = []
+        middle = x.mid()
+        centre = None if x.is_exact() or ctx.cap < 2 else self._run(middle)
+        if centre is None and not x.is_exact() and ctx.cap > 1:
+            return None
+        try:
+            for k, (operation, arguments, node, varies) in enumerate(self._steps):
+                if not varies and k in kept:
+                    values.append(kept[k])
+                    continue
+                given = [values[each] for each in arguments]
+                value = operation(x, *(each for each, _ in given))
+                if centre is not None and (node.is_Add or node.is_Mul):
+                    value = _tightened(value, centre[k][0], x - middle)
+                if not all(map(arb.is_finite, value.coeffs())):
+                    return None
+                values.append((value, _sign(node, value, [sign for _, sign in given])))
+                if not varies:
+                    kept[k] = values[-1]
+        except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
+            return None
+        return values
+
+
+def _tightened(series: Any, centre: Any, off: arb) -> Any:
+    """A series whose value is also that at the centre and what its slope adds."""
+    return _with_value(series, _value(series).intersection(_value(centre) + series[1] * off))
+
+
+def _coefficients(series: arb_series) -> list[arb]:
+    """All of them, trailing zeros too."""
+    found = series.coeffs()[: ctx.cap]
+    return [*found, *([arb(0)] * (ctx.cap - len(found)))]
+
+
+def _arguments(node: sp.Expr) -> tuple[sp.Expr, ...]:
+    """What a node is computed from; the exponent of a plain power is none of it."""
+    if node.is_Pow and node.exp.is_Rational:
+        return (node.base,)
+    return () if node.is_Atom else tuple(node.args)
+
+
+def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
+    """How a node is computed: a function of the ball and of the arguments' series."""
+    if node == variable:
+        return lambda x: arb_series([x, 1])
+    if isinstance(node, sp.Float):
+        node = sp.Rational(repr(float(node)))
+    if isinstance(node, sp.Rational):
+        number = rational(node)
+        return lambda x: arb_series([arb(number)])
+    if node in (sp.pi, sp.E):
+        return lambda x: arb_series([arb.pi() if node == sp.pi else arb.const_e()])
+    if node.is_Add:
+        return lambda x, *terms: _total(terms)
+    if node.is_Mul:
+        return lambda x, *factors: _product(factors)
+    if node.is_Pow and node.exp.is_Rational:
+        whole, root, up = int(abs(node.exp.p)), int(node.exp.q), bool(node.exp.p > 0)
+        return lambda x, base: _power(base, whole, root, up=up)
+    if node.is_Pow:
+        return lambda x, base, exponent: _exp(exponent * _positive(base).log())
+    if (of := _FUNCTIONS.get(node.func)) is not None:
+        return lambda x, argument: of(argument)
+    if node.is_Atom:  # an infinity, or none
+        return _undefined
+    raise TypeError(f"{node.func.__name__} has no enclosure")
+
+
+def _undefined(x: arb, *arguments: Any) -> Any:
+    raise UndefinedError
+
+
+def _total(terms: tuple[Any, ...]) -> Any:
+    value = terms[0]
+    for each in terms[1:]:
+        value = value + each
+    return value
+
+
+def _product(factors: tuple[Any, ...]) -> Any:
+    value = factors[0]
+    for each in factors[1:]:
+        value = value * each
+    return value
+
+
+def _value(series: Any) -> arb:
+    """The value of a series, its first coefficient."""
+    return series[0]
+
+
+def _with_value(series: Any, value: arb) -> Any:
+    """A series with another enclosure of its value."""
+    return arb_series([value, *_coefficients(series)[1:]])
+
+
+def _positive(series: Any) -> Any:
+    if not _value(series) > 0:
+        raise UndefinedError
+    return series
+
+
+def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
+    """A plain power, its inverse unless `up`: whole ones of any base, roots of a positive one."""
+    of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
+    value = _with_value(_multiplied(of, whole), _power_range(_value(of), whole)) if whole > 1 else of
+    if up:
+        return value
+    if not abs(_value(value)) > 0:
+        raise UndefinedError
+    return 1 / value
+
+
+def _multiplied(base: Any, whole: int) -> Any:
+    """A product of equal factors."""
+    value = None
+    while whole:
+        if whole & 1:
+            value = base if value is None else value * base
+        whole >>= 1
+        base = base * base if whole else base
+    return value
+
+
+def _power_range(base: arb, whole: int) -> arb:
+    """The range of a whole power: that of its ends, and 0 if it turns there."""
+    ends = interval_of(*(_multiplied(end, whole) for end in (base.lower(), base.upper())))
+    if whole % 2 or base > 0 or base < 0:
+        return ends
+    return interval_of(arb(0), abs(ends).upper())
+
+
+def interval_of(low: arb, high: arb) -> arb:
+    """The ball around two ends."""
+    return low.union(high)
+
+
+def _exp(x: Any) -> Any:
+    if _value(x) < _LARGEST and _value(x) > -_LARGEST:
+        return x.exp()
+    if not _value(x) < _LARGEST:
+        raise UndefinedError
+    least = interval_of(arb(0), arb(-_LARGEST).max(_value(x).upper()).exp().upper())
+    return _with_value(x, arb(0)).exp() * least
+
+
+def _integrated(value: arb, slope: Any, x: Any) -> Any:
+    """The series of a function from its value and the series of its derivative."""
+    return (slope * x.derivative()).integral() + value if ctx.cap > 1 else arb_series([value])
+
+
+def _tanh(x: Any) -> Any:
+    """By its ends, as it rises; its slope is 1 − tanh²."""
+    at = interval_of(*(end.tanh() for end in (_value(x).lower(), _value(x).upper())))
+    value = arb_series([at])
+    for _ in range(ctx.cap - 1):
+        value = _integrated(at, 1 - value * value, x)
+    return value
+
+
+def _wave(x: arb) -> arb:
+    """The range of the cosine: that of the ends, and the tops and bottoms between."""
+    turns = x / arb.pi()
+    if x.is_exact() or not turns.rad() < 0.25:
+        return x.cos()
+    ends = interval_of(x.lower().cos(), x.upper().cos())
+    if not turns.contains_integer():
+        return ends
+    whole = round(float(turns.mid()))
+    return interval_of(ends, arb(1 - 2 * (whole % 2))).intersection(interval_of(arb(-1), arb(1)))
+
+
+def _tan(x: Any) -> Any:
+    if not abs(_value(x).cos()) > 0 or not 2 * _value(x).rad() < arb.pi():
+        raise UndefinedError
+    return x.tan()
+
+
+def _inside(x: Any) -> Any:
+    """A series whose value is certainly within (−1, 1)."""
+    if not (_value(x) > -1 and _value(x) < 1):
+        raise UndefinedError
+    return x
+
+
+def _hyperbolic(x: Any, *, odd: bool) -> Any:
+    up, down = _exp(x), _exp(-x)
+    return _with_value((up - down if odd else up + down) / 2, _value(x).sinh() if odd else _value(x).cosh())
+
+
+def _acosh(x: Any) -> Any:
+    if not _value(x) > 1:
+        raise UndefinedError
+    return _integrated(_value(x).acosh(), (x * x - 1).rsqrt(), x)
+
+
+_FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
+    sp.exp: _exp,
+    sp.log: lambda x: _positive(x).log(),
+    sp.sin: lambda x: _with_value(x.sin(), _wave(_value(x) - arb.pi() / 2)),
+    sp.cos: lambda x: _with_value(x.cos(), _wave(_value(x))),
+    sp.tan: _tan,
+    sp.atan: lambda x: x.atan(),
+    sp.asin: lambda x: _integrated(_value(_inside(x)).asin(), (1 - x * x).rsqrt(), x),
+    sp.acos: lambda x: _integrated(_value(_inside(x)).acos(), -(1 - x * x).rsqrt(), x),
+    sp.sinh: lambda x: _hyperbolic(x, odd=True),
+    sp.cosh: lambda x: _hyperbolic(x, odd=False),
+    sp.tanh: _tanh,
+    sp.asinh: lambda x: _integrated(_value(x).asinh(), _power(1 + _power(x, 2), 1, 2, up=False), x),
+    sp.acosh: _acosh,
+    sp.atanh: lambda x: _integrated(_value(_inside(x)).atanh(), 1 / (1 - x * x), x),
+}
+
+
+def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
+    """What is certain about the sign of a node, by its ball or by what it is made of."""
+    ball = _value(value)
+    if ball > 0:
+        return POSITIVE
+    known = NONNEGATIVE if ball >= 0 else OPEN
+    if node.is_Add or node.is_Mul:
+        least = min(signs)
+        known = max(known, POSITIVE if node.is_Add and least and max(signs) == POSITIVE else least)
+    elif node.is_Pow and node.exp.is_Rational and (node.exp.p % 2 == 0 or signs[0]):
+        known = max(known, signs[0] or NONNEGATIVE)
+    elif node.func is sp.exp or (node.is_Pow and signs[0] == POSITIVE):
+        known = POSITIVE
+    return known

@@ -1,0 +1,340 @@
+"""What is proved of a pair law by a formula: smoothness, sign of the adjacency, least potential over its range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import inf, isfinite, sqrt
+
+import sympy as sp
+from flint import arb, fmpq
+
+from flockana.base.facts import Fact, FactStatus, PairFacts, together
+from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
+from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
+from flockana.symbolic.germs import Germ, germ
+from flockana.symbolic.integrals import integral_least
+from flockana.symbolic.pair_formula import EPS, Cut, Z
+
+_SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
+_NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach
+_CLOSE = 400  # the same, where the limit at contact is read
+_BITS = 200
+_PROOF = "every operation of the formula is analytic between the cuts, and both sides agree at them"
+
+
+def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Symbol, sp.Expr]:
+    """Parameters as the decimals that they print as, and the σ-norms of range and length by their formula."""
+    exact = {symbol: sp.Rational(repr(float(value))) for symbol, value in numbers.items()}
+    if eps > 0.0:
+        for name in ("r", "d"):
+            square = 1 + exact[EPS] * exact[sp.Symbol(name, positive=True)] ** 2
+            exact[sp.Symbol(f"{name}_z", positive=True)] = (sp.sqrt(square) - 1) / exact[EPS]
+    return exact
+
+
+def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFacts:
+    """The facts of a formula with its numbers.
+
+    Parameters
+    ----------
+    cut : Cut
+        The formula.
+    eps : float
+        ε of the σ-norm, 0 for a formula in s.
+    strength, tallest : float
+        The unit of forces and that of the adjacency: what jumps are compared with.
+
+    Examples
+    --------
+    >>> from flockana.symbolic.pair_formula import read_pair
+    >>> r, d = (sp.Symbol(name, positive=True) for name in "rd")
+    >>> cut = Cut(read_pair("s**2*(s - r)**2", "", "1 - s/r", []), {r: 3.0, d: 1.0}, 3.0)
+    >>> facts = pair_facts(cut, 0.0, 1.0, 1.0)
+    >>> facts.smooth.status, facts.inside.status, facts.least, facts.contact
+    ('met', 'met', (0.0, 0.0), (0.0, 0.0))
+    """
+    return _Decided(cut, eps, strength, tallest).facts
+
+
+@dataclass(frozen=True, eq=False)
+class _Decided:
+    """A formula while it is decided."""
+
+    cut: Cut
+    eps: float
+    strength: float
+    tallest: float
+
+    @property
+    def facts(self) -> PairFacts:
+        """All of them."""
+        weight, inside = self._signs()
+        least, contact = self._energies()
+        rest = [least_on(region, self.tallest) for region in self._regions(self._weights)]
+        lowest = (min(each.low for each in rest), min(each.high for each in rest))
+        if weight.status == "met":
+            lowest = (max(lowest[0], 0.0), lowest[1])
+        smooth = together([*self._inner(), *self._joints(), *self._end()], _PROOF)
+        return PairFacts(smooth, weight, inside, least, contact, lowest)
+
+    @property
+    def _y(self) -> sp.Symbol:
+        return self.cut.formula.distance
+
+    @cached_property
+    def _numbers(self) -> dict[sp.Symbol, sp.Expr]:
+        return exact_numbers(self.cut.numbers, self.eps)
+
+    @cached_property
+    def _marks(self) -> list[sp.Expr]:
+        """0, the cuts and the range, as they are written."""
+        in_norm = self._y == Z
+        return [sp.Integer(0), *self.cut.written[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
+
+    def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
+        return [self.cut.chosen(formula, 0.5 * (a + b)) for a, b in pairwise(self.cut.marks)]
+
+    @cached_property
+    def _mains(self) -> list[sp.Expr]:
+        return self._chosen(self.cut.formula.main)
+
+    @cached_property
+    def _weights(self) -> list[sp.Expr]:
+        return self._chosen(self.cut.formula.adjacency)
+
+    def place(self, y: float) -> float:
+        """The Euclidean distance of y."""
+        return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
+
+    def _point(self, mark: sp.Expr, side: int) -> fmpq:
+        """A rational number at a mark, not inside of it."""
+        exact = mark.xreplace(self._numbers)
+        if isinstance(exact, sp.Rational):
+            return rational(exact)
+        with precision(_BITS):
+            ball = _value(exact)
+            end = (ball.upper() if side else ball.lower()).man_exp()
+        return fmpq(int(end[0])) * fmpq(2) ** int(end[1])
+
+    def _regions(self, formulas: list[sp.Expr], *, split: bool = True) -> Iterator[Region]:
+        """Formula by formula between marks, and between the length if they are split there."""
+        length = sp.Symbol("d_z" if self._y == Z else "d", positive=True)
+        for formula, (left, right) in zip(formulas, pairwise(self._marks), strict=True):
+            inside = self._point(left, 1) < self._point(length, 0) and self._point(length, 1) < self._point(right, 0)
+            for a, b in pairwise([left, length, right] if split and inside else [left, right]):
+                yield Region(formula, self._y, self._numbers, self._point(a, 0), self._point(b, 1), (a, b), self.place)
+
+    def _inner(self) -> Iterator[Fact]:
+        """Faults between the marks."""
+        forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
+        energy = self.strength * self.cut.end
+        scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
+        for formulas, what, (scale, slope), kinks in (
+            (self._mains, name, scales, "" if forces else "the force"),
+            (self._weights, "the adjacency", (self.tallest, self.tallest / self.cut.end), ""),
+        ):
+            for k, region in enumerate(self._regions(formulas, split=False)):
+                if k == 0:
+                    width, known = self._clear(region)
+                    region = region._replace(left=width)
+                    if not known:
+                        text = f"whether {what} is smooth near contact is open"
+                        yield Fact("assumed", text, (0.0, self.place(float(arb(width)))), float(arb(width)))
+                for fact in smooth_on(region, what, scale, slope, kinks=kinks):
+                    last = k == len(formulas) - 1 and fact.witness and fact.witness[1] >= self.place(self.cut.end)
+                    at_end = fact.status == "unmet" and last and "no limit" in fact.detail
+                    text = f"{what} has a pole at the range, s = {self.place(self.cut.end):g}"
+                    yield Fact("unmet", text, fact.witness) if at_end else fact
+
+    def _clear(self, region: Region) -> tuple[fmpq, bool]:
+        """From where on a formula is to be looked at: 0, or as far as its germ is analytic; and whether it is."""
+        for halving in _NEAR:
+            width = region.right / 2**halving
+            with precision(_BITS, 2):
+                if region.enclosed.series(interval(fmpq(0), width)) is not None:
+                    return fmpq(0), True
+                if germ(region.exact, self._y, width) is not None:
+                    return width, True
+        return region.right / 2 ** _NEAR[-1], False
+
+    def _joints(self) -> Iterator[Fact]:
+        """Jumps where pieces meet."""
+        forces, energy = self.cut.formula.forces, self.strength * self.cut.end
+        slopes = self._mains if forces else [sp.diff(each, self._y) for each in self._mains]
+        rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
+        if not forces:
+            rows.append((self._mains, "the potential", energy))
+        for k, mark in enumerate(self._marks[1:-1]):
+            place = self.place(self.cut.marks[k + 1])
+            for row, name, scale in rows:
+                gap = (row[k] - row[k + 1]).subs(self._y, mark)
+                yield from self._vanishes(gap, scale, place, f"{name} jumps at s = {place:g}")
+
+    def _end(self) -> Iterator[Fact]:
+        """What does not vanish at the range."""
+        main, place = self._mains[-1], self.place(self.cut.end)
+        force = main if self.cut.formula.forces else sp.diff(main, self._y)
+        for what, name, scale in ((force, "force", self.strength), (self._weights[-1], "adjacency", self.tallest)):
+            text = f"the {name} does not vanish at the range, s = {place:g}"
+            yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, place, text)
+
+    def _vanishes(self, number: sp.Expr, scale: float, place: float, fault: str) -> Iterator[Fact]:
+        """Nothing if a number is 0 by algebra; a fault if it certainly is not, beyond rounding of the parameters."""
+        zero = is_zero(number, self._numbers)
+        if zero:
+            return
+        if zero is False:
+            with precision(_BITS):
+                size = abs(_value(number.xreplace(self._numbers)))
+            if size > _SMALL * scale:
+                yield Fact("unmet", fault, (place, place))
+                return
+            yield Fact("assumed", f"{fault} by {float(size):.2g}, as by rounding of a parameter", (place, place))
+            return
+        yield Fact("assumed", f"open is whether {fault}", (place, place))
+
+    def _signs(self) -> tuple[Fact, Fact]:
+        """Whether the adjacency is nonnegative, and positive inside."""
+        found = []
+        for region in self._regions([_factored(each, self._y) for each in self._weights]):
+            if region.left == 0 and self._limit(region.exact) is None:
+                near = self._sign_near(region)
+                if near is None:
+                    fact = Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0))
+                    found.append((fact, fact))
+                    continue
+                fact, width = near
+                found.append((fact, fact))
+                region = region._replace(left=width)
+            found.append(sign_on(region, "the adjacency"))
+            found += [(Fact("met"), fact) for fact in self._zeros(region)]
+        return together([one for one, _ in found], "its sign is enclosed at every distance"), together(
+            [two for _, two in found], "its sign is enclosed at every distance below the range"
+        )
+
+    def _zeros(self, region: Region) -> Iterator[Fact]:
+        """Ends of a region, other than contact and the range, at which the adjacency vanishes or may."""
+        for end, at in zip(region.ends, (region.left, region.right), strict=True):
+            zero = is_zero(region.expression.subs(self._y, end), self._numbers)
+            if end not in (self._marks[0], self._marks[-1]) and zero is not False:
+                place = self.place(float(arb(at)))
+                status: FactStatus = "unmet" if zero else "assumed"
+                yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
+
+    def _sign_near(self, region: Region) -> tuple[Fact, fmpq] | None:
+        """The sign of a formula that has no value at contact, beside it."""
+        for halving in _NEAR:
+            width = region.right / 2**halving
+            with precision(_BITS):
+                found, falls = (germ(each, self._y, width) for each in (region.exact, sp.diff(region.exact, self._y)))
+                end = region.enclosed.series(arb(width))
+            far = self.place(float(arb(width)))
+            fault = Fact("unmet", "the adjacency is negative near contact", (0.0, far))
+            if found is not None and not found.factor.contains(0):
+                return Fact("met") if found.factor > 0 else fault, width
+            if falls is None or end is None or falls.factor.contains(0) or end[0].contains(0):
+                continue
+            if (falls.factor < 0) == (end[0] > 0):  # it rises to contact from above 0, or falls to it from below
+                return Fact("met") if end[0] > 0 else fault, width
+        return None
+
+    def _limit(self, formula: sp.Expr) -> arb | None:
+        """The value at contact, of a formula that is analytic there."""
+        with precision(_BITS, 2):
+            width = fmpq(1) / 2**_CLOSE
+            found = Enclosed(formula, self._y)
+            values = None if found.series(interval(fmpq(0), width)) is None else found.series(arb(0))
+        return None if values is None else values[0]
+
+    def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Bounds of the least potential and of that at contact."""
+        scale = self.strength * self.cut.end
+        if self.cut.formula.forces:
+            regions = list(self._regions(self._mains))
+            length = self._point(sp.Symbol("d_z" if self._y == Z else "d", positive=True), 0)
+            return integral_least(regions, length, scale)
+        found, contact, regions = [], (-inf, inf), list(self._regions(self._mains))
+        for region in regions:
+            left = region.left
+            if left == 0:
+                contact, least, left = self._contact(region)
+                found.append(least)
+            found.append(least_on(region._replace(left=left), scale))
+        low, high = min(each.low for each in found), min(each.high for each in found)
+        return self._sharpened(regions, low, high), contact
+
+    def _sharpened(self, regions: list[Region], low: float, high: float) -> tuple[float, float]:
+        """A least value that is reached at a declared distance, proved by the sign of the rest."""
+        scale = self.strength * self.cut.end
+        for value in (region.expression.subs(self._y, end) for region in regions for end in region.ends):
+            with precision(_BITS):
+                found = Enclosed(value.xreplace(self._numbers), sp.Dummy()).series(arb(0))
+            if found is None or not abs(float(found[0]) - high) <= 1e-9 * max(abs(high), scale):
+                continue
+            rest = [region._replace(expression=_factored(region.expression - value, self._y)) for region in regions]
+            if all(sign_on(each, "")[0].status == "met" for each in rest):
+                return down(found[0]), up(found[0])
+        return low, high
+
+    def _contact(self, region: Region) -> tuple[tuple[float, float], Least, fmpq]:
+        """The potential where two agents meet, its least near there, and from where on it is to be looked at."""
+        formula, y = region.exact, self._y
+        value = self._limit(formula)
+        if value is not None:
+            bounds = (down(value), up(value))
+            return bounds, Least(*bounds, 0.0), fmpq(0)
+        slope = sp.diff(formula, y)
+        for halving in _NEAR:
+            width = region.right / 2**halving
+            with precision(_BITS):
+                falls, own = germ(slope, y, width), germ(formula, y, width)
+                end = Enclosed(formula, y).series(arb(width))
+            if falls is None or end is None or falls.factor.contains(0):
+                continue
+            at_width = Least(down(end[0]), up(end[0]), self.place(float(arb(width))))
+            if falls.power <= -1:
+                level = inf if falls.factor < 0 else -inf
+                return (level, level), at_width if level > 0 else Least(-inf, -inf, 0.0), width
+            limit = self._close(formula, falls) or (None if own is None else _bounds(own))
+            if limit is None:
+                continue
+            return limit, at_width if falls.factor < 0 else Least(*limit, 0.0), width
+        if own is not None and (limit := _bounds(own)) is not None:  # of the narrowest, whose slope has no sign known
+            with precision(_BITS):
+                power = (arb(width).log() * arb(fmpq(own.power.numerator, own.power.denominator))).exp()
+                low = down(own.factor * arb(0).union(power) if own.power > 0 else own.factor)
+            return limit, Least(min(low, limit[0]), limit[1], 0.0), width
+        return (-inf, inf), Least(-inf, inf, 0.0), width
+
+    def _close(self, formula: sp.Expr, slope: Germ) -> tuple[float, float] | None:
+        """The limit at contact, from a value close to it and what the slope adds at most."""
+        width = fmpq(1) / 2**_CLOSE
+        with precision(4 * _CLOSE):
+            end = Enclosed(formula, self._y).series(arb(width))
+            power = arb(fmpq(slope.power.numerator, slope.power.denominator)) + 1
+            if end is None or not power > 0:
+                return None
+            way = slope.factor * (arb(width).log() * power).exp() / power
+            limit = end[0] - arb(0).union(way)
+            return down(limit), up(limit)
+
+
+def _value(number: sp.Expr) -> arb:
+    found = Enclosed(number, sp.Dummy()).series(arb(0))
+    return arb.nan() if found is None else found[0]
+
+
+def _bounds(own: Germ) -> tuple[float, float] | None:
+    if own.power > 0:
+        return 0.0, 0.0
+    low, high = down(own.factor), up(own.factor)
+    return (low, high) if own.power == 0 and isfinite(low) and isfinite(high) else None
+
+
+def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
+    """A polynomial as a product, in which double zeros are seen."""
+    small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
+    return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula
