@@ -53,7 +53,8 @@ def together(facts: Iterable[Fact], proof: str = "") -> Fact:
     'a'
     """
     facts = list(facts)
-    worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), "met")
+    met: FactStatus = "met"
+    worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), met)
     told = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)

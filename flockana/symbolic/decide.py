@@ -104,7 +104,8 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
         What jumps where the slope does, in messages; nothing if kinks are allowed, whose points then stay open.
     """
     of, whole = region.enclosed, region.right - region.left
-    stack, open_, looked = [(region.left, region.right, 0)], [], 0
+    open_: list[Fact] = []
+    stack, looked = [(region.left, region.right, 0)], 0
     while stack:
         left, right, depth = stack.pop()
         looked += 1

@@ -154,7 +154,7 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
         return lambda x, base, exponent: _exp(exponent * _positive(base).log())
     if (of := _FUNCTIONS.get(node.func)) is not None:
         return lambda x, argument: of(argument)
-    if node.is_Atom:  # an infinity, or none
+    if not isinstance(node, sp.Function):  # an infinity, bounds of one, or none
         return _undefined
     raise TypeError(f"{node.func.__name__} has no enclosure")
 

@@ -30,6 +30,7 @@ _MOST_EXPONENT = 600  # of e
 _GREATEST = 1e300
 _GROWING = ("exp", "sinh", "cosh")
 
+_REAL = 1e-9  # relative: an imaginary part that is more than rounding
 _DIVISOR_BITS = 600  # to which a divisor must differ from 0
 
 FUNCTIONS: Mapping[str, Callable[..., sp.Expr]] = {
@@ -107,7 +108,10 @@ def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
     """The same with every absolute value as two pieces, also those that sympy makes of roots of squares."""
     for inner in value.atoms(sp.Abs):
         _ensure_plain(inner.args[0], where)
-    return value.replace(sp.Abs, lambda x: sp.Piecewise((x, x >= 0), (-x, True), evaluate=False))
+    try:
+        return value.replace(sp.Abs, lambda x: sp.Piecewise((x, x >= 0), (-x, True), evaluate=False))
+    except TypeError as error:  # a comparison of what is not real
+        raise ArgumentError(f"{where}: {error}; expected real values at every distance") from None
 
 
 def _ensure_plain(value: sp.Expr, where: str) -> None:
@@ -175,7 +179,10 @@ class _Reader:
             left, right = (self._value(each, depth) for each in (node.left, node.comparators[0]))
             for each in (left, right):
                 _ensure_plain(each, self.where)
-            return _RELATIONS[type(node.ops[0])](left, right)
+            try:
+                return _RELATIONS[type(node.ops[0])](left, right)
+            except TypeError as error:
+                raise ArgumentError(f"{self.where}: {error}; expected real values to compare") from None
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._call(node.func.id, node.args, depth)
         raise self._refused(node)
@@ -230,7 +237,8 @@ class _Reader:
     @staticmethod
     def _size_of(value: sp.Expr) -> float:
         try:
-            return abs(complex(value.evalf(15)))
+            number = complex(value.evalf(15))
+            return inf if abs(number.imag) > _REAL * abs(number) else abs(number)
         except (ArithmeticError, ValueError, TypeError):
             return inf
 
