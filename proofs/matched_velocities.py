@@ -19,14 +19,14 @@ from proofs.proof import Proof, Step
 from proofs.signs_of_phi import potential_lemma
 from proofs.smt import implication
 
-H, H0, RATE, I, Y, C = z3.Reals("H H_0 rate integral y c")
+H, H0, RATE, TOTAL, C = z3.Reals("H H_0 rate integral c")
 
 
 def _integral() -> Iterator[Step]:
     yield implication(
         "an energy H >= 0 that falls at c y² at least, c > 0, leaves ∫ y² dt <= H(0)/c, however long the time",
-        C * I <= H0,
-        *(H >= 0, C > 0, H <= H0 - C * I),
+        C * TOTAL <= H0,
+        *(H >= 0, C > 0, H <= H0 - C * TOTAL),
         latex=r"0 \le H(t) \le H(0) - c\int_0^t y^2\,ds \implies \int_0^\infty y^2\,ds \le H(0)/c",
     )
     slope, speed, push, fast, hard = z3.Reals("slope speed push speed_max push_max")
@@ -134,7 +134,8 @@ def _nets() -> Iterator[Step]:
     )
     slope = sp.diff(well, s)
     yield Step(
-        "on every closed interval of such lengths V is smooth, so that forces and their rates are bounded",
+        "on every closed interval of such lengths V is smooth: forces are bounded, also those that a range cuts off; and "
+        "so are their rates on a fixed net",
         sp.simplify(slope - 2 * (s**2 - 1) / s**3) == 0,
         sp.latex(sp.factor(slope)),
     )
@@ -158,7 +159,8 @@ PROOF = Proof(
     statement=(
         "Under Algorithm 2 all velocities tend to that of the centre of mass, from every start, for every n and m = 1, "
         "2, 3. So they do under Algorithm 1 if H(0) < (n - 1) c1α ψ_α(r_α), which also keeps every solution from there "
-        "connected; and along a fixed connected net with unbounded potentials, where all forces tend to 0 as well. "
+        "connected; along a net of proximity that stays connected, whose forces may jump; and along a fixed connected net, "
+        "where all forces tend to 0 as well, both with Tanner's potentials. "
         "Informed agents take on a steady leader's velocity: they are the agents whose ‖p_i‖² the energy falls by."
     ),
     hypotheses=(
@@ -168,6 +170,6 @@ PROOF = Proof(
     rigour="smt",
     steps=_steps,
     size=27,
-    theorems=("os-1", "os-3", "su-informed", "tanner-fixed"),
+    theorems=("os-1", "os-3", "su-informed", "tanner-fixed", "tanner-switching"),
     cites=("Barbalat",),
 )

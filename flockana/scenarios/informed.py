@@ -63,7 +63,7 @@ def _few(seed: int = 0) -> Scenario:
             "su-informed:energy": "verified",
             "su-informed:distance": "verified",
             "su-informed:informed": "verified",
-            "su-informed:linked": "verified",
+            "su-informed:linked": "inconclusive",  # a run does not show that links last
             "su-informed:pairs": "verified",
             "su-informed:one-instant": "verified",
             "su-informed:no-collision": "verified",

@@ -41,9 +41,9 @@ class Enclosure:
     [0.4, 2.25, 1.414213562373]
     """
 
-    lo: FloatArray
-    mid: FloatArray
-    hi: FloatArray
+    lo: Real
+    mid: Real
+    hi: Real
 
     __array_ufunc__ = None  # a numpy array on the left leaves the operation to this class
 
@@ -79,7 +79,7 @@ class Enclosure:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the array."""
-        return self.mid.shape
+        return np.shape(self.mid)
 
     @property
     def half_width(self) -> FloatArray:

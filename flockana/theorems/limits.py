@@ -7,7 +7,7 @@ later times, such as two groups that part. A run that decays is evidence, which 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
@@ -123,3 +123,21 @@ def limit_claim(
     proved = claim.status == "verified" and not best.certain
     parts = (detail, "proved for every start") if proved else (detail, best.text, "" if best.certain else evidence)
     return replace(claim, detail="; ".join(part for part in parts if part))
+
+
+def without_assumed(needs: Iterable[Hypothesis], make: Callable[[list[Hypothesis]], Claim]) -> Claim:
+    """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
+
+    A certificate of the limit itself does not rest on what is only assumed; a refutation would.
+
+    Examples
+    --------
+    >>> needs = [Hypothesis("all solutions stay together", "assumed")]
+    >>> without_assumed(needs, lambda given: limit_claim("i", given, [Certificate(0.5, "a basin")])).status
+    'verified'
+    >>> without_assumed(needs, lambda given: limit_claim("i", given, escape=Certificate(0.5, "parted"))).status
+    'inconclusive'
+    """
+    needs = list(needs)
+    sure = make([need for need in needs if need.status != "assumed"])
+    return sure if sure.status == "verified" else make(needs)

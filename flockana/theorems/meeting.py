@@ -8,6 +8,7 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import PairInteraction
+from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Hypothesis
 
 
@@ -26,7 +27,7 @@ class Meeting(NamedTuple):
     floor: float
 
 
-def meeting(run: Trajectory) -> Meeting:
+def meeting(run: Trajectory | Observed) -> Meeting:
     """Those of a run's law, which has an α-interaction, and its number of agents.
 
     Examples
@@ -55,7 +56,7 @@ def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, fl
     return (seen, seen), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
 
 
-def least_is_known(run: Trajectory) -> list[Hypothesis]:
+def least_is_known(run: Trajectory | Observed) -> list[Hypothesis]:
     """The hypothesis that no pair has less energy than is counted with; none where a bound is proved."""
     facts = run.law.alpha.facts
     if np.isfinite(facts.least[0]) and facts.contact[0] > -np.inf:

@@ -35,6 +35,9 @@ def test_the_printed_energy_of_e1_does_not_carry_the_argument(monkeypatch):
 
 def test_an_energy_that_may_be_negative_bounds_no_integral():
     broken = proof.implication(
-        "no bound from below", proof.C * proof.I <= proof.H0, proof.C > 0, proof.H <= proof.H0 - proof.C * proof.I
+        "no bound from below",
+        proof.C * proof.TOTAL <= proof.H0,
+        proof.C > 0,
+        proof.H <= proof.H0 - proof.C * proof.TOTAL,
     )
     assert broken.holds is False

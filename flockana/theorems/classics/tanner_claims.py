@@ -16,6 +16,8 @@ from flockana.theorems.rounding import EPS
 from flockana.theorems.sampling import least_distance
 from flockana.theorems.theorem import Claim, Hypothesis
 
+MATCHED = "matched-velocities"
+
 
 def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: list[Hypothesis]) -> Claim:
     """Return the claim that some pairs never come nearer than where V alone is the energy of the start."""
@@ -46,22 +48,22 @@ def _energy_error(seen: Observed, i: Any, j: Any) -> float:
 
 
 def comes_to_rest(
-    seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, proof: str | None = None
+    seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, forces: str | None = None
 ) -> list[Claim]:
-    """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
+    """Return the claims that relative velocities, and the forces of the potentials, tend to 0; `forces` names a proof."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
     extremal = limit_claim(
         names[1],
         needs,
         computed=float(force[-1]),
-        proof=proof,
+        proof=forces,
         stated="the largest force -> 0",
         witness={"time": float(seen.t[-1])},
         evidence=evidence(seen.t, force, "the largest force"),
         detail=f"the largest force goes from {force[0]:.3g} to {force[-1]:.3g} at t = {seen.t[-1]:g}",
     )
-    return [velocities_match(seen, needs, name=names[0], proof=proof), extremal]
+    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), extremal]
 
 
 def out_of_range(seen: Observed) -> Enclosure:

@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.laws.tanner import FixedNetFlocking
 from flockana.measures.nets import components
-from flockana.theorems.classics.tanner_claims import comes_to_rest, no_collision
+from flockana.theorems.classics.tanner_claims import MATCHED, comes_to_rest, no_collision
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
@@ -22,7 +22,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [
         balance(seen, needs, tolerances, name="energy", proof="tanner"),
         no_collision(seen, edges[:, 0], edges[:, 1], "tanner", needs),
-        *comes_to_rest(seen, needs, ("velocities", "critical"), proof="matched-velocities"),
+        *comes_to_rest(seen, needs, ("velocities", "critical"), forces=MATCHED),
     ]
 
 

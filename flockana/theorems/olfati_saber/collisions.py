@@ -43,7 +43,8 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 
     How far they go past is known to the error of the run.
     """
-    depths, noise = {}, _noise(seen, tolerances)
+    depths: dict[Pair, float] = {}
+    noise = _noise(seen, tolerances)
     if seen.doubt:
         return depths
     off = float(2.0 * seen.shape_error.max())

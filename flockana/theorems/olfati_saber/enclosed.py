@@ -23,6 +23,7 @@ from flockana.theorems.from_tube import (
     rest_strain,
 )
 from flockana.theorems.hypotheses import condition, positive
+from flockana.theorems.limits import without_assumed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
 
 if TYPE_CHECKING:
@@ -83,10 +84,10 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     if unmet(needs):
         return needs, []
     case, needs = Enclosed.of(tube, basin), [*needs, _stays_together(tube)]
-    low, barrier = _below_c_star(tube), _below_barrier(tube)
+    low, barrier, matched = _below_c_star(tube), _below_barrier(tube), "velocities match in the moving frame"
     return [*needs, low, barrier], [
-        _lattice(case, needs, tolerances),
-        converges(case, needs, name="ii", stated="K̃ -> 0", detail="velocities match in the moving frame"),
+        without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
+        without_assumed(needs, lambda given: converges(case, given, name="ii", stated="K̃ -> 0", detail=matched)),
         no_collision(case, [*needs, low], name="iii"),
         no_collision(case, [*needs, barrier], name="iii-barrier"),
     ]

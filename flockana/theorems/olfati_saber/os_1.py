@@ -13,6 +13,7 @@ from flockana.theorems.asymptotics import lattice_limit, velocities_match
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
+from flockana.theorems.limits import without_assumed
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import (
@@ -24,7 +25,7 @@ from flockana.theorems.olfati_saber.collisions import (
 )
 from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.sampling import nets_at
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
@@ -64,6 +65,14 @@ def _barrier(seen: Observed) -> str | None:
     return proved(seen, "barrier") if counted else None
 
 
+def _velocities(seen: Observed, needs: list[Hypothesis]) -> Claim:
+    """Claim (ii): by the proof where the hypothesis on all solutions is met, else by a basin, whose flock stays one."""
+    caught = [final_basin(seen).certificate]
+    if needs[-1].status == "assumed" and caught[0].certain:
+        return velocities_match(seen, needs[:-1], name="ii", caught=caught)
+    return velocities_match(seen, needs, name="ii", caught=caught, proof="matched-velocities")
+
+
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     needs = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
     if unmet(needs):
@@ -72,8 +81,8 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     needs, c_star = [*needs, _stays_together(seen)], seen.law.gains.c1_alpha * seen.law.alpha.c_star
     low, barrier = below_multiple(energy, c_star), below_the_barrier(seen, energy)
     return [*needs, low, barrier], [
-        lattice_limit(seen, needs, tolerances, name="i"),
-        velocities_match(seen, needs, name="ii", caught=[final_basin(seen).certificate], proof="matched-velocities"),
+        without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
+        _velocities(seen, needs),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=proved(seen, "collisions")),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]
