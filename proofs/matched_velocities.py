@@ -134,8 +134,8 @@ def _nets() -> Iterator[Step]:
     )
     slope = sp.diff(well, s)
     yield Step(
-        "on every closed interval of such lengths V is smooth: forces are bounded, also those that a range cuts off; and "
-        "so are their rates on a fixed net",
+        "on every closed interval of such lengths V is smooth: forces are bounded, also those that a range cuts "
+        "off; so are their rates on a fixed net",
         sp.simplify(slope - 2 * (s**2 - 1) / s**3) == 0,
         sp.latex(sp.factor(slope)),
     )
@@ -159,8 +159,8 @@ PROOF = Proof(
     statement=(
         "Under Algorithm 2 all velocities tend to that of the centre of mass, from every start, for every n and m = 1, "
         "2, 3. So they do under Algorithm 1 if H(0) < (n - 1) c1α ψ_α(r_α), which also keeps every solution from there "
-        "connected; along a net of proximity that stays connected, whose forces may jump; and along a fixed connected net, "
-        "where all forces tend to 0 as well, both with Tanner's potentials. "
+        "connected; along a net of proximity that stays connected, whose forces may jump; and along a fixed "
+        "connected net, where all forces tend to 0 as well, both with Tanner's potentials. "
         "Informed agents take on a steady leader's velocity: they are the agents whose ‖p_i‖² the energy falls by."
     ),
     hypotheses=(

@@ -50,7 +50,7 @@ def _energy_error(seen: Observed, i: Any, j: Any) -> float:
 def comes_to_rest(
     seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, forces: str | None = None
 ) -> list[Claim]:
-    """Return the claims that relative velocities, and the forces of the potentials, tend to 0; `forces` names a proof."""
+    """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
     extremal = limit_claim(
