@@ -15,7 +15,7 @@ from flockana.measures.metrics import cohesion_radius, net_measures
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import nets_at, nets_between, radius_over
-from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import SCALINGS, hexagon, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 BOTH = ("alpha-flocking", "alpha-flocking-strict")
@@ -62,6 +62,20 @@ def test_what_was_before_the_window_does_not_count_between_its_samples(name):
     back = made_up(LAW, [near] * 3 + [lattice] * 3 + [near] + [lattice] * 2, t=t)
     again = judged(name, back, tolerances).claim("deviation")
     assert (again.status, again.computed) == ("refuted", pytest.approx(2.0 * (2.0 / 7.0) ** 2 / 3.0))
+
+
+@pytest.mark.parametrize(
+    ("off", "status"), [(-0.1, "refuted"), (-1e-12, "inconclusive"), (1e-12, "inconclusive"), (10.0, "verified")]
+)
+@pytest.mark.parametrize(("claim", "bound"), [("cohesive", "cohesion"), ("deviation",) * 2, ("mismatch",) * 2])
+def test_what_lies_nearer_to_its_bound_than_the_run_is_known_is_open(claim, bound, off, status):
+    run = simulate(LAW, *hexagon(), (0.0, 1.0))
+    first = verify("alpha-flocking", run).claim(claim)
+    share = (1.0 + off) * first.computed / (first.computed + first.margin)
+    moved = Tolerances(**{bound: share * getattr(Tolerances(), bound)})
+    found = verify("alpha-flocking", run, tolerances=moved).claim(claim)
+    assert found.status == status
+    assert found.margin == pytest.approx(off * first.computed, rel=1e-2)
 
 
 def test_cohesion_is_growth_over_the_window():
