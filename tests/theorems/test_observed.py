@@ -16,6 +16,7 @@ from flockana.theorems import Claim, Theorem, verify
 from flockana.theorems import observed as module
 from flockana.theorems.claims import judged
 from flockana.theorems.observed import Observed, by_both_runs, failure, observed, with_doubt
+from flockana.theorems.olfati_saber.attraction import final_basin
 
 SPRING = fl.Algorithm2(
     gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
@@ -169,6 +170,16 @@ def test_a_window_keeps_what_is_known_and_begins_inexactly():
     assert not part.begins_exactly
     assert part.shape_error[-1] == pytest.approx(seen.shape_error[-1], rel=1e-12)
     assert part.shape_error[0].min() > 0.0
+
+
+def test_what_is_computed_once_is_kept_with_what_is_known_of_the_errors():
+    """At the finest tolerances the run itself is the tighter of the two, seen with its error or as if exact."""
+    run = fl.simulate(fl.Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 20.0), rtol=1e-13)
+    exact = final_basin(Observed.alone(run))
+    known = Observed.of(run)
+    assert known.run is run
+    assert final_basin(known).distance > 5.0 * exact.distance
+    assert final_basin(known) is final_basin(Observed.of(run))
 
 
 def returns_to_the_start(bound):

@@ -9,7 +9,8 @@ from flockana import pair_law, simulate, verify
 from flockana.interactions.log_potential import LogPotential
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.tanner import FixedNetFlocking
-from flockana.theorems.sampling import least_between, spread_between
+from flockana.theorems.observed import Observed
+from flockana.theorems.sampling import least_distance, spread_over
 
 
 @pytest.mark.parametrize("off", [-2e-8, -3e-9, -1e-9, 1e-9])
@@ -48,8 +49,9 @@ def test_between_two_samples_a_pair_is_nearer_and_the_flock_wider():
     """Two agents that pass at a distance of 30, free of forces, sampled at the ends alone: 40 away from there."""
     q, p = np.array([[-40.0, 0.0], [0.0, 30.0]]), np.array([[40.0, 0.0], [0.0, 0.0]])
     run = simulate(Algorithm1(), q, p, (0.0, 2.0), t_eval=[0.0, 2.0])
-    assert 15.0 < least_between(run, [0], [1]) <= 30.0
-    assert spread_between(run) >= 50.0 / np.sqrt(2.0) * (1.0 - 1e-12)
+    seen = Observed.alone(run)
+    assert 15.0 < float(least_distance(seen, [0], [1]).lo) <= 30.0
+    assert float(spread_over(seen).hi.max()) >= 50.0 / np.sqrt(2.0) * (1.0 - 1e-12)
 
 
 def test_a_consensus_that_drives_apart_is_no_case_of_the_energy_theorem():
