@@ -12,8 +12,8 @@ from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.observed import Observed, with_doubt
 from flockana.theorems.fits import ensure_fits
+from flockana.theorems.observed import Observed, with_doubt
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:

@@ -125,5 +125,5 @@ def test_how_exactly_a_fall_is_known_far_from_rest():
     x_blur, v_blur = (sqrt(2.0) * (2 + 4) * np.finfo(float).eps * np.abs(z).max() for z in (run.q, run.p))
     slope = 2.0 * 0.25 * 2.0 * x_m / (1.0 + 2.0 * x_m**2)  # −φ'/φ of (1 + 2 s²)^−β
     of_rate = slope * (v_blur + phi(x0) * x_blur) / rate
-    expected = v_blur * (1.0 / v + 1.0 / v0) / (2.0 * rate) + of_rate * (1.0 + claim.computed / rate)
+    expected = v_blur * (1.0 / v + 1.0 / v0) / (2.0 * rate) + of_rate * claim.computed / rate
     assert claim.error == pytest.approx(expected, rel=2e-2)
