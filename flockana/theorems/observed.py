@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,18 @@ from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
 from flockana.theorems.theorem import Claim, Status
 
+<<<<<<< HEAD
+=======
+TIGHTER = 1e-2  # the second run's tolerances over the first's
+DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
+RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
+_MOST = 2**23  # numbers of the second run that are kept at the steps of the first
+_LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
+_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
+
+_Value = TypeVar("_Value")
+
+>>>>>>> tests-classics
 
 class End(NamedTuple):
     """Last state of a run: positions and velocities, and how far each may be off, seen from the centre of mass."""
@@ -180,6 +192,24 @@ class Observed:
         """Half width of any p_i − p_c over each interval between samples, shape (T − 1,)."""
         worst: FloatArray = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
         return worst + _rounding(self.run.p)
+
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """Return what was computed from this run and its errors before, or is now.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
 
     # observables ---------------------------------------------------------------------------------------------------
 
