@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import update_wrapper
+from inspect import signature
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -170,9 +171,8 @@ def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]],
                 return finish_empty(axes, label, reason)
             return finish_over_time(axes, trajectory.t, label)
 
-        update_wrapper(plot, draw, ("__module__", "__name__", "__qualname__", "__doc__"))
-        del plot.__wrapped__  # type: ignore[attr-defined]  # the signature is that of `plot`
-        return plot
+        plot.__signature__ = signature(plot)  # type: ignore[attr-defined]  # not that of `draw`
+        return update_wrapper(plot, draw, ("__module__", "__name__", "__qualname__", "__doc__"))
 
     return decorated
 

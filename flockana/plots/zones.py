@@ -220,7 +220,7 @@ def _measured(ax: Any, trajectory: Trajectory, looks: Iterable[tuple[str, str, s
     """Draw the run's measures among (name, label, colour, dash); return whether there is one."""
     _law(trajectory)
     metrics = trajectory.metrics()
-    found: list[Any] = [(metrics[name].values, *look) for name, *look in looks if name in metrics]
+    found = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in looks if name in metrics]
     curves(ax, trajectory.t, found, width=1.1)
     return bool(found)
 

@@ -19,6 +19,7 @@ from flockana.cli import main as command_line
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble import executors
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.report.stability import NO_FLOCKS
 from flockana.report.surveys import Survey
 from flockana.report.work import Task, check_all, plan
 from flockana.scenarios import Report, Scenario
@@ -95,6 +96,7 @@ def test_the_whole_catalogue_tells_shares_of_who_asks_for_them(call, offer, monk
     one = replace(tiny("right", "verified")(), reports=(Report("apart", "all apart", lambda *given: claim),), seeds=26)
     offer(right=lambda seed=0: replace(one, seed=seed), wrong=tiny("wrong", "verified"))
     monkeypatch.setattr("flockana.report.work.theorems", lambda: ("energy",))
+    monkeypatch.setattr("flockana.report.work._section", lambda task: NO_FLOCKS)  # tests/report makes sections
     code, out, _ = call("verify", "--jobs", 1)
     (told,) = verdicts("report")["statistics"]["scenarios"]
     assert (code, told["scenario"], told["rows"][0]["verified"]["count"]) == (0, "right", 26)

@@ -109,6 +109,7 @@ class TestFindsWhatIsFalse:
 class TestDoesNotBreakWhatIsTrue:
     """Nor do the searches of tests/adversarial/test_falsified.py, from wider regions."""
 
+    @pytest.mark.slow  # an attack on theorems that hold
     @pytest.mark.parametrize(
         ("name", "case", "claim", "options"),
         [
