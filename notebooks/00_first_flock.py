@@ -147,7 +147,7 @@ residual = abs(loose.energy_residual).max()
 print(f"{residual:.3g}, and {abs(tight.energy_residual).max():.3g} at the library's tolerances")
 
 # %% tags=["check"]
-grade(residual, 0.0360221, digits=2, hint="fl.simulate takes rtol and atol; the residual has two signs")
+grade(residual, 0.0033461, digits=2, hint="fl.simulate takes rtol and atol; the residual has two signs")
 
 # %% [markdown] tags=["exercise"]
 # **4.** ★ (1 point, derivation) One agent without neighbours is at $(3, 0)$ with the velocity $(0, 2)$; the γ-agent

@@ -82,8 +82,8 @@ _ = plots.falsification(broken)
 # %% [markdown]
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
 # converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the
-# scenario. Of a limit a run decides only what is certain for ever: it must end where a strict minimum of the potential
-# holds the flock, and that minimum must be strained.
+# scenario. A run refutes a limit only by what is certain at all later times: it must end in the basin of a strict
+# minimum of the potential, and that minimum must be strained.
 
 # %%
 found = fl.falsify("lattice-limit-printed", "five-agents", budget=100, region=0.5, vary="q", seed=1)

@@ -292,3 +292,10 @@ def ensure_dimension(m: int) -> int:
     if isinstance(m, bool) or not isinstance(m, int | float | np.number) or m not in (1, 2, 3):
         raise ArgumentError(f"m = {told(m)}: expected a dimension of 1, 2 or 3")
     return int(m)
+
+
+def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
+    """Raise unless what a law gives is an array of real numbers, of the flock's shape."""
+    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
+        kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
+        raise ArgumentError(f"{what} as {kind} {at}: expected an array of real numbers of shape {shape}")

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_given
 from flockana.base.errors import ArgumentError, told
 from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law, ensure_given
+from flockana.laws.law import Law
 
 
 def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:

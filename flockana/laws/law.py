@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_state
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_given, ensure_state
 from flockana.base.errors import ArgumentError, told
 from flockana.base.scales import Scales
 from flockana.interactions.pair import PairInteraction
@@ -39,13 +39,6 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
 
     n, m = blocks.shape[:2]
     return bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(n * m, n * m)).tocsr()
-
-
-def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
-    """Raise unless what a law gives is an array of real numbers, of the flock's shape."""
-    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
-        kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
-        raise ArgumentError(f"{what} as {kind} {at}: expected an array of real numbers of shape {shape}")
 
 
 _Term = TypeVar("_Term", bound="Term")

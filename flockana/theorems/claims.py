@@ -87,7 +87,17 @@ def concluded(
     detail: str = "",
     **fields: Any,
 ) -> Claim:
-    """Return a claim from what numbers or certificates say, its hypotheses and its proof; parameters as in `judged`."""
+    """Return a claim from what numbers or certificates say, its hypotheses and its proof.
+
+    Parameters
+    ----------
+    name, needs, about, rigour, proof, disproof, detail, **fields
+        As in `judged`.
+    by_numbers : str
+        Status by numbers or certificates alone.
+    margin : Enclosure
+        The margin that decided, a scalar.
+    """
     needs = tuple(needs)
     status, how, contradicts = _with_needs(by_numbers, needs, about), rigour, ""
     cites: tuple[str, ...] = ()
@@ -234,6 +244,13 @@ def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis
 def by_count(name: str, failures: int, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
     """Return a claim by the number of instants or cases in which it fails, where no rounding can change a sign.
 
+    Parameters
+    ----------
+    name, needs, **fields
+        As in `judged`.
+    failures : int
+        How many there are.
+
     Examples
     --------
     >>> by_count("falls", 0).status, by_count("falls", 2).status
@@ -289,6 +306,13 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
 def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
     """Return a claim that says nothing of this case, for a reason or under an unmet hypothesis.
 
+    Parameters
+    ----------
+    name, **fields
+        As in `judged`.
+    reason : str or Hypothesis
+        Why, in words, or the hypothesis.
+
     Examples
     --------
     >>> vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail
@@ -301,6 +325,13 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
 
 def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
     """Return a claim of which nothing is known here; vacuous if a hypothesis is unmet.
+
+    Parameters
+    ----------
+    name, needs, **fields
+        As in `judged`.
+    detail : str
+        Why, in words.
 
     Examples
     --------

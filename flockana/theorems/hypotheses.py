@@ -147,6 +147,13 @@ def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hy
 def by_fact(name: str, fact: Fact) -> Hypothesis:
     """Return a hypothesis about a function, with the status of what is decided about it.
 
+    Parameters
+    ----------
+    name : str
+        Of the hypothesis.
+    fact : Fact
+        What is decided.
+
     Examples
     --------
     >>> by_fact("ψ is C¹", Fact("unmet", "the force jumps at s = 1")).status

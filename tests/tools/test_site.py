@@ -66,7 +66,7 @@ MEASURED = {
             "rigour": "interval",
             "subject": "collapse",
             "hypotheses": [{"name": "c1γ > 0", "status": "met"}],
-            "claims": [{"name": "i", "status": "refuted", "stated": "as *said*"}],
+            "claims": [{"name": "i", "status": "refuted", "stated": "as *said*", "about": "limit"}],
         },
         {
             "theorem": "os-3",
@@ -101,6 +101,7 @@ def test_a_page_shows_hypotheses_claims_steps_pictures_and_verdicts(proved, foun
     text = theorems.page(catalogue()["os-3"], found, images=True, report=True)
     assert "| c1γ > 0 | met: 1, unmet: 1 |" in text
     assert "| `i` | as \\*said\\* | refuted: 1, vacuous: 1 |" in text
+    assert "Limits as t → ∞: `i`." in text
     assert "1. x\\_1 \\< 2 (holds)\n\n   $$\n   x_1 < 2\n   $$" in text
     assert "2. and so on (**does not hold**)" in text
     row = next(line for line in text.splitlines() if "scenarios/collapse.md" in line)

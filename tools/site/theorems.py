@@ -63,7 +63,7 @@ def _claims(item: Theorem, verdicts: Verdicts) -> str:
     names = tuple(dict.fromkeys((*item.claims, *found)))
     if not names:
         return "One, the statement itself."
-    limits = [name for name in item.claims if name in item.limits]
+    limits = [name for name in names if (item.id, name) in verdicts.limits]
     rows = [
         (f"`{name}`", plain(verdicts.stated.get((item.id, name), "")) or "—", _counts(found.get(name, Counter())))
         for name in names
@@ -73,7 +73,7 @@ def _claims(item: Theorem, verdicts: Verdicts) -> str:
     stated = "stated" if item.kind == "fixed" else "stated, of the first run"
     text = table(("claim, judged by itself", stated, "found, in how many verdicts of the catalogue"), rows)
     said = ", ".join(f"`{name}`" for name in limits)
-    return f"{text}\n\nOf limits speak {said}: a run that is too short decides nothing." if limits else text
+    return f"{text}\n\nLimits as t → ∞: {said}. Only a certificate or a proof decides these." if limits else text
 
 
 def _counts(of: Mapping[str, int]) -> str:

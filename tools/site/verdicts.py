@@ -25,6 +25,8 @@ class Verdicts:
         By theorem: how often which status was found, by name of the hypothesis or claim.
     stated : dict
         By theorem and claim, what the source states.
+    limits : set
+        Theorem and name of each claim about t → ∞.
     written : str
         When, by which version.
     """
@@ -33,6 +35,7 @@ class Verdicts:
     hypotheses: dict[str, dict[str, Counter[str]]] = field(default_factory=dict)
     claims: dict[str, dict[str, Counter[str]]] = field(default_factory=dict)
     stated: dict[tuple[str, str], str] = field(default_factory=dict)
+    limits: set[tuple[str, str]] = field(default_factory=set)
     written: str = ""
 
 
@@ -51,6 +54,8 @@ def measured(file: Path | None) -> Verdicts:
                 names.setdefault(entry["name"], Counter())[entry["status"]] += 1
         for claim in one.get("claims", ()):
             found.stated.setdefault((theorem, claim["name"]), _words(claim.get("stated")))
+            if claim.get("about") == "limit":
+                found.limits.add((theorem, claim["name"]))
     return found
 
 
