@@ -27,18 +27,8 @@ from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
 from flockana.theorems.theorem import Claim, Status
 
-<<<<<<< HEAD
-=======
-TIGHTER = 1e-2  # the second run's tolerances over the first's
-DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
-RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
-_MOST = 2**23  # numbers of the second run that are kept at the steps of the first
-_LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
-_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
-
 _Value = TypeVar("_Value")
 
->>>>>>> tests-classics
 
 class End(NamedTuple):
     """Last state of a run: positions and velocities, and how far each may be off, seen from the centre of mass."""
@@ -364,89 +354,6 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
 
 
-<<<<<<< HEAD
-=======
-def _own_doubt(run: Trajectory) -> str:
-    if reason := failure(run):
-        return reason
-    return "one sample shows no motion" if len(run.t) == 1 else ""
-
-
-def failure(run: Trajectory) -> str:
-    """Return why a run is none of its law, or an empty text: it failed, or a state is outside the law's domain."""
-    if run.status == "failed":
-        return f"the run failed: {run.message}"
-    if isinstance(run.law, DiscreteLaw):  # a step may lead anywhere
-        return ""
-    for k in np.unique(np.linspace(0, len(run.t) - 1, _LOOKED_AT).astype(int)):
-        try:
-            run.law.check_start(run.q[k], run.p[k])
-        except ArgumentError as error:
-            if k > 0 and isinstance(error, InsideObstacleError):  # theorems ask for that themselves
-                continue
-            return f"the run left the domain of its law before t = {run.t[k]:.6g}: {error}"
-    return ""
-
-
-def _nothing_known(run: Trajectory) -> _Errors:
-    unknown = np.full((1, run.n), np.inf)
-    return _Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
-
-
-def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Times at which the two runs are compared, samples and steps of the first, and its states there."""
-    path = run.path
-    stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
-    keep = np.isin(path.t, run.t)
-    keep[::stride] = True
-    return path.t[keep], (path.q[keep], path.p[keep])
-
-
-def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> _Errors:
-    """Half widths from the difference of two runs at their common times."""
-    apart = [(_centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
-    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
-    return _Errors(again.t, shape, speed, centre, drift)
-
-
-def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
-    """The run at some of its samples, the others kept as steps between them."""
-    if len(t) == len(run.t):
-        return run
-    keep, path = np.isin(run.t, t), run.path
-    between = ~np.isin(path.t, t)
-    extra = {name: series[keep] for name, series in run.extra.items()}
-    steps = Between(path.t[between], path.q[between], path.p[between], path.u[between], path.slack)
-    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
-
-
-def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False) -> Trajectory:
-    """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
-
-    A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
-    """
-    stats, span = run.stats, (float(times[0]), float(times[-1]))
-    options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
-    if "rtol" in stats:
-        method = stats.get("method", "DOP853")
-        options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
-        options["atol"] = _scaled(stats.get("atol"), factor)
-    elif own_step and "dt" in stats:
-        options = {"method": "RK4", "dt": stats["dt"]}
-    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
-
-
-def _scaled(atol: Any, factor: float) -> Any:
-    """An absolute tolerance, one number or several, multiplied by a factor; None stays None."""
-    return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
-
-
-def _centred(x: FloatArray) -> FloatArray:
-    centred: FloatArray = x - centres(x)[:, None]
-    return centred
-
-
->>>>>>> tests-os
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
     """Norm over all agents of vectors, each known to an error."""
     sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()

@@ -64,11 +64,7 @@ def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: 
     """A claim that a quantity stays below a bound: broken at one sample, or kept from each sample to the next."""
     (symbol, what), t = _SYMBOLS[name], part.seen.t[part.first :]
     seen = value[part.first :]
-<<<<<<< HEAD
     largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
-=======
-    margin = stacked([(bound - x).worst for x in (seen, Enclosure(seen.lo.max(), seen.mid.max(), over.hi.max()))])
->>>>>>> tests-classics
     worst = int(np.argmax(seen.mid))
     return judged(
         name,
