@@ -88,7 +88,7 @@ def closer(run, size):
 
 
 def stretched(run, size):
-    """It is half as far again from the first one as at the start: a link longer than any energy allows, and shorter than the range."""
+    """A link half as long again as at the start: longer than any energy allows, and shorter than the range."""
     q, k = run.q.copy(), len(run.q) // 2
     q[k, 1] = q[k, 0] + 1.5 * size * (q[0, 1] - q[0, 0])
     return replace(run, q=q, between=None)

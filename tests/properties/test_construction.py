@@ -11,11 +11,7 @@ from proofs.proof import load
 
 FILES = sorted((Path(flockana.__file__).parent / "theorems").rglob("*.py"))
 ALLOWED = {
-<<<<<<< HEAD
-    "simulate": {"observed.py", "second_runs.py", "second_run.py", "catalogue.py"},
-=======
-    "simulate": {"observed.py", "fits.py", "catalogue.py"},
->>>>>>> tests-classics
+    "simulate": {"observed.py", "second_runs.py", "catalogue.py"},
     "Claim": {"claims.py", "theorem.py"},
 }
 

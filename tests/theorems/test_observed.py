@@ -12,18 +12,12 @@ import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.semi_implicit import SemiImplicitEuler
-<<<<<<< HEAD
-from flockana.theorems import Claim
-from flockana.theorems import second_runs as module
-from flockana.theorems.observed import Observed, by_both_runs, observed, with_doubt
-from flockana.theorems.second_runs import failure
-=======
 from flockana.theorems import Claim, Theorem, verify
-from flockana.theorems import observed as module
+from flockana.theorems import second_runs as module
 from flockana.theorems.claims import judged
-from flockana.theorems.observed import Observed, by_both_runs, failure, observed, with_doubt
+from flockana.theorems.observed import Observed, by_both_runs, observed, with_doubt
 from flockana.theorems.olfati_saber.attraction import final_basin
->>>>>>> tests-classics
+from flockana.theorems.second_runs import failure
 
 SPRING = fl.Algorithm2(
     gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
