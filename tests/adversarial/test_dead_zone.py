@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import asinh, exp, sinh, sqrt
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp

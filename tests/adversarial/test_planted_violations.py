@@ -26,8 +26,7 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.theorems import Tolerances, theorem, theorems
-from flockana.theorems import observed
+from flockana.theorems import Tolerances, observed, theorem, theorems
 from flockana.theorems.observed import Observed, with_doubt
 
 HERE, ROUND = StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 9.0, 0.05)
@@ -89,7 +88,7 @@ def closer(run, size):
 
 
 def stretched(run, size):
-    """It is half as far again from the first one as at the start: a link longer than any energy allows, and shorter than the range."""
+    """It is half as far again from the first one as at the start: longer than the energy allows, within the range."""
     q, k = run.q.copy(), len(run.q) // 2
     q[k, 1] = q[k, 0] + 1.5 * size * (q[0, 1] - q[0, 0])
     return replace(run, q=q, between=None)
