@@ -168,3 +168,10 @@ def test_a_window_keeps_what_is_known_and_begins_inexactly():
     assert not part.begins_exactly
     assert part.shape_error[-1] == pytest.approx(seen.shape_error[-1], rel=1e-12)
     assert part.shape_error[0].min() > 0.0
+
+
+def test_what_is_remembered_belongs_to_a_run_with_its_error():
+    """Nets of a run that is taken as exact are not those of the same run with an error, whichever was asked first."""
+    seen = observed(SPRING, *START, rtol=1e-3)
+    alone = Observed.alone(seen.run)
+    assert [each.remembered("nets", lambda k=k: k) for k, each in enumerate((alone, seen, alone))] == [0, 1, 0]
