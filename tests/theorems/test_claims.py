@@ -88,6 +88,16 @@ def test_a_claim_refuses_a_status_that_its_hypotheses_do_not_allow(status, about
         Claim("i", status, about=about, needs=(need,))
 
 
+def test_the_error_is_how_far_the_margin_may_be_off_towards_0():
+    """An end on the far side, such as none at all between samples, says nothing of the decision."""
+    claims = [judged("i", Enclosure(*ends)) for ends in ((-np.inf, -3.0, -1.0), (0.5, 3.0, np.inf), (-1.0, 3.0, 4.0))]
+    assert [(c.status, c.margin, c.error) for c in claims] == [
+        ("refuted", -3.0, 2.0),
+        ("verified", 3.0, 2.5),
+        ("inconclusive", 3.0, 4.0),
+    ]
+
+
 def test_a_claim_refuses_an_error_below_0():
     with pytest.raises(ArgumentError, match=r"claim 'i' has error = -1: expected none below 0"):
         Claim("i", "verified", error=-1.0)

@@ -63,7 +63,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
     """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
-    return seen.run.remembered(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
+    return seen.remembered(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
 
 def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
