@@ -15,7 +15,7 @@ from proofs.proof import Proof, Step
 from proofs.smt import implication, impossible
 
 K, D, W = sp.symbols("k d W", positive=True)  # W = ω²
-TAU = sp.Symbol("tau", positive=True)
+TAU, UNIT = sp.symbols("tau unit", positive=True)
 S = sp.Symbol("s")
 OMEGA = sp.sqrt(W)
 SQUARE = (D**2 + sp.sqrt(D**4 + 4 * K**2)) / 2  # ω² where a root crosses
@@ -24,12 +24,14 @@ COSINE, SINE = K / W, OMEGA * D / W  # of ωτ
 
 
 def library_margin() -> tuple[Any, Any]:
-    """(τ*, ω) of the library's code, executed on symbols."""
-    numpy = SimpleNamespace(sqrt=sp.sqrt, hypot=lambda a, b: sp.sqrt(a**2 + b**2), arctan2=sp.atan2)
+    """(τ*, ω) of the library's code, executed on symbols, whatever frequency it takes for a unit."""
+    positive = {"hypot": lambda a, b: sp.sqrt(a**2 + b**2), "arctan2": lambda y, x: sp.atan(y / x)}
+    numpy = SimpleNamespace(sqrt=sp.sqrt, **positive)
     known = {"np": numpy, "float": sp.nsimplify, "inf": inf, "DelayMargin": lambda delay, omega: (delay, omega)}
+    known["max"] = lambda *_: UNIT
     known["ensure_nonnegative"] = lambda name, symbol: symbol  # as it is declared to be
-    margin: tuple[Any, Any] = FunctionType(scalar_margin.__code__, known)(K, D)
-    return margin
+    delay, omega = FunctionType(scalar_margin.__code__, known)(K, D)
+    return sp.simplify(delay), sp.simplify(omega)
 
 
 def inverse_speed() -> sp.Expr:
@@ -61,7 +63,7 @@ def _delay() -> Iterator[Step]:
     )
     yield Step(
         "so the first τ is atan2(ωd, k)/ω, in (0, π/2ω), the library's; the others are whole periods 2π/ω later",
-        sp.simplify(library_margin()[0] * library_margin()[1] - sp.atan2(library_margin()[1] * D, K)) == 0,
+        sp.simplify(library_margin()[0] * library_margin()[1] - sp.atan(library_margin()[1] * D / K)) == 0,
         r"\tau^* = \tfrac1\omega\operatorname{atan2}(\omega d, k)",
     )
     speed = sp.re(sp.expand_complex(inverse_speed().subs(S, sp.I * OMEGA)))

@@ -112,6 +112,10 @@ class ObstacleField:
         return BetaLinks(*map(np.concatenate, zip(empty, *by_obstacle, strict=True)))
 
 
+class InsideObstacleError(ArgumentError):
+    """An agent is inside or on an obstacle, where a law is defined but no run may start."""
+
+
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
     """Raise if an agent is inside or on an obstacle; the error names the first one."""
     inside = np.array([obstacle.contains(q) for obstacle in obstacles]).reshape(len(obstacles), len(q))
@@ -124,11 +128,11 @@ def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
     others = f" ({agents.size} agents do)" if agents.size > 1 else ""
     free = _free_point(q[i], obstacles)
     if free is None:
-        raise ArgumentError(
+        raise InsideObstacleError(
             f"agent {i} at {q[i].tolist()} starts inside {where}{others}, and the overlapping obstacles leave no free "
             "point that pushing it out would find: move the agent or an obstacle"
         )
-    raise ArgumentError(
+    raise InsideObstacleError(
         f"agent {i} at {q[i].tolist()} starts inside {where}{others}: "
         f"expected every agent outside; {free.tolist()} is free"
     )

@@ -12,8 +12,8 @@ from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, with_doubt
-from flockana.theorems.second_run import ensure_fits
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def verify(
     Verdict
 
     A claim about a run carries the error of its integration: the same start is integrated once more, a hundred times
-    more tightly, and both must agree (`flockana.theorems.second_run`). A failed run verifies nothing.
+    more tightly, and both must agree (`flockana.theorems.observed`). A failed run verifies nothing.
 
     Raises
     ------

@@ -121,8 +121,12 @@ def limit_claim(
         best, by_numbers, margin = escape, "refuted", Enclosure.around(-escape.margin, escape.error)
     claim = concluded(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
     proved = claim.status == "verified" and not best.certain
-    parts = (detail, "proved for every start") if proved else (detail, best.text, "" if best.certain else evidence)
-    return replace(claim, detail="; ".join(part for part in parts if part))
+    if proved:  # no number of this run says how far it holds
+        return replace(
+            claim, margin=None, error=None, detail="; ".join(filter(None, (detail, "proved for every start")))
+        )
+    parts = (detail, best.text, "" if best.certain else evidence)
+    return replace(claim, detail="; ".join(filter(None, parts)))
 
 
 def without_assumed(needs: Iterable[Hypothesis], make: Callable[[list[Hypothesis]], Claim]) -> Claim:

@@ -11,29 +11,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.base.vectors import centres, lengths
-from flockana.dynamics.between import Between
+from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.tolerance import FINEST, Floors
+from flockana.dynamics.tolerance import Floors
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
+from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
 from flockana.theorems.theorem import Claim, Status
 
-TIGHTER = 1e-2  # the second run's tolerances over the first's
-DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
-RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
-_MOST = 2**23  # numbers of the second run that are kept at the steps of the first
-_LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
-_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
+_Value = TypeVar("_Value")
 
 
 class End(NamedTuple):
@@ -48,16 +42,6 @@ class End(NamedTuple):
     def distance(self) -> float:
         """Largest distance from the true state, over all coordinates."""
         return float(np.linalg.norm(self.q_error))
-
-
-class _Errors(NamedTuple):
-    """Half widths of x_i − x_c, of v_i − v_c, shape (S, n), and of x_c and v_c, shape (S,), at some times."""
-
-    t: FloatArray
-    shape: FloatArray
-    speed: FloatArray
-    centre: FloatArray
-    drift: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,19 +65,19 @@ class Observed:
     given: Trajectory
     run: Trajectory
     other: Trajectory
-    errors: _Errors
+    errors: Errors
     doubt: str = ""
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
         """Return a run as observed, with its second run; kept with the run."""
-        return run.remembered("observed", lambda: _observed(run))
+        return run.remembered("observed", lambda: cls(run, *paired(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
         """Return a run as if it were exact but for rounding: of one of two runs whose claims are compared."""
         zeros = np.zeros((len(run.t), run.n))
-        return cls(run, run, run, _Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), _own_doubt(run))
+        return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_of(run))
 
     @property
     def law(self) -> Any:
@@ -174,7 +158,7 @@ class Observed:
             return np.zeros((len(start), *errors.shape[1:]))
         unit, times = self.run.scales.time, self.errors.t
         first = np.searchsorted(times, start - unit)
-        return _largest(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
+        return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
         """Return both runs as seen from another frame, in which no distance between agents is another.
@@ -199,6 +183,24 @@ class Observed:
         worst: FloatArray = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
         return worst + _rounding(self.run.p)
 
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """Return what was computed from this run and its errors before, or is now.
+
+        Parameters
+        ----------
+        name : str
+            What it is.
+        compute : callable
+            Gives it.
+        """
+        if name not in self._memory:
+            self._memory[name] = compute()
+        return self._memory[name]  # type: ignore[no-any-return]
+
+    @cached_property
+    def _memory(self) -> dict[str, Any]:
+        return {}
+
     # observables ---------------------------------------------------------------------------------------------------
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
@@ -219,7 +221,7 @@ class Observed:
         if not self.is_map:
             unit = self.run.scales.time
             first = np.searchsorted(self.t, self.t - unit)
-            apart = _largest(apart, first, np.searchsorted(self.t, self.t + unit, side="right"))
+            apart = largest_over(apart, first, np.searchsorted(self.t, self.t + unit, side="right"))
             if self.begins_exactly:
                 apart[0] = 0.0
         return Enclosure.around(best, apart + floor)
@@ -239,7 +241,7 @@ class Observed:
     @cached_property
     def distances_from_centre(self) -> Enclosure:
         """‖q_i − q_c‖ at each sample, shape (T, n)."""
-        return Enclosure.around(lengths(_centred(self.run.q)), self.shape_error).clip(0.0)
+        return Enclosure.around(lengths(centred(self.run.q)), self.shape_error).clip(0.0)
 
     @cached_property
     def radius(self) -> Enclosure:
@@ -249,17 +251,17 @@ class Observed:
     @cached_property
     def relative_speeds(self) -> Enclosure:
         """‖p_i − p_c‖ at each sample, shape (T, n)."""
-        return Enclosure.around(lengths(_centred(self.run.p)), self.speed_error).clip(0.0)
+        return Enclosure.around(lengths(centred(self.run.p)), self.speed_error).clip(0.0)
 
     @cached_property
     def spread(self) -> Enclosure:
         """√Σ‖q_i − q_c‖² at each sample, shape (T,)."""
-        return _norm(_centred(self.run.q), self.shape_error)
+        return _norm(centred(self.run.q), self.shape_error)
 
     @cached_property
     def velocity_spread(self) -> Enclosure:
         """√Σ‖p_i − p_c‖² at each sample, shape (T,)."""
-        return _norm(_centred(self.run.p), self.speed_error)
+        return _norm(centred(self.run.p), self.speed_error)
 
     @cached_property
     def mismatch(self) -> Enclosure:
@@ -301,28 +303,6 @@ class Observed:
     def until(self, count: int) -> str:
         """Return up to which time the first so many samples reach, in words."""
         return f"to t = {self.t[count - 1]:.4g}" if count else "at no time"
-
-
-def _observed(run: Trajectory) -> Observed:
-    if isinstance(run.law, DiscreteLaw):
-        return Observed(run, run, run, _nothing_known(run), _own_doubt(run))
-    doubt = _own_doubt(run)
-    if doubt:
-        return Observed(run, run, run, _nothing_known(run), doubt)
-    steps, states = _steps_in_common(run)
-    tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
-    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
-    if again.status != "complete" or len(again.t) != len(steps):
-        kind = "tighter" if tight else "looser"
-        doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
-        return Observed(run, run, run, _nothing_known(run), doubt)
-    errors = _errors(again, states)
-    thinned = _at_samples_of(again, run.t)
-    first, second = (thinned, run) if tight else (run, thinned)
-    found = Observed(run, first, second, errors)
-    place, speed, _ = found.floors
-    least = (place, speed, place, speed)
-    return replace(found, errors=_Errors(errors.t, *map(np.maximum, errors[1:], least)))
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
@@ -374,84 +354,6 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
 
 
-def _own_doubt(run: Trajectory) -> str:
-    if reason := failure(run):
-        return reason
-    return "one sample shows no motion" if len(run.t) == 1 else ""
-
-
-def failure(run: Trajectory) -> str:
-    """Return why a run is none of its law, or an empty text: it failed, or a state is outside the law's domain."""
-    if run.status == "failed":
-        return f"the run failed: {run.message}"
-    if isinstance(run.law, DiscreteLaw):  # a step may lead anywhere
-        return ""
-    for k in np.unique(np.linspace(0, len(run.t) - 1, _LOOKED_AT).astype(int)):
-        try:
-            run.law.check_start(run.q[k], run.p[k])
-        except ArgumentError as error:
-            return f"the run left the domain of its law before t = {run.t[k]:.6g}: {error}"
-    return ""
-
-
-def _nothing_known(run: Trajectory) -> _Errors:
-    unknown = np.full((1, run.n), np.inf)
-    return _Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
-
-
-def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Times at which the two runs are compared, samples and steps of the first, and its states there."""
-    path = run.path
-    stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
-    keep = np.isin(path.t, run.t)
-    keep[::stride] = True
-    return path.t[keep], (path.q[keep], path.p[keep])
-
-
-def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> _Errors:
-    """Half widths from the difference of two runs at their common times."""
-    apart = [(_centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
-    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
-    return _Errors(again.t, shape, speed, centre, drift)
-
-
-def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
-    """The run at some of its samples, the others kept as steps between them."""
-    if len(t) == len(run.t):
-        return run
-    keep, path = np.isin(run.t, t), run.path
-    between = ~np.isin(path.t, t)
-    extra = {name: series[keep] for name, series in run.extra.items()}
-    steps = Between(path.t[between], path.q[between], path.p[between], path.u[between], path.slack)
-    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
-
-
-def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False) -> Trajectory:
-    """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
-
-    A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
-    """
-    stats, span = run.stats, (float(times[0]), float(times[-1]))
-    options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
-    if "rtol" in stats:
-        method = stats.get("method", "DOP853")
-        options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
-        options["atol"] = _scaled(stats.get("atol"), factor)
-    elif own_step and "dt" in stats:
-        options = {"method": "RK4", "dt": stats["dt"]}
-    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
-
-
-def _scaled(atol: Any, factor: float) -> Any:
-    """An absolute tolerance, one number or several, multiplied by a factor; None stays None."""
-    return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
-
-
-def _centred(x: FloatArray) -> FloatArray:
-    centred: FloatArray = x - centres(x)[:, None]
-    return centred
-
-
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
     """Norm over all agents of vectors, each known to an error."""
     sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
@@ -465,17 +367,3 @@ def _rounding(x: FloatArray) -> float:
 
 def _work_rounding(run: Trajectory) -> float:
     return float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
-
-
-def _largest(values: FloatArray, first: Any, stop: Any) -> FloatArray:
-    """Largest of the rows from `first` to before `stop`, one result for each range, by ranges of doubled lengths."""
-    first, stop = np.asarray(first), np.minimum(stop, len(values))
-    first = np.minimum(first, stop - 1)
-    level = np.floor(np.log2(stop - first)).astype(int)
-    largest, table, size = np.empty((len(first), *values.shape[1:])), values, 1
-    for k in range(int(level.max(initial=0)) + 1):
-        here = np.flatnonzero(level == k)
-        largest[here] = np.maximum(table[first[here]], table[stop[here] - size])
-        table = np.maximum(table[:-size], table[size:]) if len(table) > size else table
-        size *= 2
-    return largest

@@ -131,7 +131,7 @@ class Claim:
     margin : float, optional
         How far the claim holds (positive) or fails (negative).
     error : float, optional
-        Numerical error of the margin; a margin below it is inconclusive.
+        How far the margin may be off towards 0 and beyond; a margin of a smaller size is inconclusive.
     witness : object
         What shows it: a time, a pair of agents, an eigenvalue, an expression.
     proof, disproof : str, optional

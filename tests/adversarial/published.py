@@ -24,12 +24,23 @@ _SAME, _ERROR, _PRINTED = 1e-4, 0.05, 0.02  # relative: integrators and BLAS dif
 _NOISE, _TIMES = 1e-7, 100.0  # what is below may come from rounding alone, and be so many times as large,
 _NOTHING = 1e-14  # or nothing at all
 _OF_RUN = 1e-3  # relative, of a margin beyond the errors
-_ROUNDED = 1e-18  # an error of nothing
 
 
 def data_of(verdict):
     """What a verdict says, as plain data."""
-    kept = ("name", "status", "rigour", "proof", "computed", "stated", "margin", "error", "witness", "detail")
+    kept = (
+        "name",
+        "status",
+        "rigour",
+        "proof",
+        "disproof",
+        "computed",
+        "stated",
+        "margin",
+        "error",
+        "witness",
+        "detail",
+    )
     return {claim.pop("name"): claim for claim in ({k: c[k] for k in kept} for c in verdict.to_dict()["claims"])}
 
 
@@ -44,11 +55,11 @@ def published_runs():
     return json.loads(_RUNS.read_text("utf-8"))
 
 
-def changes_of_run(name, run, verdicts):
+def changes_of_run(name, verdicts):
     """Where margins are off what was published by more than their errors, errors are of another size, or what was
-    computed is another number or text; and where a theorem says another thing of this run alone, without a second one.
+    computed is another number or text.
     """
-    was, now = published_runs()[name], {verdict.theorem: _said_of_run(verdict, run) for verdict in verdicts}
+    was, now = published_runs()[name], {verdict.theorem: _said_of_run(verdict) for verdict in verdicts}
     if was.keys() != now.keys() or any(was[key].keys() != now[key].keys() for key in was):
         return [f"{name}: other claims or hypotheses than published"]
     return [
@@ -59,7 +70,7 @@ def changes_of_run(name, run, verdicts):
     ]
 
 
-def _said_of_run(verdict, run):
+def _said_of_run(verdict):
     """Status and margin of each hypothesis; of each claim its error, its value, and how it is known."""
     said = verdict.to_dict()
     needs = {need["name"]: [need["status"], need["margin"]] for need in said["hypotheses"]}
@@ -75,20 +86,12 @@ def _as_published(before, after):
     (status, margin, *more), (found, other, *rest) = before, after
     if not more:
         return status == found and near(number(margin), number(other), 0.0, 0.0)
-    (error, computed, alone, *known), (own, new, by_itself, *how) = more, rest
+    (error, computed, *known), (own, new, *how) = more, rest
     return (
         (status, known) == (found, how)
         and near(number(margin), number(other), number(error), number(own))
         and _same_of_run(computed, new, max(number(error), number(own)))
-        and _same_error(number(alone), number(by_itself))
     )
-
-
-def _same_error(was, now):
-    """An error by a formula, which is smooth in what it is of: however small, it is the same on every processor."""
-    if not (isfinite(was) and isfinite(now)):
-        return was == now or (isnan(was) and isnan(now))
-    return abs(was - now) <= max(_ERROR * max(was, now), _ROUNDED)
 
 
 def _same_of_run(was, now, error):
@@ -162,9 +165,9 @@ def write():
         entry = scenario(name)
         entry.verify(entry.run())  # compiled and loaded from here on
         start = process_time()
-        verdicts = entry.verify(run := entry.run())
+        verdicts = entry.verify(entry.run())
         if (name in before or process_time() - start <= LONG) and name not in ROUNDED:
-            runs[name] = {verdict.theorem: _said_of_run(verdict, run) for verdict in verdicts}
+            runs[name] = {verdict.theorem: _said_of_run(verdict) for verdict in verdicts}
     for file, data in ((_FILE, fixed), (_RUNS, runs)):
         file.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", "utf-8")
 

@@ -60,7 +60,7 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
 def test_short_runs_say_what_was_published(name):
     """Status, margin and size of the error, claim by claim."""
     entry = scenario(name)
-    found = changes_of_run(name, run := entry.run(), entry.verify(run))
+    found = changes_of_run(name, entry.verify(entry.run()))
     assert found == [], "if it is meant: python -m tests.adversarial.published"
 
 

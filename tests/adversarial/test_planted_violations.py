@@ -1,8 +1,8 @@
 """Each theorem about runs is fed a violation that an integrator did not make, and one that it may have made.
 
-A run is edited at one instant, and so is the tighter second run that `verify` holds it against. If both show nearly the
-same violation it is far beyond the error of integration, and the claim is refuted; if only the first one does, the
-violation is within that error, and the claim is inconclusive. Neither ever reads verified.
+A run is edited at one instant, and so is the tighter second run that encloses it. If both show nearly the same
+violation it is far beyond the error of integration: the claim is refuted, or contradicts its proof aloud. If only one
+does, the violation is within that error, and the numbers decide nothing. Neither ever verifies.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.theorems import Tolerances, theorem, theorems
-from flockana.theorems.second_run import corroborated
+from flockana.theorems import Tolerances, observed, theorem, theorems
+from flockana.theorems.observed import Observed, with_doubt
 
 HERE, ROUND = StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 9.0, 0.05)
 APART, NEAR = [[0.0, 0.0], [7.5, 0.0]], [[0.0, 0.0], [1.2, 0.0]]
@@ -87,6 +87,13 @@ def closer(run, size):
     return replace(run, q=q, between=None)
 
 
+def stretched(run, size):
+    """A link half as long again as at the start: longer than any energy allows, and shorter than the range."""
+    q, k = run.q.copy(), len(run.q) // 2
+    q[k, 1] = q[k, 0] + 1.5 * size * (q[0, 1] - q[0, 0])
+    return replace(run, q=q, between=None)
+
+
 def at_half_time(run, **added):
     changed = {name: getattr(run, name).copy() for name in added}
     for name, value in added.items():
@@ -114,10 +121,11 @@ PLANTED = [
     ("ha-liu-sharp", "bounded", "alignment", away),
     ("ha-liu-sharp", "rate", "alignment", hurried),
     ("links-kept", "balance", "links", lifted),
-    ("links-kept", "links", "links", away),
+    ("links-kept", "links", "links", stretched),
+    ("os-1", "iii", "algorithm 1", crossed),
+    ("os-1", "iii-barrier", "algorithm 1", crossed),
     ("os-3", "i", "algorithm 2", away),
     ("os-3", "iv-none", "algorithm 2", crossed),
-    ("os-6", "balance", "algorithm 3", lifted),
     ("su-informed", "distance", "informed", away),
     ("su-varying", "centre", "told", away),
     ("tanner-fixed", "energy", "fixed net", lifted),
@@ -132,32 +140,44 @@ EXCEPT = {
     "jlm-headings": "a map has no second run; headings keep their span to the bit: test_a_heading_that_leaves_its_span",
     "lattice-limit-printed": "about a limit, judged by the equilibrium beside the end; test_planted_limits",
     "linearised-decay-terminal": "about the linearisation at the end; test_following",
-    "os-1": "what fails under an assumed hypothesis is never refuted: test_a_collision_may_refute_what_is_assumed",
     "os-5-terminal": "about a configuration, the end of the run; test_planted_nets",
     "zone-1-printed": "false of the run as it is; test_trees",
+    "os-6": "an assumed hypothesis: test_a_violation_refutes_nothing_under_what_is_assumed",
     "E11": "about a limit, judged by the equilibrium beside the end; test_planted_limits",
     "E12": "it makes its own runs; test_following",
 }
 
 
-def claim_of(name, part, first, second):
-    """A claim on one run, held against another as `verify` holds it against a tighter one."""
-    first.remembered("second run", lambda: second)
-    second.remembered("second run", lambda: second)  # some claims ask for it themselves
-    tolerances, item = Tolerances(), theorem(name)
-    claims = corroborated(item.examine(first, tolerances)[1], first, lambda again: item.examine(again, tolerances)[1])
-    return next(claim for claim in claims if claim.name == part)
+NEARLY = 1.0 - 1e-6  # of a violation, in the second run
+
+
+@pytest.fixture
+def claim_of(monkeypatch):
+    """A claim of a theorem about one run that another encloses, as if that were its tighter second run."""
+
+    def found(name, part, first, second):
+        monkeypatch.setattr(observed, "integrated", lambda *_: replace(second, between=None))
+        seen = Observed.of(replace(first, between=None))
+        claims = with_doubt(theorem(name).examine(seen, Tolerances())[1], seen)
+        return next(claim for claim in claims if claim.name == part)
+
+    return found
 
 
 @pytest.mark.parametrize(("name", "part", "base", "plant"), PLANTED)
-def test_a_violation_is_refuted_if_it_is_larger_than_the_error_and_inconclusive_if_not(name, part, base, plant):
+def test_a_violation_decides_if_it_is_larger_than_the_error_and_nothing_if_not(claim_of, name, part, base, plant):
     run = run_of(base)
-    assert claim_of(name, part, replace(run), replace(run)).status in ("verified", "inconclusive")
-    found = claim_of(name, part, plant(run, 1.0), plant(run, 0.98))
-    assert found.status == "refuted"
+    unharmed = claim_of(name, part, run, run)
+    assert unharmed.status in ("verified", "inconclusive")
+    assert not unharmed.contradicts
+    found = claim_of(name, part, plant(run, 1.0), plant(run, NEARLY))
+    assert found.status == ("inconclusive" if found.contradicts else "refuted")
+    assert bool(found.contradicts) == bool(unharmed.proof)
     assert 0.0 <= found.error < -found.margin
-    assert claim_of(name, part, plant(run, 1.0), replace(run)).status == "inconclusive"
-    assert claim_of(name, part, replace(run), plant(run, 1.0)).status == "inconclusive"
+    for one, other in ((plant(run, 1.0), run), (run, plant(run, 1.0))):
+        claim = claim_of(name, part, one, other)
+        assert not claim.contradicts
+        assert claim.status == "inconclusive" or (claim.status == "verified" and claim.proof)
 
 
 def test_every_theorem_about_runs_is_fed_one_or_says_why_not():
@@ -166,23 +186,25 @@ def test_every_theorem_about_runs_is_fed_one_or_says_why_not():
     assert not {row[0] for row in PLANTED} & set(EXCEPT)
 
 
-@pytest.mark.parametrize("part", ["iii", "iii-barrier"])
-def test_a_collision_may_refute_what_is_assumed(part):
-    """Theorem 1 speaks of all solutions of a level set: a collision may as well mean that one of them is no flock."""
-    run = run_of("algorithm 1")
-    found = claim_of("os-1", part, crossed(run, 1.0), crossed(run, 0.98))
-    assert (found.status, found.margin < -found.error) == ("inconclusive", True)
+def test_a_violation_refutes_nothing_under_what_is_assumed(claim_of):
+    """Theorem 6: of an edited run it is not known whether an agent enters an obstacle between two samples."""
+    run = run_of("algorithm 3")
+    found = claim_of("os-6", "balance", lifted(run, 1.0), lifted(run, NEARLY))
+    assert "assumed" in {need.status for need in found.needs}
+    assert (found.status, found.contradicts, found.margin < -found.error) == ("inconclusive", "", True)
 
 
-@pytest.mark.parametrize(("out", "hull"), [(0.0, "verified"), (1e-15, "refuted"), (1.0, "refuted")])
+@pytest.mark.parametrize(("out", "hull"), [(0.0, "verified"), (1e-15, "inconclusive"), (1.0, "inconclusive")])
 def test_a_heading_that_leaves_its_span(out, hull):
-    """A map is exact: one bit beyond the span of the headings before is too much."""
+    """A map is exact: one bit beyond the span of the headings before contradicts the proof."""
     law = HeadingAveraging(range=1.0, speed=0.2, dt=1.0)
     run = simulate(law, [[0.0, 0.0], [0.5, 0.0]], law.velocities([1.0, 2.0]), (0.0, 12.0))
     heading = run.extra["heading"].copy()
     heading[6, 0] += out
     edited = replace(run, extra={**run.extra, "heading": heading})
-    assert next(c for c in theorem("jlm-headings").examine(edited, Tolerances())[1] if c.name == "hull").status == hull
+    claims = theorem("jlm-headings").examine(Observed.of(edited), Tolerances())[1]
+    claim = next(claim for claim in claims if claim.name == "hull")
+    assert (claim.status, claim.contradicts) == (hull, "headings" if out else "")
 
 
 ROUGH = [{"rtol": 1e-2, "atol": 1e-2}, {"rtol": 1e-4, "atol": 1e-4}, {"method": "RK4", "dt": 0.5}]
@@ -199,9 +221,11 @@ def test_a_loosely_integrated_run_reads_inconclusive_and_never_the_opposite(base
             assert {claim.status, fine[claim.name]} != {"verified", "refuted"}, (name, claim)
 
 
-def test_what_an_integrator_spoils_is_inconclusive():
-    """The balance of a run at steps of half a unit of time is off by far more than is allowed."""
+def test_what_an_integrator_spoils_the_tighter_run_mends():
+    """The balance of a run at steps of half a unit of time is off by far more than is allowed: the error tells it."""
     run = simulate(*RUNS["algorithm 1"](), (0.0, 2.0), method="RK4", dt=0.5)
-    balance = verify("energy", run).claim("balance")
-    assert balance.margin < -1e-6
-    assert balance.status == "inconclusive"
+    off = np.abs(run.energy_residual).max()
+    assert off > 1e-5 * np.abs(run.energy()).max()
+    seen = Observed.of(run)
+    assert np.abs(seen.residual.mid).max() < 1e-6 * off
+    assert seen.residual.half_width.max() == pytest.approx(2.0 * off, rel=0.01)

@@ -81,7 +81,7 @@ def test_a_moment_after_the_start_nothing_has_settled(until):
     law = Algorithm2(target=ORIGIN)
     rng = np.random.default_rng(3)
     q = rng.uniform(-10.0, 10.0, (6, 2))
-    hold("os-3", Case(law, q, 0.0 * q, until), {"ii": OPEN, "iii": OPEN})
+    hold("os-3", Case(law, q, 0.0 * q, until), {"ii": OPEN, "iii": VERIFIED})  # iii is proved of every start
 
 
 @pytest.mark.parametrize("until", [0.05, 1.0])
@@ -91,11 +91,12 @@ def test_two_agents_that_part_for_ever_are_not_cohesive(until):
 
 
 @pytest.mark.parametrize("name", ["alpha-flocking", "alpha-flocking-strict", "os-1", "os-3", "E13", "collision-energy"])
-def test_one_sample_decides_no_claim_about_a_run(name):
+def test_one_sample_decides_no_claim_about_a_run_that_is_not_proved(name):
     law = Algorithm1() if name != "os-3" and name != "E13" else Algorithm2(target=ORIGIN)
     run = Case(law, [[0.0, 0.0], [6.0, 0.0]], [[0.0, 0.0], [-1.0, 0.0]], 5.0, {"t_eval": [0.0]}).run()
     moving = {"i", "ii", "iii", "giant", "cohesive", "deviation", "mismatch", "flock", "below", "twice", "iv-none"}
-    assert {c.name: c.status for c in verify(name, run).claims if c.name in moving and c.status in decided} == {}
+    claims = [c for c in verify(name, run).claims if c.name in moving and c.rigour == "numeric"]
+    assert {c.name: c.status for c in claims if c.status in decided} == {}
 
 
 # --- runs that failed, blew up or are not the law's -----------------------------------------------------------------
@@ -324,7 +325,7 @@ def test_a_tree_at_its_own_equilibrium_is_not_refuted():
 def test_micrometres_are_not_at_rest_after_a_hundredth_of_a_second():
     law = Algorithm2(AlphaInteraction(d=7e-6, r=8.4e-6, unit=1e-6, eps=1e11), target=ORIGIN)
     q = 1e-6 * np.random.default_rng(3).uniform(-10.0, 10.0, (6, 2))
-    hold("os-3", Case(law, q, 0.0 * q, 0.01), {"ii": OPEN, "iii": OPEN})
+    hold("os-3", Case(law, q, 0.0 * q, 0.01), {"ii": OPEN, "iii": VERIFIED})
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e3, 1e-6])

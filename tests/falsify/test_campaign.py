@@ -26,6 +26,7 @@ from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, t
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.slides.energy_printed import _printed_rate
 from tests.programs import Starts, out_of_a_kernel
@@ -80,7 +81,7 @@ class TestFindsWhatIsFalse:
         assert found.statuses["lattice"][0] != "refuted"
         assert found.found
         assert found.evaluations > 1
-        assert final_basin(found.run()).certificate.margin > 0.0  # for ever
+        assert final_basin(Observed.of(found.run())).certificate.margin > 0.0  # for ever
         end = found.run().q[-1]
         assert np.linalg.norm(end[0] - end[4]) < 1e-6  # two agents have become one
         assert found.margin == pytest.approx(-1.0, abs=1e-5)

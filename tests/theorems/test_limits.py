@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.theorems.limits import Certificate, best_of, evidence
+from flockana.theorems.limits import Certificate, best_of, evidence, limit_claim
 
 T = np.linspace(0.0, 80.0, 801)
 
@@ -28,3 +28,17 @@ def test_the_surest_certificate_counts_and_one_that_is_nan_does_not():
     assert best_of([lost, wide, sure]).text == "sure"
     assert [each.certain for each in (lost, wide, sure)] == [False, False, True]
     assert best_of([lost]).certain is False
+
+
+def test_a_limit_that_a_proof_alone_verifies_has_no_margin():
+    proved = limit_claim("i", [], [Certificate(-0.5, "no basin")], proof="cohesion", detail="x", evidence="falls")
+    assert (proved.status, proved.margin, proved.error, proved.detail) == (
+        "verified",
+        None,
+        None,
+        "x; proved for every start",
+    )
+    caught = limit_claim("i", [], [Certificate(0.5, "a basin")], proof="cohesion", detail="x", evidence="falls")
+    assert (caught.margin, caught.detail) == (0.5, "x; a basin")
+    parted = limit_claim("i", [], escape=Certificate(0.5, "they part"), proof="cohesion")
+    assert (parted.status, parted.contradicts, parted.margin) == ("inconclusive", "cohesion", -0.5)

@@ -12,9 +12,12 @@ import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems import Claim
-from flockana.theorems import observed as module
-from flockana.theorems.observed import Observed, by_both_runs, failure, observed, with_doubt
+from flockana.theorems import Claim, Theorem, verify
+from flockana.theorems import second_runs as module
+from flockana.theorems.claims import judged
+from flockana.theorems.observed import Observed, by_both_runs, observed, with_doubt
+from flockana.theorems.olfati_saber.attraction import final_basin
+from flockana.theorems.second_runs import failure
 
 SPRING = fl.Algorithm2(
     gains=fl.Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0), target=fl.StaticTarget((0.0,))
@@ -168,3 +171,57 @@ def test_a_window_keeps_what_is_known_and_begins_inexactly():
     assert not part.begins_exactly
     assert part.shape_error[-1] == pytest.approx(seen.shape_error[-1], rel=1e-12)
     assert part.shape_error[0].min() > 0.0
+
+
+def test_what_is_computed_once_is_kept_with_what_is_known_of_the_errors():
+    """At the finest tolerances the run itself is the tighter of the two, seen with its error or as if exact."""
+    run = fl.simulate(fl.Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 20.0), rtol=1e-13)
+    exact = final_basin(Observed.alone(run))
+    known = Observed.of(run)
+    assert known.run is run
+    assert final_basin(known).distance > 5.0 * exact.distance
+    assert final_basin(known) is final_basin(Observed.of(run))
+
+
+def returns_to_the_start(bound):
+    """After one period a harmonic oscillator is at its start: true of the law for every bound > 0."""
+
+    def check(seen, tolerances):
+        away = seen.series(lambda run: np.abs(run.q[:, 0, 0] - run.q[0, 0, 0]))[-1]
+        return [], [judged("back", bound - away)]
+
+    return Theorem(
+        "ours",
+        "back after a period",
+        "A statement that is long enough to be read by a person.",
+        "ours",
+        "trajectory",
+        check,
+    )
+
+
+def oscillation(**how):
+    return fl.simulate(SPRING, [[1.0]], [[0.0]], (0.0, 2.0 * np.pi), **how)
+
+
+@pytest.mark.parametrize("bound", [1e-2, 1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize(
+    "how", [{"method": "RK4", "dt": 0.3}, {"rtol": 1e-4, "atol": 1e-6}, {}, {"method": "RK23", "rtol": 1e-3}]
+)
+def test_a_true_claim_is_never_refuted_by_the_integrator(bound, how):
+    run = oscillation(**how)
+    error = abs(float(run.q[-1, 0, 0]) - 1.0)
+    status = verify(returns_to_the_start(bound), run).status
+    assert status in ("verified", "inconclusive")
+    if error < 0.2 * bound:
+        assert status == "verified"
+
+
+def test_the_error_that_is_shown_holds_the_error_of_the_run():
+    """Twice what the run is off by, x = cos t being exact, at worst within one law time."""
+    run = oscillation(method="RK4", dt=0.3)
+    late = run.t >= run.t[-1] - run.scales.time
+    claim = verify(returns_to_the_start(0.5), run).claims[0]
+    assert claim.status == "verified"
+    assert claim.error == pytest.approx(2.0 * np.abs(run.q[late, 0, 0] - np.cos(run.t[late])).max(), rel=1e-2)
+    assert claim.error > 1e-4

@@ -160,3 +160,24 @@ def test_no_claim_has_an_error_below_0():
     assert Claim("i", "verified", margin=1.0, error=0.0).error == 0.0
     with pytest.raises(ArgumentError, match="claim 'i' has error = -1e-13: expected none below 0"):
         Claim("i", "verified", margin=1.0, error=-1e-13)
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        ({"energy": 0.0}, r"tolerances.energy = 0: expected a number > 0"),
+        ({"force": float("nan")}, r"tolerances.force = nan"),
+        ({"settle": 1.0}, r"tolerances.settle = 1: expected a share below 1"),
+        ({"giant": 2.0}, r"tolerances.giant = 2: expected a share below 1"),
+        ({"contact": "x"}, r"tolerances.contact = 'x'"),
+        ({"settle": -0.1}, r"tolerances.settle = -0.1: expected a number >= 0"),
+    ],
+)
+def test_tolerances_are_validated(bad, message):
+    with pytest.raises(ArgumentError, match=message):
+        Tolerances(**bad)
+
+
+def test_verify_takes_tolerances_and_nothing_like_them():
+    with pytest.raises(ArgumentError, match=r"tolerances = \{\}: expected flockana.Tolerances"):
+        verify("E8", tolerances={})

@@ -68,7 +68,7 @@ def as_the_leader_sees(seen: Observed) -> Observed:
 
     Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs away.
     """
-    return seen.run.remembered("leader's frame", lambda: seen.transformed(_seen))
+    return seen.remembered("leader's frame", lambda: seen.transformed(_seen))
 
 
 def _seen(run: Trajectory) -> Trajectory:

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.theorems.claims import counted, judged
-from flockana.theorems.enclosure import Enclosure, Real, stacked
+from flockana.theorems.enclosure import Enclosure, Real
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import condition, has_lattice
 from flockana.theorems.leads import bridge
@@ -54,7 +54,7 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
     before = int(np.searchsorted(t, start, side="right")) - 1
     lead = t[before] < start and not seen.is_map  # a map is nowhere between its steps
     begin = float(t[before]) if lead else start
-    part = seen.run.remembered(f"window from {begin!r}", lambda: seen.window(begin, float(t[-1])))
+    part = seen.remembered(f"window from {begin!r}", lambda: seen.window(begin, float(t[-1])))
     count = len(part.t) - int(lead)
     detail = f"from t = {part.t[-count]:.4g} to {part.t[-1]:.4g}, at {count} samples"
     return condition("judged over a window", count > 1, detail=detail), _Window(part, int(lead), start)
@@ -64,11 +64,11 @@ def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: 
     """A claim that a quantity stays below a bound: broken at one sample, or kept from each sample to the next."""
     (symbol, what), t = _SYMBOLS[name], part.seen.t[part.first :]
     seen = value[part.first :]
-    margin = stacked([(bound - x).worst for x in (seen, Enclosure(seen.mid.max(), seen.mid.max(), over.hi.max()))])
+    largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
     worst = int(np.argmax(seen.mid))
     return judged(
         name,
-        margin,
+        bound - largest,
         computed=float(seen.mid[worst]),
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},

@@ -22,8 +22,9 @@ from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import counted, judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, positive_room
-from flockana.theorems.observed import DOUBT, Observed
+from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
+from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
 
 Pair = tuple[int, int]

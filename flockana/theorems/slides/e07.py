@@ -12,6 +12,7 @@ from flockana.measures.nets import links, printed_edge_share
 from flockana.theorems.claims import by_count, erratum
 from flockana.theorems.theorem import Claim, Tolerances
 
+_PROOF = "net-measures"
 _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and the range is 1.5
 
 
@@ -50,7 +51,7 @@ def _relative(name: str, share: float, witness: str) -> Claim:
 
 def _number(name: str, share: float, of: int, count: int, stated: str, witness: str, detail: str) -> Claim:
     """Return the claim that a share is a whole number of so many."""
-    proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": "net-measures"}
+    proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
     off = abs(round(of * share) - count)
     return by_count(name, off, computed=share, stated=stated, witness=witness, detail=detail, **proof)
 

@@ -9,7 +9,8 @@ import numpy as np
 from flockana.stability.centre_path import motion
 from flockana.stability.tracking import response_ratio
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import DOUBT, Observed
+from flockana.theorems.observed import Observed
+from flockana.theorems.second_runs import DOUBT
 
 
 def measured_ratio(seen: Observed) -> Enclosure:

@@ -128,8 +128,8 @@ def test_samples_that_leave_steps_out_say_nothing():
 def test_a_guarantee_that_rounds_to_nothing_is_not_missed():
     """A long path contracts by 1 - 1e-30, which is 1 in floating point; who hears whom is not."""
     headings = np.array([[0.0, 1.0], [0.0, 1.0]])
-    for mixes, status in ((True, "verified"), (False, "refuted")):
-        assert _contraction(headings, (Block(0, 1, 1.0, 1e-12, mixes),)).status == status
+    for mixes, contradicts in ((True, ""), (False, "headings")):
+        assert _contraction(headings, (Block(0, 1, 1.0, 1e-12, mixes),), []).contradicts == contradicts
 
 
 def test_who_hears_one_agent_is_counted_in_whole_numbers():

@@ -10,6 +10,7 @@ import pytest
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.cucker_smale import CuckerSmale
+from flockana.theorems.observed import Observed
 
 PSI = {True: 3.0, False: 6.0}  # λψ(0) for K = 3: the sum of one term, divided by n = 2, counts both ends
 
@@ -29,17 +30,19 @@ def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
     slow, _ = pair(start, 0.4 * room, mean=mean, way=way)
     bounded = slow.claim("bounded")
     assert slow.claim("parts").status == "vacuous"
-    assert bounded.margin == pytest.approx(0.6, rel=1e-10)
-    assert bounded.error == pytest.approx(1e-11 * 1.4, rel=1e-3)
+    assert (bounded.status, bounded.proof) == ("verified", "cucker-smale")
+    assert bounded.needs[-1].margin == pytest.approx(0.6 * room, rel=1e-10)
+    assert bounded.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
     end = tan(atan(start) + 0.4 * room / PSI[mean])
     assert f"they end {end:.6g} apart" in bounded.detail
     fast, run = pair(start, 1.5 * room, mean=mean, way=way)
     parts = fast.claim("parts")
     assert fast.claim("bounded").status == "vacuous"
-    assert parts.margin == pytest.approx(1.0 / 3.0, rel=1e-10)
-    assert parts.error == pytest.approx(1e-11 * 2.5 / 1.5, rel=1e-3)
-    assert parts.computed == pytest.approx(way * float(run.p[-1, 1, 0] - run.p[-1, 0, 0]), rel=1e-14)
-    assert f"they part at {0.5 * room:.6g} or more for ever" in parts.detail
+    assert (parts.status, parts.proof) == ("verified", "cucker-smale")
+    assert parts.needs[-1].margin == pytest.approx(0.5 * room, rel=1e-10)
+    assert parts.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
+    assert parts.computed == pytest.approx(way * float(run.p[-1, 1, 0] - run.p[-1, 0, 0]), rel=1e-7)
+    assert f"their relative speed never falls below {0.5 * room:.6g}" in parts.detail
 
 
 def test_at_the_integral_itself_it_is_open():
@@ -49,23 +52,24 @@ def test_at_the_integral_itself_it_is_open():
 
 def test_a_weight_that_falls_slowly_matches_all():
     bounded = pair(0.5, 1e3, decay=0.5)[0].claim("bounded")
-    assert (bounded.margin, bounded.error, bounded.status) == (1.0, 0.0, "verified")
+    assert (bounded.status, bounded.needs[-1].status, bounded.needs[-1].margin) == ("verified", "met", inf)
 
 
 def test_far_from_the_origin_the_start_itself_is_rounded():
     verdict, run = pair(0.5, 1.0, far=1e9)
-    error = 4.0 * np.finfo(float).eps * 6.0 * float(np.abs(run.q).max())
-    assert verdict.claim("bounded").error == pytest.approx(error / (6.0 * (pi / 2.0 - atan(0.5))), rel=1e-3)
+    error = 2.0 * (2 + 4) * np.finfo(float).eps * float(np.abs(run.q).max())  # of x(0): ∫λψ falls by 6/(1 + x²) of it
+    assert verdict.claim("bounded").needs[-1].error == pytest.approx(error * 6.0 / 1.25, rel=1e-3)
 
 
 def test_the_invariant_is_that_of_the_whole_run():
     """Along the run w falls by the integral between; its largest deviation is what the claim says."""
     verdict, run = pair(-1.0, 3.0, until=2.0)
+    run = Observed.of(run).run
     x, w = (z[:, 1, 0] - z[:, 0, 0] for z in (run.q, run.p))
     off = np.abs((w + 6.0 * (np.arctan(x) - np.arctan(x[0]))) / w[0] - 1.0)
     claim = verdict.claim("invariant")
     assert claim.computed == pytest.approx(off.max(), abs=1e-14)
-    assert claim.margin == pytest.approx(fl.Tolerances().energy - off.max(), rel=1e-9)
+    assert claim.margin == pytest.approx(fl.Tolerances().energy, abs=off.max())
     assert claim.witness["time"] == run.t[off.argmax()]
     assert 0.0 < claim.error < inf
 

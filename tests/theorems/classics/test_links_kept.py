@@ -1,12 +1,19 @@
-"""Links that are kept: verified, vacuous where nothing joins the flock, refuted where a run is of another law."""
+"""Links that are kept: verified, vacuous where nothing joins the flock, contradicted where a run is of another law."""
 
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import flockana as fl
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.theorems.classics.links_kept import THEOREM
+from flockana.theorems.observed import Observed
+
+
+def checked(run):
+    """Claims of a run as if it were exact, by name."""
+    return {claim.name: claim for claim in THEOREM.check(Observed.alone(run), fl.Tolerances())[1]}
 
 
 def test_a_chain_holds():
@@ -16,7 +23,9 @@ def test_a_chain_holds():
         ("rate", "balance", "links", "connected"), "verified"
     )
     longest = max(np.linalg.norm(np.diff(q, axis=0), axis=1).max() for q in run.q)
-    assert verdict.claim("links").computed == longest < verdict.claim("links").margin + longest < 1.0
+    links = verdict.claim("links")
+    assert links.computed == pytest.approx(longest, rel=1e-9)
+    assert 0.0 < links.error < links.margin < 1.0 - longest
 
 
 def test_what_no_link_joins_is_vacuous():
@@ -26,11 +35,14 @@ def test_what_no_link_joins_is_vacuous():
     assert "2 parts" in next(each.detail for each in verdict.hypotheses if each.status == "unmet")
 
 
-def test_longer_links_than_the_level_allows_are_refuted():
+@pytest.mark.parametrize("level", [True, False])
+def test_longer_links_than_the_level_or_the_range_allows_contradict_the_proof(level):
     run = fl.scenario("links-kept").run()
-    far = replace(run, law=replace(run.law, r=0.65))  # no run of this law: links grow to 0.7
-    claims = {claim.name: claim.status for claim in THEOREM.check(far, fl.Tolerances())[1]}
-    assert (claims["links"], claims["connected"]) == ("refuted", "refuted")
+    far = replace(run, law=replace(run.law, r=0.72 if level else 0.65))  # no run of this law: links grow to 0.7175
+    claims = checked(far)
+    claim = claims["links" if level else "connected"]
+    assert (claim.status, claim.contradicts) == ("inconclusive", "links-kept")
+    assert claim.margin + claim.error < -0.02
 
 
 def test_a_link_that_swings_out_between_two_samples_is_bounded_by_both_its_ends():
@@ -40,13 +52,7 @@ def test_a_link_that_swings_out_between_two_samples_is_bounded_by_both_its_ends(
         run = fl.Trajectory(
             [0.0, 1.0], q[order], sign * p[order], 0.0 * q, LinkKeeping(((0, 1),)), extra={"work": [0.0, 0.0]}
         )
-        claim = next(each for each in THEOREM.check(run, fl.Tolerances())[1] if each.name == "connected")
-        assert (claim.status, claim.computed) == ("inconclusive", 0.5)
+        claim = checked(run)["connected"]
+        assert (claim.status, claim.rigour, claim.computed) == ("verified", "smt", 0.5)  # by the proof alone
+        assert claim.margin - claim.error == pytest.approx(1.0 - 2.52, abs=0.005)
         assert "0.5 at a sample and at most 2.52 between" in claim.detail  # twice 1.05, and the path's own error
-
-
-def test_one_sample_keeps_no_link():
-    run = fl.scenario("links-kept").run()
-    start = fl.Trajectory(run.t[:1], run.q[:1], run.p[:1], run.u[:1], run.law, extra={"work": run.extra["work"][:1]})
-    claims = {claim.name: claim.status for claim in THEOREM.check(start, fl.Tolerances())[1]}
-    assert (claims["links"], claims["connected"]) == ("inconclusive", "inconclusive")

@@ -12,6 +12,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.classics.leader_frame import as_the_leader_sees
 from flockana.theorems.classics.su_varying import centre_of, convergence_rate
+from flockana.theorems.observed import Observed
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 EPS = np.finfo(float).eps
@@ -24,6 +25,10 @@ APART = np.array([[0.0, 3.5], [0.0, -3.5]])
 def critical(z, v, t):
     """The solution of z'' = −z − 2z', and its derivative."""
     return (z + (z + v) * t) * exp(-t), (v - (z + v) * t) * exp(-t)
+
+
+def centre_and_form(run):
+    return centre_of(as_the_leader_sees(Observed.alone(run)).run)
 
 
 def motion(path, times=(0.0, 1.0, 2.0)):
@@ -43,7 +48,7 @@ def test_the_rate_is_that_of_the_slower_root(c1, c2, rate):
 @pytest.mark.parametrize(("z", "v"), [(10.0, 0.0), (0.0, 4.0), (-20.0, 3.0)])
 def test_a_centre_that_follows_the_closed_form_is_off_by_nothing(z, v):
     run = motion(lambda t: critical(z, v, t))
-    found, said = centre_of(as_the_leader_sees(run))
+    found, said = centre_and_form(run)
     np.testing.assert_allclose(found, said, atol=1e-12)
     claim = judged("su-varying", run).claim("centre")
     assert claim.status == "verified"
@@ -56,11 +61,11 @@ def test_a_centre_that_stays_is_off_by_what_it_should_have_gone(z):
     claim = judged("su-varying", motion(lambda t: (z, 0.0))).claim("centre")
     off = abs(z) * (1.0 - 3.0 * exp(-2.0)) / max(abs(z), LAW.scales.length)
     assert LAW.scales.time * 2.0 * exp(-2.0) < 1.0 - 3.0 * exp(-2.0)
-    assert claim.status == "refuted"
+    assert (claim.status, claim.contradicts) == ("inconclusive", "informed-agents")
     assert claim.computed == pytest.approx(off, rel=1e-12)
     assert claim.margin == pytest.approx(1e-6 - off, rel=1e-12)
     assert claim.witness["time"] == 2.0
-    assert claim.error == pytest.approx((2 + 64) * EPS * max(abs(z), 3.5) / max(abs(z), 7.0), rel=1e-9, abs=0.0)
+    assert claim.error == pytest.approx((2 + 4) * EPS * max(abs(z), 3.5) / max(abs(z), 7.0), rel=0.0, abs=4.0 * EPS)
 
 
 def test_velocities_count_by_the_time_of_the_law():
@@ -68,14 +73,15 @@ def test_velocities_count_by_the_time_of_the_law():
     run = motion(lambda t: (critical(0.0, 5.0, t)[0], 5.0), times=(0.0, 1.0))
     claim = judged("su-varying", run).claim("centre")
     assert claim.computed == pytest.approx(5.0 * LAW.scales.time / LAW.scales.length, rel=1e-12)
-    assert claim.error == pytest.approx((2 + 64) * EPS * (3.5 + 5.0 * LAW.scales.time) / 7.0, rel=1e-9, abs=0.0)
+    rounding = (2 + 4) * EPS * max(3.5, 5.0 * LAW.scales.time)
+    assert claim.error == pytest.approx(rounding / 7.0, rel=0.0, abs=4.0 * EPS)
 
 
 def test_a_flock_that_starts_later_is_the_same():
     one, two = (
         motion(lambda t, start=start: critical(10.0, 0.0, t - start), (start, start + 1.0)) for start in (0.0, 7.0)
     )
-    np.testing.assert_allclose(centre_of(as_the_leader_sees(one))[1], centre_of(as_the_leader_sees(two))[1], atol=1e-12)
+    np.testing.assert_allclose(centre_and_form(one)[1], centre_and_form(two)[1], atol=1e-12)
     assert statuses(judged("su-varying", two))["centre"] == "verified"
 
 

@@ -9,7 +9,9 @@ from flockana import pair_law, simulate, verify
 from flockana.interactions.log_potential import LogPotential
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.tanner import FixedNetFlocking
-from flockana.theorems.sampling import least_between, spread_between
+from flockana.theorems.classics.tanner_claims import _energy_error
+from flockana.theorems.observed import Observed
+from flockana.theorems.sampling import least_distance, spread_over
 
 
 @pytest.mark.parametrize("off", [-2e-8, -3e-9, -1e-9, 1e-9])
@@ -48,8 +50,9 @@ def test_between_two_samples_a_pair_is_nearer_and_the_flock_wider():
     """Two agents that pass at a distance of 30, free of forces, sampled at the ends alone: 40 away from there."""
     q, p = np.array([[-40.0, 0.0], [0.0, 30.0]]), np.array([[40.0, 0.0], [0.0, 0.0]])
     run = simulate(Algorithm1(), q, p, (0.0, 2.0), t_eval=[0.0, 2.0])
-    assert 15.0 < least_between(run, [0], [1]) <= 30.0
-    assert spread_between(run) >= 50.0 / np.sqrt(2.0) * (1.0 - 1e-12)
+    seen = Observed.alone(run)
+    assert 15.0 < float(least_distance(seen, [0], [1]).lo) <= 30.0
+    assert float(spread_over(seen).hi.max()) >= 50.0 / np.sqrt(2.0) * (1.0 - 1e-12)
 
 
 def test_a_consensus_that_drives_apart_is_no_case_of_the_energy_theorem():
@@ -70,9 +73,10 @@ def test_at_the_minimum_an_error_of_the_distance_counts_squared():
     assert 1e-9 < claim.error < 1e-7
 
 
-def test_off_the_minimum_an_error_of_the_distance_moves_the_bound_by_as_much():
-    """Of 8ε(s + |q|) in d²/s² half of that, times s: V' = 2k(1 − d²/s²)/s; the bound itself is compared to 8ε|q|."""
+def test_off_the_minimum_an_error_of_the_distance_moves_the_bound_by_half_as_much():
+    """Of 8ε(s + |q|) in d²/s² half of that, times s: V' = 2k(1 − d²/s²)/s."""
     q = np.array([[1e6, 0.0], [1e6 + 0.8, 0.0]])
     run = simulate(FixedNetFlocking(edges=((0, 1),)), q, 0.0 * q, (0.0, 0.1))
-    claim = verify("tanner-fixed", run).claim("no-collision")
-    assert claim.error == pytest.approx((8.0 + 4.0) * np.finfo(float).eps * 1e6, rel=0.05)
+    slope = 2.0 * abs(1.0 - 1.0 / 0.64) / 0.8
+    error = _energy_error(Observed.alone(run), [0], [1])
+    assert error / slope == pytest.approx(4.0 * np.finfo(float).eps * 1e6, rel=1e-5)

@@ -12,6 +12,7 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.theorems.composed.cohesion import bound
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.meeting import meeting
 from tests.theorems.made_up import hexagon, statuses
 
@@ -66,9 +67,9 @@ def test_those_who_are_pulled_stay(name):
 
 def test_the_bound_is_exact():
     """½ c x² = H, and ℓ²(√(1 + x²/ℓ²) − 1) c = H: one agent that swings without loss reaches it, and is not refuted."""
-    assert bound(2.0, np.array([4.0]), None) == [1.0]
+    assert bound(Enclosure.of(2.0), 4.0, None).mid == 1.0
     ell, far = 3.0, 4.0
-    assert bound(2.0 * ell**2 * (5.0 / 3.0 - 1.0), np.array([2.0]), ell) == pytest.approx([far], rel=1e-15)
+    assert bound(Enclosure.of(2.0 * ell**2 * (5.0 / 3.0 - 1.0)), 2.0, ell).mid == pytest.approx(far, rel=1e-15)
     for bounded in (False, 3.0):
         swing = compose(navigation=HERE, pull=1.0, match=0.0, bounded=bounded, informed=(0,), agents=1)
         claim = verify("cohesion", simulate(swing, [[2.0, 0.0]], [[0.0, 0.0]], (0.0, 9.0))).claim("bound")

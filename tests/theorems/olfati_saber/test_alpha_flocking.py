@@ -13,8 +13,9 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.metrics import cohesion_radius, net_measures
 from flockana.theorems import Tolerances, verify
-from flockana.theorems.sampling import nets_at, nets_between, radius_between
-from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from flockana.theorems.observed import Observed
+from flockana.theorems.sampling import nets_at, nets_between, radius_over
+from tests.theorems.made_up import SCALINGS, hexagon, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 BOTH = ("alpha-flocking", "alpha-flocking-strict")
@@ -61,6 +62,20 @@ def test_what_was_before_the_window_does_not_count_between_its_samples(name):
     back = made_up(LAW, [near] * 3 + [lattice] * 3 + [near] + [lattice] * 2, t=t)
     again = judged(name, back, tolerances).claim("deviation")
     assert (again.status, again.computed) == ("refuted", pytest.approx(2.0 * (2.0 / 7.0) ** 2 / 3.0))
+
+
+@pytest.mark.parametrize(
+    ("off", "status"), [(-0.1, "refuted"), (-1e-12, "inconclusive"), (1e-12, "inconclusive"), (10.0, "verified")]
+)
+@pytest.mark.parametrize(("claim", "bound"), [("cohesive", "cohesion"), ("deviation",) * 2, ("mismatch",) * 2])
+def test_what_lies_nearer_to_its_bound_than_the_run_is_known_is_open(claim, bound, off, status):
+    run = simulate(LAW, *hexagon(), (0.0, 1.0))
+    first = verify("alpha-flocking", run).claim(claim)
+    share = (1.0 + off) * first.computed / (first.computed + first.margin)
+    moved = Tolerances(**{bound: share * getattr(Tolerances(), bound)})
+    found = verify("alpha-flocking", run, tolerances=moved).claim(claim)
+    assert found.status == status
+    assert found.margin == pytest.approx(off * first.computed, rel=1e-2)
 
 
 def test_cohesion_is_growth_over_the_window():
@@ -113,9 +128,9 @@ def test_a_pair_at_r_but_for_rounding_decides_nothing(side):
     run = made_up(LAW, [q] * 4)
     found = judged("alpha-flocking-strict", run, Tolerances(deviation=0.004))
     assert (found.claim("flock").status, found.claim("deviation").status) == ("inconclusive", "inconclusive")
-    # the pair that may be a link or not moves Ẽ by 2 (r/d - 1)²/(2·2 + 1) = 0.016, at samples and between them
+    # the pair that may be a link or not moves Ẽ by 2 (r/d - 1)²/(2·2 + 1) = 0.016
     claim = judged("alpha-flocking-strict", run, Tolerances(deviation=0.045)).claim("deviation")
-    assert (claim.status, claim.error) == ("verified", pytest.approx(0.032, rel=1e-9))
+    assert (claim.status, claim.error) == ("verified", pytest.approx(0.016, rel=1e-9))
 
 
 class TestBetweenSamples:
@@ -138,7 +153,8 @@ class TestBetweenSamples:
         dense = simulate(law, q, p, (0.0, 0.4), t_eval=np.linspace(0.0, 0.4, 161))
         keep = slice(0, None, 8)
         sparse = fl.Trajectory(dense.t[keep], dense.q[keep], dense.p[keep], dense.u[keep], law, stats={"steps": 20})
-        nets, radius = nets_between(sparse), radius_between(sparse)
+        seen = Observed.alone(sparse)
+        nets, radius = nets_between(seen), radius_over(seen).hi
         for k, first in enumerate(range(0, 160, 8)):
             inside = dense.q[first : first + 9]
             assert max(cohesion_radius(x) for x in inside) <= radius[k] * (1.0 + 1e-12)
@@ -151,16 +167,17 @@ class TestBetweenSamples:
 
     def test_at_samples_only_rounding_is_open(self):
         run = made_up(LAW, [[[0.0], [7.0]], [[0.0], [8.4]], [[0.0], [9.0]]])
-        nets = nets_at(run)
+        nets = nets_at(Observed.alone(run))
         assert nets.open_links.tolist() == [0, 1, 0]
         assert nets.components.tolist() == [1, 2, 2]
         assert nets.components_least.tolist() == [1, 1, 2]
 
     def test_a_map_has_nothing_between_its_steps(self):
         run = fl.scenario("msn-case2-printed").run().window(0.0, 0.2)
-        assert nets_between(run).open_links.sum() == 0
+        seen = Observed.alone(run)
+        assert nets_between(seen).open_links.sum() == 0
         radius = run.metric("cohesion_radius")
-        np.testing.assert_array_equal(radius_between(run), np.maximum(radius[:-1], radius[1:]))
+        np.testing.assert_array_equal(radius_over(seen).mid, np.maximum(radius[:-1], radius[1:]))
 
 
 @pytest.mark.parametrize("scaling", SCALINGS)

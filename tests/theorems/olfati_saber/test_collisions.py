@@ -17,8 +17,10 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.path_bounds import contacts
 from flockana.theorems import Tolerances, verify
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import collisions
-from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, passed
+from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
 from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)
@@ -97,7 +99,7 @@ class TestTwoAgents:
 def test_energy_at_c_star_is_decided_by_what_rounding_leaves(off, side):
     """H(0) = (1 ± off) c*: the hypothesis is met, unmet, or assumed, never the wrong one of the first two."""
     c_star, error = 50.0, 1e-10
-    found = below_multiple((1.0 + side * off) * c_star, error, c_star).status
+    found = below_multiple(Enclosure.around((1.0 + side * off) * c_star, error), c_star).status
     right = "met" if side < 0.0 else "unmet"
     assert found == (right if off * c_star > 2.0 * error else found)
     assert found in (right, "assumed")
@@ -133,10 +135,11 @@ class TestErratum13:
         sparse = Trajectory(
             e13.t[keep], e13.q[keep], e13.p[keep], e13.u[keep], e13.law, {"work": e13.extra["work"][keep]}
         )
-        assert set(passed(sparse, Tolerances())) == {(0, 1), (0, 2)}
-        found = judged("E13", sparse)
-        assert found.claim("printed").status == "refuted"
-        assert found.claim("corrected").status == "inconclusive"
+        seen = Observed.alone(sparse)
+        assert set(passed(seen, Tolerances())) == {(0, 1), (0, 2)}
+        assert judged("E13", sparse).claim("printed").status == "refuted"
+        assert pairs_at_one_instant(seen, [], Tolerances(), name="corrected").status == "inconclusive"
+        assert judged("E13", sparse).claim("corrected").rigour == "smt"  # by the proof alone
 
     @pytest.mark.parametrize("scaling", SCALINGS)
     def test_units(self, e13, scaling):
@@ -167,7 +170,8 @@ def test_what_a_path_may_be_off_by_brings_agents_near(slack, pairs):
         closest_approach=lambda: SimpleNamespace(lower_by_interval=np.zeros(1)),
         remembered=lambda key, make: make(),
     )
-    assert near(run, Tolerances()) == [pairs]
+    seen = SimpleNamespace(run=run, law=run.law, between_error=np.zeros(1))
+    assert near(seen, Tolerances()) == [pairs]
 
 
 def test_contacts_are_sought_where_agents_may_be_so_near_and_all_are_found(e13):
@@ -195,7 +199,8 @@ def test_pairs_that_end_at_one_place_never_certainly_met():
     law = Algorithm2(gains=gains, target=StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(0)
     run = simulate(law, rng.normal(0.0, 5.0, (3, 2)), np.zeros((3, 2)), (0.0, 80.0))
-    assert passed(run, Tolerances()) == {}
-    assert len(near(run, Tolerances())[-1]) == 3
+    seen = Observed.of(run)
+    assert passed(seen, Tolerances()) == {}
+    assert len(near(seen, Tolerances())[-1]) == 3
     assert judged("E13", run).claim("printed").status != "refuted"
     assert judged("E13", run).claim("corrected").status != "refuted"

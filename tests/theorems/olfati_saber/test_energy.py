@@ -16,8 +16,9 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
+from flockana.theorems.observed import Observed, observed
 from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises, stays_outside
-from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, same_in_all_units, statuses
+from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()
 
@@ -30,21 +31,18 @@ def test_a_good_run_balances_and_falls():
     verdict = verify("energy", simulate(LAW, *hexagon(), (0.0, 5.0)))
     assert statuses(verdict) == {"rate": "verified", "balance": "verified"}
     assert verdict.claim("balance").computed < 1e-7
-    assert (verdict.claim("rate").margin, verdict.claim("rate").error > 0.0) == (1.0, True)
+    assert (verdict.claim("rate").margin, verdict.claim("rate").error) == (1.0, 0.0)  # all terms are squares
 
 
 @pytest.mark.parametrize("dt", [0.1, 0.05])
-def test_too_large_a_step_refutes_no_identity(dt):
-    """On this run alone the balance is off; a tighter one says whose fault that is."""
+def test_a_rough_integration_refutes_no_identity(dt):
+    """On this run alone the balance is off; a tighter one says whose fault that is, and the proof decides."""
     run = simulate(LAW, *hexagon(shake=1.0, speed=5.0), (0.0, 2.0), method="RK4", dt=dt)
-    assert judged("energy", run).claim("balance").status == "refuted"
-    assert verify("energy", run).claim("balance").status == "inconclusive"
-
-
-def test_a_rough_integration_refutes_nothing():
-    claim = verify("energy", bounce(rtol=1e-4, atol=1e-6)).claim("balance")
-    assert claim.margin < 0.0
-    assert claim.status == "inconclusive"
+    assert balance(Observed.alone(run), [], Tolerances()).status == "refuted"
+    assert balance(Observed.of(run), [], Tolerances()).status == "inconclusive"
+    assert judged("energy", run).claim("balance").contradicts == "energy-identities"
+    claim = verify("energy", run).claim("balance")
+    assert (claim.status, claim.rigour, claim.margin < claim.error) == ("verified", "symbolic", True)
 
 
 def test_a_wrong_identity_stays_wrong_however_tightly_it_is_integrated(monkeypatch):
@@ -57,7 +55,8 @@ def test_a_wrong_identity_stays_wrong_however_tightly_it_is_integrated(monkeypat
     monkeypatch.setattr(Algorithm1, "flow", flow)
     run = bounce()
     claim = verify("energy", run).claim("balance")
-    assert claim.status == "refuted"
+    assert (claim.status, claim.contradicts) == ("inconclusive", "energy-identities")
+    assert balance(Observed.of(run), [], Tolerances()).status == "refuted"
     lost = 1.0 - run.energy()[-1] / run.energy()[0]
     assert claim.computed == pytest.approx(1e-3 * lost, rel=1e-2)
 
@@ -65,8 +64,8 @@ def test_a_wrong_identity_stays_wrong_however_tightly_it_is_integrated(monkeypat
 def test_a_work_that_the_law_does_not_do_is_refuted_by_one_run_and_not_by_two():
     run = bounce(rtol=1e-9)
     forged = replace(run, extra={"work": 0.9 * run.extra["work"]})
-    assert balance(forged, [], Tolerances()).status == "refuted"
-    assert verify("energy", forged).claim("balance").status == "inconclusive"
+    assert balance(Observed.alone(forged), [], Tolerances()).status == "refuted"
+    assert balance(Observed.of(forged), [], Tolerances()).status == "inconclusive"
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4, 1e7])
@@ -87,12 +86,12 @@ class TestTheSign:
             simulate(undamped, *hexagon(), (0.0, 1.0)),
             simulate(LAW, [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0)),
         ):
-            claim = never_rises(run, [])
+            claim = never_rises(Observed.of(run), [])
             assert (claim.status, claim.margin) == ("verified", 1.0)
 
     def test_at_speeds_next_to_rounding_it_still_falls(self):
         q, p = hexagon(shake=0.0, speed=1e-14)
-        claim = never_rises(simulate(Algorithm2(target=StaticTarget((0.0, 0.0))), q, p + 1.0, (0.0, 0.1)), [])
+        claim = never_rises(observed(Algorithm2(target=StaticTarget((0.0, 0.0))), q, p + 1.0, (0.0, 0.1)), [])
         assert claim.status == "verified"
 
     def test_a_rate_of_the_wrong_sign_is_refuted(self):
@@ -102,20 +101,20 @@ class TestTheSign:
                 return u, -rate
 
         run = simulate(LAW, *hexagon(), (0.0, 1.0))
-        assert never_rises(replace(run, law=Rising()), []).status == "refuted"
+        assert never_rises(Observed.alone(replace(run, law=Rising())), []).status == "refuted"
 
     def test_terms_that_cancel_within_their_rounding_decide_nothing(self, monkeypatch):
         """An agent that moves with the γ-agent's own velocity, told, not kept: ⟨p, p - p_d⟩ is 0 but for rounding."""
         law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)), obstacles=())
-        run = simulate(law, [[5.0, 5.0]], [[0.1 * (1.0 + 1e-16), 0.7]], (0.0, 0.5))
-        assert never_rises(run, []).status == "inconclusive"
+        seen = observed(law, [[5.0, 5.0]], [[0.1 * (1.0 + 1e-16), 0.7]], (0.0, 0.5))
+        assert never_rises(seen, []).status == "inconclusive"
 
     def test_the_margin_is_the_share_of_the_terms_that_is_left(self):
         """One agent towards a γ-agent that tells p_d: the rate is -c2γ p (p - p_d), its terms c2γ p (p + p_d)."""
         law = Algorithm3(gains=Gains(c1_gamma=0.0, c2_gamma=2.0), target=StaticTarget((0.0,), (1.0,)))
-        run = simulate(law, [[50.0]], [[3.0]], (0.0, 1e-6))
+        seen = observed(law, [[50.0]], [[3.0]], (0.0, 1e-6))
         fall = 3.0 * (3.0 - 1.0)
-        assert never_rises(run, []).margin == pytest.approx(fall / (fall + 2.0 * 3.0 * (3.0 + 1.0)), rel=1e-4)
+        assert never_rises(seen, []).margin == pytest.approx(fall / (fall + 2.0 * 3.0 * (3.0 + 1.0)), rel=1e-4)
 
 
 class Late(Target):
@@ -203,9 +202,10 @@ class TestThePrintedEnergy:
 def test_the_share_that_falls_is_a_pure_number(unit):
     """All of what has one sign, a third of what may cancel as much again as it is, and 1 where nothing moves."""
     rate, cancels = unit * np.array([-1.0, -1.0, 1.0, 0.0]), unit * np.array([0.0, 1.0, 0.0, 0.0])
-    share, rounding = falling_share(SimpleNamespace(n=3), rate, cancels)
-    np.testing.assert_allclose(share, [1.0, 1.0 / 3.0, -1.0, 1.0], rtol=1e-15)
-    assert rounding == 73.0 * 2.0**-52
+    three = Observed.alone(made_up(LAW, np.zeros((4, 3, 1))))
+    share = falling_share(three, lambda run: rate, lambda run: cancels)
+    np.testing.assert_allclose(share.mid, [1.0, 1.0 / 3.0, -1.0, 1.0], rtol=1e-15)
+    np.testing.assert_allclose(share.half_width, 73.0 * 2.0**-52, rtol=0.02)
 
 
 @pytest.mark.parametrize(
@@ -220,6 +220,8 @@ def test_the_share_that_falls_is_a_pure_number(unit):
 def test_whether_an_agent_has_entered_an_obstacle(lower, reached, status, margin):
     least = SimpleNamespace(lower=lower, reached=reached, agent=3, obstacle=1, time=2.5)
     law = SimpleNamespace(obstacles=(1,))
-    need = stays_outside(SimpleNamespace(law=law, q=np.ones((2, 1, 1)), clearance=lambda: least))
+    run = SimpleNamespace(q=np.ones((2, 1, 1)), clearance=lambda: least)
+    exact = SimpleNamespace(law=law, run=run, shape_error=np.zeros((2, 1)), centre_error=np.zeros(2))
+    need = stays_outside(exact)
     assert (need.status, need.margin) == (status, margin)
     assert "(agent 3 at obstacles[1], t = 2.5)" in need.detail

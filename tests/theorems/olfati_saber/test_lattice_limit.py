@@ -49,7 +49,6 @@ def test_a_search_is_led_by_strain_until_a_run_refutes():
     assert item.leads["lattice"](at_rest(Algorithm1(), 1.1 * TRIANGLE), None) == strained(
         at_rest(Algorithm1(), 1.1 * TRIANGLE), None
     )
-    assert item.limits == ("lattice",)
 
 
 @pytest.mark.parametrize("scaling", SCALINGS)

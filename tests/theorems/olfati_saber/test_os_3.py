@@ -9,12 +9,15 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
+from flockana.base.seals import sealed
 from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity, StaticTarget
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems import Tolerances, verify
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.collisions import pairs_at_one_instant
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))
@@ -49,10 +52,11 @@ def test_units_change_no_verdict(run, name, scaling):
 
 @pytest.mark.parametrize("until", [1e-7, 1e-4, 0.3])
 def test_a_start_from_rest_is_no_limit(until):
-    """os-3:iii was verified 10⁻⁷ time units after a start from rest: K̃ had not grown yet."""
+    """10⁻⁷ time units after a start from rest K̃ has not grown yet: only the proof decides."""
     q, _ = start()
     verdict = verify("os-3", simulate(LAW, q, np.zeros_like(q), (0.0, until)))
-    assert (verdict.claim("ii").status, verdict.claim("iii").status) == ("inconclusive",) * 2
+    assert (verdict.claim("ii").status, verdict.claim("iii").status) == ("inconclusive", "verified")
+    assert verdict.claim("iii").detail.endswith("proved for every start")
 
 
 def test_micrometres_after_a_hundredth_of_a_second_are_no_equilibrium():
@@ -61,7 +65,8 @@ def test_micrometres_after_a_hundredth_of_a_second_are_no_equilibrium():
     )
     q, p = start()
     verdict = verify("os-3", simulate(law, 1e-6 * q, 1e-6 * p, (0.0, 0.01), atol=1e-16))
-    assert {verdict.claim(name).status for name in ("ii", "iii")} == {"inconclusive"}
+    assert verdict.claim("ii").status == "inconclusive"
+    assert verdict.claim("iii").detail.endswith("proved for every start")
 
 
 def rk4(law, q, p, dt, steps):
@@ -85,9 +90,9 @@ def test_a_run_that_blew_up_refutes_nothing():
     """A step far too large throws the flock out of its bound; the law keeps it, and the run is not the law's."""
     q, p = hexagon()
     wild = rk4(LAW, q, p, 0.8, 25)
-    assert judged("os-3", wild).claim("i").status == "refuted"  # by this run alone
+    assert judged("os-3", wild).claim("i").contradicts == "cohesion"  # by this run alone
     with pytest.raises(ArgumentError, match=r"is off by .* from where Algorithm2 leads"):
-        verify("os-3", wild)
+        verify("os-3", sealed(wild))
 
 
 def test_the_cohesion_bound_is_the_explicit_one(run):
@@ -100,19 +105,23 @@ def test_the_cohesion_bound_is_the_explicit_one(run):
     assert 0.0 < claim.error < 0.1
 
 
-def test_a_flock_that_leaves_its_bound_is_refuted():
+def test_a_flock_that_leaves_its_bound_contradicts_the_proof():
     q = hexagonal_patch(1, 7.0)
-    assert judged("os-3", made_up(LAW, [q, 100.0 * q])).claim("i").status == "refuted"
+    claim = judged("os-3", made_up(LAW, [q, 100.0 * q])).claim("i")
+    assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
+    assert claim.computed == pytest.approx(700.0)
 
 
 def test_a_radius_between_samples_counts():
-    """Two samples within the bound, a path that leaves it in between: nothing is verified."""
+    """Two samples within the bound, a path that leaves it in between: the numbers alone verify nothing."""
     law = Algorithm2(gains=Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
     q, p = [[-1.0], [1.0]], [[-5.0], [5.0]]
     run = made_up(law, [q, q], [p, [[5.0], [-5.0]]], t=(0.0, 40.0), u=[[[0.25], [-0.25]]] * 2)
     bound = np.sqrt(2.0 * run.energy()[0])
     assert 1.0 < bound < 1.0 + 5.0 * 20.0 - 0.125 * 20.0**2  # where the path turns
-    assert judged("os-3", run).claim("i").status == "inconclusive"
+    claim = judged("os-3", run).claim("i")
+    assert 0.0 < claim.margin < claim.error
+    assert claim.rigour == "smt"  # by the proof
 
 
 @pytest.mark.parametrize("gains", [Gains(c1_gamma=0.0), Gains(c2_gamma=0.0)])
@@ -170,14 +179,14 @@ def test_gains_per_agent_are_outside_the_theorem():
 
 def test_one_sample_verifies_no_claim_about_a_run(run):
     one = simulate(LAW, *start(), (0.0, 40.0), t_eval=[40.0])
-    found = statuses(judged("os-3", one))
-    assert found["iv-barrier"] != "verified"
-    assert found["iv-instant"] == "inconclusive"
-    assert found["iii"] in ("inconclusive", "verified")  # caught for ever, one state will do
+    verdict = judged("os-3", one)
+    assert verdict.claim("iv-barrier").status != "verified"
+    assert pairs_at_one_instant(Observed.alone(one), [], Tolerances(), name="iv-instant").status == "inconclusive"
+    assert verdict.claim("iii").status == "verified"  # one state will do: it is near a strict minimum
 
 
 def test_a_failed_run_verifies_nothing(run):
-    failed = replace(run, status="failed", message="gave up")
+    failed = sealed(replace(run, status="failed", message="gave up"))
     assert set(statuses(verify("os-3", failed)).values()) <= {"inconclusive", "vacuous"}
 
 

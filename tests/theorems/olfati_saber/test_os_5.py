@@ -29,7 +29,8 @@ from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber import os_5
-from flockana.theorems.olfati_saber.os_5 import CLAIMS
+from flockana.theorems.olfati_saber.os_5 import CLAIMS, Net, uncrossed
+from flockana.theorems.theorem import Hypothesis
 from tests.theorems.made_up import statuses
 
 D, R = 7.0, 8.4
@@ -136,7 +137,7 @@ def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form(
     verdict = verify("os-5", q=square(2, 2, D), d=D, r=1.5 * D)
     claim = verdict.claim("extension-quantitative")
     assert statuses(verdict) == expected(extension_quantitative="verified")
-    assert claim.margin == 0.5
+    assert claim.margin == 1.0  # none of the pairs fails
     assert "within ℓ/√2 by" in claim.detail
     assert sorted(map(sorted, claim.witness)) == [[0, 3], [1, 2]]
     assert verdict.claim("i").computed == 1
@@ -163,7 +164,7 @@ def test_the_crossings_of_a_collapsed_flock_are_counted_in_full():
     assert count > 10_000
     for name in ("i", "extension", "extension-lengths", "extension-quantitative"):
         assert verdict.claim(name).computed == count
-    assert verdict.claim("extension").detail.endswith(f"{count} pairs of 780 links cross")
+    assert f"{count} pairs of 780 links cross" in verdict.claim("extension-quantitative").detail
     assert verdict.claim("extension-quantitative").status == "verified"
     assert verdict.claim("iii").status == "vacuous"
 
@@ -173,7 +174,7 @@ def test_more_crossings_than_are_listed_are_said_to_be_at_least_so_many(monkeypa
     verdict = verify("os-5", q=np.random.default_rng(0).normal(size=(40, 2)), d=D, r=R)
     for name in ("i", "extension", "extension-quantitative"):
         assert verdict.claim(name).computed == "at least 100"
-    assert "at least 100 pairs of 780 links cross" in verdict.claim("i").detail
+    assert "at least 100 pairs of 780 links cross" in verdict.claim("extension-quantitative").detail
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]))
@@ -232,13 +233,15 @@ def test_the_threshold_of_the_extension_is_sharp():
 def test_in_space_only_a_clearance_above_rounding_is_believed():
     """Two links of 7 within 1e-14 of each other: nobody knows whether they cross."""
     q = D * np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, -0.5, 1e-14], [0.0, 0.5, 1e-14]])
-    from flockana.theorems.olfati_saber.os_5 import Net, uncrossed
-
     net = Net(q, D, R)
     assert len(net.crossings) == 0
-    assert uncrossed(net, [], "i", "").status == "inconclusive"
+    open_ = Hypothesis("the proof applies", "assumed")  # so that numbers alone decide
+    assert uncrossed(net, [open_], "i", "").status == "inconclusive"
+    q[3, 2] = q[2, 2] = 1e-3
+    assert uncrossed(Net(q, D, R), [open_], "i", "").status == "verified"
     q[2:, 2] = 0.0
-    assert uncrossed(Net(q, D, R), [], "i", "").status == "refuted"
+    claim = uncrossed(Net(q, D, R), [], "i", "")
+    assert (claim.margin, claim.contradicts) == (-1.0, "theorem5-crossings")
 
 
 class TestTerminal:

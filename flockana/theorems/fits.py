@@ -10,7 +10,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.switched import SwitchedLaw
 from flockana.theorems.map_steps import ensure_steps_of_map
-from flockana.theorems.observed import TIGHTER, integrated
+from flockana.theorems.second_runs import TIGHTER, integrated
 
 SAME_INPUT = 1e-8  # of the largest input: other machine code evaluates a law to 1e-13, another law does not
 INTERVALS = 6  # evenly spread ones are integrated again: enough to show a law that is another function each time

@@ -1,0 +1,162 @@
+"""A second run of the same start, how far the two differ, and why nothing may be known of a run.
+
+The second run is a hundred times tighter, or looser where that cannot be; of a fixed step it is an adaptive one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.base.vectors import centres, lengths
+from flockana.dynamics.between import Between
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import FINEST
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.beta import InsideObstacleError
+from flockana.laws.discrete import DiscreteLaw
+
+TIGHTER = 1e-2  # the second run's tolerances over the first's
+DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
+RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
+_MOST = 2**23  # numbers of the second run that are kept at the steps of the first
+_LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
+_LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
+
+
+class Errors(NamedTuple):
+    """Half widths of x_i − x_c, of v_i − v_c, shape (S, n), and of x_c and v_c, shape (S,), at some times."""
+
+    t: FloatArray
+    shape: FloatArray
+    speed: FloatArray
+    centre: FloatArray
+    drift: FloatArray
+
+
+class Pair(NamedTuple):
+    """Two runs of one start at the same samples, their half widths, and why nothing is known, or an empty text."""
+
+    tighter: Trajectory
+    looser: Trajectory
+    errors: Errors
+    doubt: str = ""
+
+
+def paired(run: Trajectory) -> Pair:
+    """Return a run with its second one; a map, and a run of which nothing is known, are paired with themselves."""
+    doubt = doubt_of(run)
+    if doubt or isinstance(run.law, DiscreteLaw):
+        return Pair(run, run, _nothing_known(run), doubt)
+    steps, states = _steps_in_common(run)
+    tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
+    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
+    if again.status != "complete" or len(again.t) != len(steps):
+        kind = "tighter" if tight else "looser"
+        doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
+        return Pair(run, run, _nothing_known(run), doubt)
+    thinned = _at_samples_of(again, run.t)
+    first, second = (thinned, run) if tight else (run, thinned)
+    place, speed, _ = second.floors
+    errors = _errors(again, states)
+    return Pair(first, second, Errors(errors.t, *map(np.maximum, errors[1:], (place, speed, place, speed))))
+
+
+def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False) -> Trajectory:
+    """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
+
+    A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
+    """
+    stats, span = run.stats, (float(times[0]), float(times[-1]))
+    options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
+    if "rtol" in stats:
+        method = stats.get("method", "DOP853")
+        options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
+        options["atol"] = _scaled(stats.get("atol"), factor)
+    elif own_step and "dt" in stats:
+        options = {"method": "RK4", "dt": stats["dt"]}
+    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
+
+
+def _scaled(atol: Any, factor: float) -> Any:
+    """An absolute tolerance, one number or several, multiplied by a factor; None stays None."""
+    return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
+
+
+def doubt_of(run: Trajectory) -> str:
+    """Return why a run by itself shows nothing, or an empty text."""
+    if reason := failure(run):
+        return reason
+    return "one sample shows no motion" if len(run.t) == 1 else ""
+
+
+def failure(run: Trajectory) -> str:
+    """Return why a run is none of its law, or an empty text: it failed, or a state is outside the law's domain."""
+    if run.status == "failed":
+        return f"the run failed: {run.message}"
+    if isinstance(run.law, DiscreteLaw):  # a step may lead anywhere
+        return ""
+    for k in np.unique(np.linspace(0, len(run.t) - 1, _LOOKED_AT).astype(int)):
+        try:
+            run.law.check_start(run.q[k], run.p[k])
+        except ArgumentError as error:
+            if k > 0 and isinstance(error, InsideObstacleError):  # theorems ask for that themselves
+                continue
+            return f"the run left the domain of its law before t = {run.t[k]:.6g}: {error}"
+    return ""
+
+
+def _nothing_known(run: Trajectory) -> Errors:
+    unknown = np.full((1, run.n), np.inf)
+    return Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
+
+
+def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+    """Times at which the two runs are compared, samples and steps of the first, and its states there."""
+    path = run.path
+    stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
+    keep = np.isin(path.t, run.t)
+    keep[::stride] = True
+    return path.t[keep], (path.q[keep], path.p[keep])
+
+
+def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
+    """Half widths from the difference of two runs at their common times."""
+    apart = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
+    (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
+    return Errors(again.t, shape, speed, centre, drift)
+
+
+def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
+    """The run at some of its samples, the others kept as steps between them."""
+    if len(t) == len(run.t):
+        return run
+    keep, path = np.isin(run.t, t), run.path
+    between = ~np.isin(path.t, t)
+    extra = {name: series[keep] for name, series in run.extra.items()}
+    steps = Between(path.t[between], path.q[between], path.p[between], path.u[between], path.slack)
+    return replace(run, t=run.t[keep], q=run.q[keep], p=run.p[keep], u=run.u[keep], extra=extra, between=steps)
+
+
+def centred(x: FloatArray) -> FloatArray:
+    """Return vectors of all agents less their mean, shape (T, n, m)."""
+    apart: FloatArray = x - centres(x)[:, None]
+    return apart
+
+
+def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:
+    """Return the largest of the rows from `first` to before `stop`, a result for each range."""
+    first, stop = np.asarray(first), np.minimum(stop, len(values))
+    first = np.minimum(first, stop - 1)
+    level = np.floor(np.log2(stop - first)).astype(int)
+    largest, table, size = np.empty((len(first), *values.shape[1:])), values, 1
+    for k in range(int(level.max(initial=0)) + 1):
+        here = np.flatnonzero(level == k)
+        largest[here] = np.maximum(table[first[here]], table[stop[here] - size])
+        table = np.maximum(table[:-size], table[size:]) if len(table) > size else table
+        size *= 2
+    return largest

@@ -1,0 +1,100 @@
+"""Samples that are not of the law of a run are found: by their inputs, and by where the law leads from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.theorems import fits as module
+from flockana.theorems import verify
+from flockana.theorems.fits import ensure_fits
+
+PAIR = ([[0.0, 0.0], [8.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class Pushed(fl.Algorithm1):
+    """Algorithm 1 that a wind blows: another law, though it is a subclass."""
+
+    def flow(self, t, q, p):
+        u, rate = super().flow(t, q, p)
+        return u + 1e-3, rate
+
+
+@dataclass(frozen=True)
+class Gusty(Pushed):
+    """As often as it has been asked, the wind has grown."""
+
+    asked: list[int] = field(default_factory=list)
+
+    def flow(self, t, q, p):
+        self.asked.append(1)
+        u, rate = fl.Algorithm1.flow(self, t, q, p)
+        return u + 1e-4 * len(self.asked), rate
+
+
+EDITS = {
+    "an input": lambda run: replace(run, u=np.where(np.arange(len(run.t))[:, None, None] == 5, 1.001 * run.u, run.u)),
+    "a position": lambda run: replace(
+        run, q=run.q + (np.arange(len(run.t)) == 5)[:, None, None] * np.array([[1e-4], [0.0]])
+    ),
+    "a velocity": lambda run: replace(
+        run, p=run.p + (np.arange(len(run.t)) == 5)[:, None, None] * np.array([[1e-3], [0.0]])
+    ),
+    "the law": lambda run: replace(run, law=Pushed()),
+    "its gains": lambda run: replace(run, law=fl.Algorithm1(gains=fl.Gains(c1_alpha=30.001))),
+    "the clock": lambda run: replace(run, t=1.01 * run.t),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
+@pytest.mark.parametrize("how", [{}, {"t_eval": np.linspace(0.0, 2.0, 30)}, {"method": "RK4", "dt": 0.02}])
+def test_samples_of_another_law_are_refused(edit, how: dict) -> None:
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0), **how)
+    ensure_fits(run)
+    with pytest.raises(ArgumentError, match="expected a run as simulate returned it; was it edited, or is it of ano"):
+        ensure_fits(edit(run))
+
+
+@pytest.mark.parametrize("own_step", [False, True])
+def test_an_interval_that_is_not_integrated_to_its_end_accuses_nobody(monkeypatch, own_step: bool) -> None:
+    """Either of the two integrations may fail before the next sample, from a state in which the law cannot go on."""
+    integrated = module.integrated
+
+    def early(*of, **how):
+        return SimpleNamespace(t=of[0].t[:1]) if how.get("own_step", False) == own_step else integrated(*of, **how)
+
+    run = fl.simulate(fl.Algorithm1(), *PAIR, (0.0, 2.0))
+    monkeypatch.setattr(module, "integrated", early)
+    ensure_fits(run)
+
+
+def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:
+    with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
+        verify("energy", fl.simulate(Gusty(), *PAIR, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 60)))
+
+
+@dataclass(frozen=True)
+class Watched(SemiImplicitEuler):
+    """A map that notes the times at which it is asked to step."""
+
+    asked: list = field(default_factory=list, compare=False)
+
+    def step(self, t, q, p, memory):
+        self.asked.append(t)
+        return super().step(t, q, p, memory)
+
+
+@pytest.mark.parametrize(("steps", "again"), [(50, 12), (5, 5), (12, 12)])
+def test_steps_of_a_map_from_its_first_to_its_last_are_made_again(steps: int, again: int) -> None:
+    law = Watched(fl.DeadZoneFlocking(), dt=0.125)
+    run = fl.simulate(law, *PAIR, (0.0, 0.125 * steps))
+    law.asked.clear()
+    ensure_fits(run)
+    assert (len(law.asked), law.asked[0], law.asked[-1]) == (again, 0.0, 0.125 * (steps - 1))
