@@ -82,7 +82,7 @@ def ends(ball: arb) -> Enclosure:
     Examples
     --------
     >>> from flint import arb
-    >>> [round(float(end), 9) for end in (ends(arb(1, 0.5)).lo, ends(arb("inf")).hi)]
+    >>> [round(float(end), 6) for end in (ends(arb(1, 0.5)).lo, ends(arb("inf")).hi)]
     [0.5, inf]
     """
     from flockana.certified.tube import down, up
