@@ -79,24 +79,6 @@ class Observed:
         zeros = np.zeros((len(run.t), run.n))
         return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_of(run))
 
-    def remembered(self, name: str, compute: Callable[[], Any]) -> Any:
-        """Return what was computed under a name from this run and its error, once.
-
-        Parameters
-        ----------
-        name : str
-            Of the result.
-        compute : callable
-            Computes it.
-        """
-        if name not in self._memory:
-            self._memory[name] = compute()
-        return self._memory[name]
-
-    @cached_property
-    def _memory(self) -> dict[str, Any]:
-        return {}
-
     @property
     def law(self) -> Any:
         """The law."""
