@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.theorem import Claim, Status
+
+_Value = TypeVar("_Value")
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
@@ -95,7 +97,7 @@ class Observed:
         zeros = np.zeros((len(run.t), run.n))
         return cls(run, run, run, _Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), _own_doubt(run))
 
-    def remembered(self, name: str, compute: Callable[[], Any]) -> Any:
+    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
         """Return what was computed under a name from this run and its error, once.
 
         Parameters
@@ -107,7 +109,7 @@ class Observed:
         """
         if name not in self._memory:
             self._memory[name] = compute()
-        return self._memory[name]
+        return self._memory[name]  # type: ignore[no-any-return]
 
     @cached_property
     def _memory(self) -> dict[str, Any]:
