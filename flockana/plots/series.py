@@ -172,7 +172,10 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
         name = "each obstacle, at the samples" if k == 0 else None
         ax.plot(t, least, color=BLUE, linestyle="-", linewidth=width, alpha=alpha, label=name)
     bound = trajectory.clearance().lower
-    levels(ax, [(bound, "lower bound for all times", VERMILLION, "--")])
+    if np.isfinite(bound):  # of samples alone nothing is known between them
+        levels(ax, [(bound, "lower bound for all times", VERMILLION, "--")])
+    else:
+        bound = 0.0
     if (field := trajectory.law.obstacle_field) is not None:
         levels(ax, [(field.beta.d, "d'", GREEN, ":")])
         ax.set_ylim(min(0.0, bound), max(6.0 * field.beta.d, 1.5 * bound))
