@@ -20,7 +20,7 @@ from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
-from flockana.dynamics.tolerance import Floors, error_floor, rounding_floors
+from flockana.dynamics.tolerance import Floors, rounding_floors
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
@@ -221,13 +221,7 @@ class Trajectory:
         if energies:
             energies.append(self.energy())
         rounding = rounding_floors(self.t, self.q, self.p, self.u, np.concatenate(energies or [np.empty(0)]))
-        if "rtol" not in self.stats:
-            return rounding
-        kept, span = self.stats.get("floors"), (float(self.t[0]), float(self.t[-1]))
-        if kept is None:  # of a file from before they were
-            allowed = error_floor(self.law, self.q[0], self.p[0], span, self.stats["rtol"], self.stats.get("atol"))
-        else:
-            allowed = Floors(*kept)
+        allowed = self.stats.get("floors", rounding)
         return Floors(*map(max, allowed, rounding))
 
     def metrics(self) -> xarray.Dataset:
