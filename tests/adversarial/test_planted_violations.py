@@ -26,7 +26,7 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.theorems import Tolerances, observed, theorem, theorems
+from flockana.theorems import Tolerances, second_runs, theorem, theorems
 from flockana.theorems.observed import Observed, with_doubt
 
 HERE, ROUND = StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 9.0, 0.05)
@@ -156,7 +156,7 @@ def claim_of(monkeypatch):
     """A claim of a theorem about one run that another encloses, as if that were its tighter second run."""
 
     def found(name, part, first, second):
-        monkeypatch.setattr(observed, "integrated", lambda *_: replace(second, between=None))
+        monkeypatch.setattr(second_runs, "integrated", lambda *_: replace(second, between=None))
         seen = Observed.of(replace(first, between=None))
         claims = with_doubt(theorem(name).examine(seen, Tolerances())[1], seen)
         return next(claim for claim in claims if claim.name == part)
