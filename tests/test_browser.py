@@ -109,7 +109,7 @@ def test_the_report_is_filtered(visit, report):
     assert count.inner_text() == "1 of 3 verdicts"
     assert tab.locator("section.scenario:visible").count() == 1
     tab.fill("[name=words]", "")
-    tab.select_option("[name=rigour]", "symbolic")
+    tab.select_option("[name=rigour]", "smt")
     assert count.inner_text() == "1 of 3 verdicts"
     tab.select_option("[name=rigour]", "")
     tab.select_option("[name=status]", "inconclusive")
