@@ -22,9 +22,11 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 # Folders and files whose tests are all marked slow: `make test-all` and CI run them, `make test` does not.
 SLOW = (
     *("adversarial", "benchmarks", "tools", "ensemble/test_cluster.py", "ensemble/test_processes.py"),
-    *("bad_input/test_faults.py", "bad_input/test_fuzz.py", "base/test_interrupts.py", "proofs"),
+    *("base/test_interrupts.py", "proofs"),
     *("explore/test_server.py", "explore/test_worker.py", "kernels/test_turns.py", "kernels/test_compiling.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
+    *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
+    *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),
 )
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 
@@ -50,7 +52,7 @@ def pytest_configure(config):
 
     gc.set_threshold(SELDOM)  # as in the program itself: to look through all that is imported takes a tenth of a suite
     config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
-    config.addinivalue_line("markers", "slow: kills, waits, drives tools or attacks; not in `make test`")
+    config.addinivalue_line("markers", "slow: kills, waits, drives tools, certifies or attacks; not in `make test`")
     if examples := config.getoption("attack"):
         if config.option.hypothesis_seed is None:
             config.option.hypothesis_seed = str(secrets.randbelow(2**32))
