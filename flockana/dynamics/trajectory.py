@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.memory import Remembering
 from flockana.base.scales import Scales
 from flockana.base.seals import changed
 from flockana.base.units import rescale, times
@@ -30,7 +31,6 @@ from flockana.measures.path_bounds import ClosestApproach, closest_approach, coh
 if TYPE_CHECKING:
     import xarray
 
-_Value = TypeVar("_Value")
 
 PLOTS, PLAYER = "flockana.plots", "flockana.player"  # who draws is named, not imported: this room lies below
 _KINDS = {"extra": "series by name", "stats": "facts by name", "between": "a Between, or None"}
@@ -54,7 +54,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Remembering):
     """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters
@@ -290,27 +290,9 @@ class Trajectory:
             self._measured[name] = values
         return self._measured[name].copy()
 
-    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
-        """What was computed from this run before, or is now: kept as long as the run.
-
-        Parameters
-        ----------
-        name : str
-            What it is.
-        compute : callable
-            Gives it.
-        """
-        if name not in self._memory:
-            self._memory[name] = compute()
-        return self._memory[name]  # type: ignore[no-any-return]
-
     def __getstate__(self) -> dict[str, Any]:
         """All but what is remembered: a copy can be written to, and some measures are functions that do not travel."""
         return {name: value for name, value in self.__dict__.items() if name not in ("_memory", "_own")}
-
-    @cached_property
-    def _memory(self) -> dict[str, Any]:
-        return {}
 
     @cached_property
     def _measured(self) -> dict[str, FloatArray]:

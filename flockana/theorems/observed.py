@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.memory import Remembering
 from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
@@ -26,8 +27,6 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
 from flockana.theorems.theorem import Claim, Status
-
-_Value = TypeVar("_Value")
 
 
 class End(NamedTuple):
@@ -45,7 +44,7 @@ class End(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Observed:
+class Observed(Remembering):
     """A run and a second one from the same start, with enclosures of what both show.
 
     Parameters
@@ -182,24 +181,6 @@ class Observed:
         """Half width of any p_i − p_c over each interval between samples, shape (T − 1,)."""
         worst: FloatArray = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
         return worst + _rounding(self.run.p)
-
-    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
-        """Return what was computed from this run and its errors before, or is now.
-
-        Parameters
-        ----------
-        name : str
-            What it is.
-        compute : callable
-            Gives it.
-        """
-        if name not in self._memory:
-            self._memory[name] = compute()
-        return self._memory[name]  # type: ignore[no-any-return]
-
-    @cached_property
-    def _memory(self) -> dict[str, Any]:
-        return {}
 
     # observables ---------------------------------------------------------------------------------------------------
 
