@@ -297,6 +297,8 @@ class Theorem:
         Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis.
     enclosed : callable, optional
         As `check`, of a tube (`flockana.enclose`), a certified basin that it may end in or None, and the tolerances.
+    wrapped : bool
+        Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
 
     id: str
@@ -312,6 +314,7 @@ class Theorem:
     claims: tuple[str, ...] = ()
     reason: str = "{name}: {detail}"
     enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+    wrapped: bool = False
 
     def examine(
         self, *case: Any, check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
