@@ -11,7 +11,7 @@ import numpy as np
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 
-Powers = tuple[float, float]
+Powers = tuple[int, int]
 """Powers of length and time: (1, -1) is a velocity."""
 
 _Any = TypeVar("_Any")

@@ -11,7 +11,6 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative
 from flockana.base.errors import ArgumentError
-from flockana.base.units import Powers
 from flockana.kernels import force as kernel
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, TermKernel
@@ -68,7 +67,7 @@ class Disturbed(Wrapper):
     intensity: float = 0.0
     seed: int = 0
 
-    units: ClassVar[Mapping[str, Powers]] = {
+    units: ClassVar[Mapping[str, tuple[float, float]]] = {
         "force": (1, -2),
         "swing": (1, -2),
         "frequency": (0, -1),

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_nonnegative
-from flockana.base.units import Powers
 from flockana.laws.law import Law
 from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_seed, ensure_wrappable, input_of
 
@@ -51,7 +50,7 @@ class Measured(Wrapper):
     of: str = "all"
     seed: int = 0
 
-    units: ClassVar[Mapping[str, Powers]] = {"position": (1, 0.5), "velocity": (1, -0.5)}
+    units: ClassVar[Mapping[str, tuple[float, float]]] = {"position": (1, 0.5), "velocity": (1, -0.5)}
 
     def __post_init__(self) -> None:
         ensure_wrappable(self.law)
