@@ -33,6 +33,7 @@ from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, Sc
 from flockana.report.stability import LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.theorems.headline import BYLINES
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
@@ -172,7 +173,7 @@ def page_environment() -> Environment:
 
     environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
     environment.filters |= {"source_name": source_name}
-    environment.globals |= {"scenario_id": scenario_id, "verdict_id": verdict_id}
+    environment.globals |= {"scenario_id": scenario_id, "verdict_id": verdict_id, "bylines": BYLINES}
     return environment
 
 

@@ -17,6 +17,7 @@ from flockana.report.statistics import StatisticsSection
 from flockana.report.tables import WholeTable, column, fact_table, headed_table
 from flockana.report.text import MARKS, deciding_claim, show
 from flockana.theorems import Verdict, theorem, theorems
+from flockana.theorems.headline import BYLINES
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
@@ -45,17 +46,26 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
         if isinstance(page, ScenarioPage):
             table.add_row(Text(page.name, style="bold"))
         for finding in page.findings:
-            verdict, claim = finding.verdict, deciding_claim(finding.verdict)
+            verdict = finding.verdict
             indent = "  " if isinstance(page, ScenarioPage) else ""
             cells = {
                 "theorem": Text(indent + verdict.theorem),
                 "status": _status(verdict.status),
                 "rigour": Text(verdict.rigour),
-                "decided by": Text("" if claim is None else claim.name, style="bright_black"),
+                "decided by": Text(_deciding(verdict), style="bright_black"),
                 "expected": _expectation(finding),
             }
             table.add_row(*(cells[heading] for heading in widths))
     return table
+
+
+def _deciding(verdict: Verdict) -> str:
+    """Return how many of the author's claims decide the status, and the first of them."""
+    claim, claims = deciding_claim(verdict), verdict.main_claims
+    if claim is None:
+        return ""
+    count = sum(each.status == verdict.status for each in claims)
+    return f"{count} of {len(claims)}: {claim.name}"
 
 
 def titles(pages: Iterable[Page]) -> Table:
@@ -79,14 +89,18 @@ def details(verdict: Verdict) -> Group:
     """Return the hypotheses and claims of a verdict, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
+    counts = Padding(Text(verdict.summary), (0, 0, 0, 2))
     columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
     table = WholeTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
-    for c in verdict.claims:
+    whose = verdict.author
+    for c in sorted(verdict.claims, key=lambda claim: (claim.by != verdict.author, claim.by)):
+        if c.by != whose:
+            table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
         table.add_row(Text(c.name), _status(c.status), Text(c.detail + margin))
-    return Group(title, Padding(table, (0, 0, 1, 2)))
+    return Group(title, counts, Padding(table, (0, 0, 1, 2)))
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:

@@ -7,13 +7,14 @@ decides instead, and the numbers stand beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
+from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
 
 def judged(
@@ -351,6 +352,9 @@ def erratum(
     check: Callable[[Tolerances], list[Claim]],
     expected: Mapping[str, Status],
     references: tuple[str, ...] = ("olfati-saber-2006",),
+    author: By = "source",
+    corrected: tuple[str, ...] = (),
+    ours: tuple[str, ...] = (),
 ) -> Theorem:
     """A statement that is checked by itself, on no run of the user's: an erratum, with what is expected of its claims.
 
@@ -366,6 +370,8 @@ def erratum(
         Status that is expected of each claim; that of the whole follows from them.
     references : tuple of str
         Keys of the bibliography.
+    author, corrected, ours
+        As in `Theorem`.
 
     Examples
     --------
@@ -376,7 +382,7 @@ def erratum(
     >>> dict(two.expected), two.examine(Tolerances())[1][0].status
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
-    return Theorem(
+    item = Theorem(
         id=name,
         title=title,
         statement=statement,
@@ -384,5 +390,9 @@ def erratum(
         kind="fixed",
         check=lambda tolerances: ([], check(tolerances)),
         references=references,
-        expected={name: overall(expected.values())} | {f"{name}:{claim}": status for claim, status in expected.items()},
+        author=author,
+        corrected=corrected,
+        ours=ours,
     )
+    by_author = overall(status for claim, status in expected.items() if item.by(claim) == author)
+    return replace(item, expected={name: by_author} | {f"{name}:{claim}": s for claim, s in expected.items()})

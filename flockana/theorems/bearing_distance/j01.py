@@ -99,4 +99,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

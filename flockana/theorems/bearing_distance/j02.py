@@ -86,4 +86,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"hurwitz": "refuted", "outside": "verified", "positive-definite": "refuted"},
+    corrected=("outside",),
 )

@@ -112,4 +112,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "hurwitz": "refuted", "trees": "verified"},
+    corrected=("trees",),
 )

@@ -67,4 +67,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"28": "refuted", "identity": "refuted", "34": "verified", "loop": "verified"},
+    corrected=("loop",),
 )

@@ -84,4 +84,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "runaway": "verified"},
+    ours=("runaway",),
 )

@@ -98,4 +98,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"step": "verified", "reachable": "refuted", "speed": "refuted", "clip": "verified"},
+    corrected=("clip",),
+    ours=("step",),
 )

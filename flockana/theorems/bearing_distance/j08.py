@@ -71,4 +71,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"forms": "verified", "equivalent": "refuted", "holds-together": "refuted", "measured": "verified"},
+    corrected=("measured",),
 )

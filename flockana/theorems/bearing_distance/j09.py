@@ -78,4 +78,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified", "flock": "refuted"},
+    corrected=("corrected",),
 )

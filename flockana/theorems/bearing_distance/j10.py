@@ -101,4 +101,6 @@ THEOREM = erratum(
         "weights": "refuted",
         "recommended": "verified",
     },
+    corrected=("recommended",),
+    ours=("order-mended",),
 )

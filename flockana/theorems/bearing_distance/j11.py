@@ -111,4 +111,5 @@ THEOREM = erratum(
         "recommended-2d": "verified",
         "recommended-3d": "verified",
     },
+    corrected=("recommended-2d", "recommended-3d"),
 )

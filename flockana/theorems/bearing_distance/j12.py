@@ -143,4 +143,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified", "stand-off": "verified", "contact": "refuted"},
+    corrected=("corrected",),
+    ours=("stand-off",),
 )

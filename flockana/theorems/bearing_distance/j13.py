@@ -131,4 +131,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"letter": "refuted", "clamped": "refuted", "reaching": "verified", "stand-off": "verified"},
+    corrected=("reaching", "stand-off"),
 )

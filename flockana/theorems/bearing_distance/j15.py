@@ -91,4 +91,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "rest": "verified", "alone": "verified", "flock": "refuted"},
+    corrected=("rest",),
+    ours=("alone",),
 )

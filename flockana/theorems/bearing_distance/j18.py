@@ -88,4 +88,5 @@ THEOREM = erratum(
         "local": "verified",
         "any-direction": "refuted",
     },
+    ours=("any-direction",),
 )

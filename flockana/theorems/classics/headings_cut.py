@@ -95,4 +95,5 @@ THEOREM = erratum(
     check=_check,
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
     expected={"frame-free": "refuted", "clear-of-cut": "verified", "vectors": "verified"},
+    author="flockana",
 )

@@ -42,4 +42,5 @@ THEOREM = erratum(
     check=_check,
     references=("tanner-2007", "flockana"),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -73,4 +73,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -53,4 +53,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -69,4 +69,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "wide-starts": "verified"},
+    ours=("wide-starts",),
 )

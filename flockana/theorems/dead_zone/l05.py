@@ -61,4 +61,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified", "across-the-switch": "verified"},
+    corrected=("corrected", "across-the-switch"),
 )

@@ -91,4 +91,6 @@ THEOREM = erratum(
         "sliding": "verified",
         "ramp": "verified",
     },
+    corrected=("components", "ramp"),
+    ours=("chatter", "sliding"),
 )

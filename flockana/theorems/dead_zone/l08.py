@@ -59,4 +59,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "balance-distance": "refuted", "contact": "verified"},
+    corrected=("contact",),
 )

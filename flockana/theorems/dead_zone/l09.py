@@ -171,4 +171,5 @@ THEOREM = erratum(
         "acceleration": "verified",
         "acceleration-needed": "verified",
     },
+    ours=("energy",),
 )

@@ -118,4 +118,5 @@ THEOREM = erratum(
         "sufficient": "verified",
         "not-necessary": "verified",
     },
+    ours=("sufficient", "not-necessary"),
 )

@@ -143,4 +143,5 @@ THEOREM = erratum(
         "follower": "verified",
         "leader": "verified",
     },
+    author="flockana",
 )

@@ -48,4 +48,5 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "refuted", "printed-state": "refuted", "printed-run": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -172,4 +172,6 @@ THEOREM = erratum(
         "uncrossed-8": "verified",
         "six": "verified",
     },
+    corrected=("uncrossed-13", "uncrossed-8"),
+    ours=("six",),
 )

@@ -74,4 +74,6 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
     expected={"printed": "refuted", "corrected": "verified", "sharp": "verified"},
+    corrected=("corrected",),
+    ours=("sharp",),
 )

@@ -74,4 +74,5 @@ THEOREM = erratum(
         "connectivity-2": "verified",
         "share-2": "verified",
     },
+    corrected=("corrected",),
 )

@@ -46,4 +46,5 @@ THEOREM = erratum(
     check=_check,
     references=("isola-2024", "olfati-saber-2006"),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -49,4 +49,5 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -136,4 +136,5 @@ THEOREM = Theorem(
     claims=("printed", "minimum", "threshold"),
     reason="not so: {name}",
     references=("geschwender-2016", "isola-2024", "notebook-r2"),
+    ours=("minimum", "threshold"),
 )

@@ -93,4 +93,5 @@ THEOREM = Theorem(
     claims=("predicted", "consistent", "printed"),
     reason="no γ-agent with a wrong p_r to follow",
     references=("isola-2024", "olfati-saber-2006"),
+    ours=("predicted", "consistent"),
 )

@@ -52,4 +52,5 @@ THEOREM = Theorem(
     claims=("printed", "corrected"),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"printed": pairs_apart, "corrected": pairs_apart},
+    corrected=("corrected",),
 )

@@ -101,4 +101,5 @@ THEOREM = erratum(
     source="slides, Algorithm 1 against Reynolds' rules",
     check=_check,
     expected={"printed": "refuted", "translation": "refuted", "corrected": "verified", "state": "verified"},
+    corrected=("corrected", "state"),
 )

@@ -163,4 +163,5 @@ THEOREM = erratum(
         "faster-true": "refuted",
         "condition": "verified",
     },
+    ours=("predicted", "faster-true", "condition"),
 )
