@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.errata import printed
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
@@ -346,7 +347,7 @@ def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields
 def erratum(
     name: str,
     *,
-    title: str,
+    title: str = "",
     statement: str,
     source: str,
     check: Callable[[Tolerances], list[Claim]],
@@ -363,7 +364,7 @@ def erratum(
     name : str
         Its id.
     title, statement, source : str
-        As in `Theorem`.
+        As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
     check : callable
         Returns the claims, from the tolerances.
     expected : mapping of str to str
@@ -384,7 +385,7 @@ def erratum(
     """
     item = Theorem(
         id=name,
-        title=title,
+        title=title or printed(name),
         statement=statement,
         source=source,
         kind="fixed",

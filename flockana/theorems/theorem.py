@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
+from flockana.theorems.errata import Erratum, erratum_of
 from flockana.theorems.headline import BYLINES, headline
 from flockana.theorems.tolerances import Tolerances as Tolerances
 
@@ -282,6 +283,11 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+
+    @property
+    def erratum(self) -> Erratum | None:
+        """What the source prints and what is right, if the theorem checks an erratum."""
+        return erratum_of(self.id)
 
     def by(self, claim: str) -> By:
         """Return whose a claim is.

@@ -225,7 +225,9 @@ def test_a_lattice_rounded_to_two_decimals_is_none_until_a_tolerance_says_so(cal
     np.savetxt(file, np.round(hexagonal_patch(2, 7.0), 2), delimiter=",", fmt="%.2f")
     verdict = found(file)["verdict"]
     assert (verdict["status"], verdict["author"]) == ("vacuous", "source")
-    assert verdict["summary"].startswith("4 of 4 vacuous: 'q is an α-lattice' does not hold; our extension: no two links")
+    assert verdict["summary"].startswith(
+        "4 of 4 vacuous: 'q is an α-lattice' does not hold; our extension: no two links"
+    )
     whose = {claim["name"]: (claim["by"], claim["status"]) for claim in verdict["claims"]}
     assert whose["i"] == ("source", "vacuous")
     assert whose["extension"] == ("flockana", "verified")

@@ -31,6 +31,7 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
     parts = [
         f"# {plain(item.id)}: {plain(item.title)}",
         f"*{plain(item.source)}*",
+        *([] if item.erratum is None else [plain(f"{item.erratum} ({item.erratum.sort})")]),
         "## Statement",
         plain(item.statement),
         _KINDS[item.kind].format(id=item.id),
@@ -150,7 +151,7 @@ def index() -> str:
     opening = (
         "# Theorems and errata\n\nA page for each entry of the catalogue, generated from the library: what is printed, "
         "what was proved by machine, and on which runs it is checked. A false printed claim is expected to read "
-        "`refuted`."
+        "`refuted`. What is printed and what is right, side by side: [errata](../../errata.md)."
     )
     rows = [
         (f"[{plain(item.id)}]({item.id}.md)", plain(item.title), item.expected.get(item.id, "on runs"))

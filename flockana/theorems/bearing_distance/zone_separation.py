@@ -115,7 +115,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "zone-separation",
-    title="Separation alone oscillates; alignment damps, but excludes no collision",
     statement=(
         "Section 4 says that the separation (25) alone oscillates, and that alignment (24) brings a common motion and "
         "avoids close encounters. Two agents swing about the desired spacing with frequency sqrt(2μ), undamped; on "

@@ -38,7 +38,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L3",
-    title="φ_z is a force, unbounded as 1/r²",
     statement=(
         "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
         "logarithmically, because n ~ ρ."

@@ -52,7 +52,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L5",
-    title="The energy of neighbours jumps",
     statement=(
         "H summed over neighbours jumps up by ψ(r) whenever a pair comes into range. With the potential saturated at "
         "r, dH̄/dt = -k₂ pᵀL̂p across all switches."

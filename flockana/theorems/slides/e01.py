@@ -42,7 +42,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E1",
-    title="The Hamiltonian is V + ½ Σ‖p_i‖²",
     statement="The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½.",
     source="slides, collective dynamics",
     check=_check,
