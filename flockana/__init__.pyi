@@ -110,5 +110,6 @@ from .stability.slowest import slowest_modes as slowest_modes
 from .theorems.catalogue import theorem as theorem
 from .theorems.catalogue import theorems as theorems
 from .theorems.catalogue import verify as verify
+from .theorems.errata import errata as errata
 from .theorems.theorem import Tolerances as Tolerances
 from .theorems.theorem import Verdict as Verdict

@@ -81,7 +81,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J15",
-    title="Separation ensures no minimum distance c_i",
     statement=(
         "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
         "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion. (On the way "
@@ -91,4 +90,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "rest": "verified", "alone": "verified", "flock": "refuted"},
+    corrected=("rest",),
+    ours=("alone",),
 )

@@ -89,4 +89,5 @@ THEOREM = Theorem(
     law=law_is("link-keeping", LinkKeeping),
     claims=("rate", "balance", "links", "connected"),
     references=("zavlanos-2007", "ji-egerstedt-2007"),
+    author="flockana",
 )

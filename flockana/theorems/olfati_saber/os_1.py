@@ -103,4 +103,5 @@ THEOREM = Theorem(
     enclosed=enclosed_by("os_1"),
     claims=("i", "ii", "iii", "iii-barrier"),
     leads={"i": strained},
+    ours=("iii-barrier",),
 )

@@ -104,4 +104,6 @@ THEOREM = Theorem(
     enclosed=enclosed_by("os_3"),
     claims=("i", "ii", "iii", *_COLLISIONS),
     leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
+    corrected=("iv-instant",),
+    ours=("iv-barrier",),
 )
