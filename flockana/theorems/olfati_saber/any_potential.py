@@ -129,12 +129,12 @@ def stays_together(seen: Observed) -> Hypothesis:
     return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
 
 
-def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
+def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
     """Claim R below an explicit bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0), between samples too."""
     c1_gamma, above = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
     bound = (2.0 * above / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
     text = "sqrt(2 H_λ(0)/c1γ)" if is_paper(seen) else "sqrt(2 E(0)/c1γ)"
-    return _within(seen, bound, needs, name, text, "cohesion" if is_paper(seen) else PROOF)
+    return _within(seen, bound, needs, name, text, proof)
 
 
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:

@@ -68,8 +68,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), never_meets(seen)
     end, bounded = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), bounded_at_contact(seen, none)
+    paper = is_paper(seen)
     claims = [
-        cohesive(seen, needs, name="i"),
+        cohesive(seen, needs, name="i", proof="cohesion" if paper else PROOF),
         _minimum(seen, needs, end, tolerances),
         *_limits(seen, [*needs, *bounded], end),
         velocities_match(seen, [*needs, *bounded], name="iii", caught=[final_basin(seen).certificate], proof=LIMITS),
@@ -79,12 +80,12 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     if unmet([repels]):
         return given, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)]
     barrier = below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
-    few, proof = [repels, *potential], "collisions" if is_paper(seen) else PROOF
+    few = [repels, *potential]
     return [*given, none, barrier], [  # (iv) needs gains >= 0 only, which every run has
         *claims,
         distinct_pairs(seen, few, tolerances, name="iv-printed"),
-        pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof=proof),
-        no_collision(seen, [*few, none], tolerances, name="iv-none", proof=proof),
+        pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof="collisions" if paper else PROOF),
+        no_collision(seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else PROOF),
         no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
 
