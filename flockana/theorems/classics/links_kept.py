@@ -81,9 +81,9 @@ THEOREM = Theorem(
     statement=(
         "Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy "
         "H = Σ ψ + ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the "
-        "length at which it alone has H(0), which is below r; if the links join all agents, they do so at all times, and "
-        "with c > 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded at "
-        "contact too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a "
+        "length at which it alone has H(0), which is below r; if the links join all agents, they do so at all times, "
+        "and with c > 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded "
+        "at contact too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a "
         "first-order rendezvous. Of both this is a part, in our words."
     ),
     source=(
