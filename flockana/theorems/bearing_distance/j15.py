@@ -37,7 +37,7 @@ def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
 
 
 def _sliding() -> Claim:
-    """Claim that a strong cohesion, off at r and nearer, holds a pair at r; it chatters there, less with finer steps."""
+    """Claim that a strong cohesion, off at r and nearer, holds a pair at r, about which it chatters."""
     late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
     off = float(np.abs(late / r - 1.0).max())
     return of_map(

@@ -10,7 +10,6 @@ from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
 
-
 _CLAIMS = ("bounded", "rate", "velocities")
 
 
@@ -25,10 +24,10 @@ THEOREM = Theorem(
     title="For β <= ½ every start becomes a flock, at an exponential rate",
     statement=(
         "Under the Cucker-Smale law, a(s) = K/(σ² + s²)^β with β < ½, distances of agents are bounded for all times, "
-        "velocities tend to a common one at an exponential rate, and every q_j - q_i has a limit, from any start. Bound "
-        "and rate are those of the functional of Ha and Liu, ‖x‖ <= x_M and φ(x_M), by which the same holds at β = ½ "
-        "without the paper's condition on the start. What the paper says of β > ½, under such a condition, is checked "
-        "as Ha and Liu say it (ha-liu)."
+        "velocities tend to a common one at an exponential rate, and every q_j - q_i has a limit, from any start. "
+        "Bound and rate are those of the functional of Ha and Liu, ‖x‖ <= x_M and φ(x_M), by which the same holds at "
+        "β = ½ without the paper's condition on the start. What the paper says of β > ½, under such a condition, is "
+        "checked as Ha and Liu say it (ha-liu)."
     ),
     source="Cucker and Smale 2007",
     kind="trajectory",
