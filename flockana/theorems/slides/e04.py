@@ -1,4 +1,4 @@
-"""Erratum E4: c < c* excludes collisions, but soon no state at all is below c*; a barrier that does not go vacuous."""
+"""E4: c < c* excludes collisions, as said, and soon no state is below c*; a barrier that does not go vacuous."""
 
 from __future__ import annotations
 
