@@ -52,8 +52,6 @@ class UnknownNameError(ArgumentError):
     ----------
     kind : str
         What was looked for, such as ``"scenario"``.
-    name : str
-        The name that was given.
     known : iterable of str
         The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are told.
 

@@ -14,17 +14,6 @@ _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 class Fact:
     """One property of a function.
 
-    Parameters
-    ----------
-    status : {"met", "unmet", "assumed"}
-        Proved, false on the witness, or neither.
-    detail : str
-        The proof, the fault or what is left open, in words.
-    witness : tuple of float, optional
-        Ends of an interval of distances on which the property fails, or is open.
-    width : float
-        Total length of the distances that are left open; 0 unless assumed.
-
     Examples
     --------
     >>> Fact("unmet", "the force jumps at s = 1", (1.0, 1.0)).status
@@ -39,13 +28,6 @@ class Fact:
 
 def together(facts: Iterable[Fact], proof: str = "") -> Fact:
     """All of several facts: unmet if one is, else assumed if one is, else met.
-
-    Parameters
-    ----------
-    facts : iterable of Fact
-        The parts.
-    proof : str
-        Detail if all are met.
 
     Examples
     --------

@@ -17,8 +17,6 @@ class ResultCache:
 
         Parameters
         ----------
-        name : str
-            What it is.
         compute : callable
             Gives it.
 

@@ -9,13 +9,6 @@ from dataclasses import dataclass
 class Scales:
     """A natural length and time of a law: thresholds are multiples of them, so that no verdict depends on units.
 
-    Parameters
-    ----------
-    length : float
-        What the law holds neighbours at, or the like.
-    time : float
-        In which the law's strongest usual force moves an agent by that length.
-
     Examples
     --------
     >>> Scales(length=6.0, time=2.0).speed, Scales(length=6.0, time=2.0).force

@@ -62,8 +62,6 @@ class Basin:
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     rest : ndarray, shape (n, m)
         The computed equilibrium, its centre at the origin; the true one is within 1e-13 d of it.
     radius : Fraction

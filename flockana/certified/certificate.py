@@ -77,8 +77,6 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
     ----------
     basin : Basin
         Of `certify`.
-    path : str or Path
-        File, usually .json.
 
     Raises
     ------

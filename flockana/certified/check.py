@@ -29,19 +29,7 @@ _HEAD = ("format", "kind", "statement")
 
 @dataclass(frozen=True)
 class Checked:
-    """A certificate that holds.
-
-    Parameters
-    ----------
-    kind : str
-        Such as ``"basin"``.
-    statement : str
-        What is proved.
-    steps : tuple of str
-        What was verified, in order.
-    prose : tuple of str
-        What no machine checks.
-    """
+    """A certificate that holds."""
 
     kind: str
     statement: str
@@ -51,11 +39,6 @@ class Checked:
 
 def check_certificate(path: str | Path) -> Checked:
     """Verify a certificate's file.
-
-    Parameters
-    ----------
-    path : str or Path
-        JSON, as written by `write_certificate`.
 
     Returns
     -------

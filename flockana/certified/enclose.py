@@ -74,8 +74,6 @@ def enclose(
         Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; each obstacle is a `Sphere`.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities, exact.
-    t_span : (float, float)
-        Start and end.
     radius : float or (float, float)
         Of the box of starts: of each coordinate of q0, and of p0 (by default the same number).
     order : int

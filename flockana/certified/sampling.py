@@ -18,19 +18,7 @@ from flockana.equilibria.terminal import rigid_motions
 
 @dataclass(frozen=True, eq=False)
 class SampledBasin:
-    """How many starts at rest, displaced in random directions, came back to the orbit.
-
-    Parameters
-    ----------
-    basin : Basin
-        What is certified.
-    distances : ndarray
-        Distances from the orbit over all coordinates, in units of length.
-    returned : int array
-        Starts that ended in the certified basin.
-    runs : int
-        Starts at each distance.
-    """
+    """How many starts at rest, displaced in random directions, came back to the orbit."""
 
     basin: Basin = field(repr=False)
     distances: FloatArray
@@ -44,13 +32,7 @@ class SampledBasin:
         return found
 
     def interval(self, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
-        """Ends of the exact confidence interval of each share.
-
-        Parameters
-        ----------
-        level : float
-            Confidence.
-        """
+        """Ends of the exact confidence interval of each share."""
         return clopper_pearson(self.returned, np.full_like(self.returned, self.runs), level=level)
 
 
@@ -70,8 +52,6 @@ def sample_basin(
         Over all coordinates, in units of length.
     runs : int
         Starts at each.
-    seed : int
-        Of the directions.
     t_end : float
         Length of a run.
 

@@ -72,8 +72,6 @@ class Tube:
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        What moves the flock.
     q0, p0 : ndarray, shape (n, m)
         The start, or the middle of the starts.
     t : tuple of float
@@ -109,13 +107,7 @@ class Tube:
     stats: dict[str, Any]
 
     def with_seconds(self, seconds: float) -> Tube:
-        """The same, with the time that it took.
-
-        Parameters
-        ----------
-        seconds : float
-            By the clock.
-        """
+        """The same, with the time that it took."""
         return changed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
 
     def ensure_whole(self) -> None:

@@ -39,20 +39,6 @@ _TRIES = 30  # of an error that holds itself up
 def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
     """The certificate of the run in the middle of a tube from one start, as plain data with its digest.
 
-    Parameters
-    ----------
-    tube : Tube
-        Of one start (radius 0), complete.
-    basin : Basin, optional
-        In which it ends; in one or two dimensions.
-    weight : float
-        In which units errors of position count beside those of velocity, a rate; any is valid, some prove more.
-
-    Raises
-    ------
-    ArgumentError
-        On a tube of which there is no certificate.
-
     Examples
     --------
     >>> from flockana.certified.enclose import enclose
@@ -74,8 +60,6 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
     ----------
     tube : Tube
         Of one start, complete.
-    path : str or Path
-        File, usually .json.
     basin : Basin, optional
         In which it ends.
 

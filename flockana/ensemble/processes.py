@@ -28,13 +28,7 @@ def cores() -> int:
 
 
 class ProcessPool(ProcessPoolExecutor):
-    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent.
-
-    Parameters
-    ----------
-    jobs : int
-        Processes at most.
-    """
+    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent."""
 
     def __init__(self, jobs: int) -> None:
         # spawned, not forked: a forked child inherits the locks of threads that it does not have

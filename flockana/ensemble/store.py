@@ -46,11 +46,6 @@ _INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UP
 class Store:
     """Runs by key, in a file; a context manager.
 
-    Parameters
-    ----------
-    path : path-like
-        File; made, with its folders, if there is none.
-
     Examples
     --------
     >>> import tempfile

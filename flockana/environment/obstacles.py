@@ -85,22 +85,12 @@ class Obstacle(ABC):
         return BetaAgents(q + gap, rate, clearance)
 
     def clearance(self, q: Any) -> FloatArray:
-        """Signed distance of points from the surface, negative inside, shape (n,).
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-        """
+        """Signed distance of points from the surface, negative inside, shape (n,)."""
         q = ensure_points("q", q)
         return self.beta_agents(q, np.zeros_like(q)).clearance
 
     def contains(self, q: Any) -> npt.NDArray[np.bool_]:
-        """Which points lie inside or on the surface, shape (n,).
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-        """
+        """Which points lie inside or on the surface, shape (n,)."""
         inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
         return inside
 
@@ -109,8 +99,6 @@ class Obstacle(ABC):
 
         Parameters
         ----------
-        m : int
-            Dimension of the flock.
         name : str
             How to call it in the message.
         """

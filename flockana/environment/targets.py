@@ -39,8 +39,6 @@ class StaticTarget(Target):
 
     Parameters
     ----------
-    q : array_like, shape (m,)
-        Position q_d.
     p : array_like, shape (m,), or 0
         Velocity p_d handed to the law; the position stays fixed.
 

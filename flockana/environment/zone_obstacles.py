@@ -76,12 +76,7 @@ class SimplePolygon:
         return np.hstack([corners, np.roll(corners, -1, axis=0)])
 
     def clearance(self, q: Any) -> FloatArray:
-        """Signed distance of points from the boundary, negative inside, shape (N,).
-
-        Parameters
-        ----------
-        q : array_like, shape (N, 2)
-        """
+        """Signed distance of points from the boundary, negative inside, shape (N,)."""
         q = ensure_points("q", q)
         if q.shape[1] != 2:
             raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
@@ -193,10 +188,6 @@ class Box:
         """Distance of points from the nearest wall, negative outside the box (then from the farthest wall crossed).
 
         On a straight way it is least at one of the ends.
-
-        Parameters
-        ----------
-        q : array_like, shape (N, m)
         """
         q = ensure_points("q", q)
         inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

@@ -126,8 +126,6 @@ class ZoneWorld:
 
         Parameters
         ----------
-        m : int
-            Dimension of the flock.
         buffer : bool
             Give every polygon as the smallest disc that holds it.
         """
@@ -150,12 +148,7 @@ class ZoneWorld:
         )
 
     def clearance(self, q: FloatArray) -> FloatArray:
-        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
-
-        Parameters
-        ----------
-        q : ndarray, shape (N, m)
-        """
+        """Return signed distances from all obstacles at samples, and a lower bound between some of them."""
         least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
         return least
 
@@ -166,8 +159,6 @@ class ZoneWorld:
 
         Parameters
         ----------
-        q : ndarray, shape (T, n, m)
-            Positions at the samples.
         taken : ndarray of int, shape (K,)
             Samples from which a way leads to the next one.
         """
@@ -183,12 +174,7 @@ class ZoneWorld:
         return at, on_way
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if an agent begins outside the box, in an obstacle, or at an alien.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-        """
+        """Raise if an agent begins outside the box, in an obstacle, or at an alien."""
         if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
             i = int(np.argmin(inside))
             raise ArgumentError(f"q[{i}] = {q[i]}: expected a point of {self.box}")

@@ -42,21 +42,6 @@ class Curvatures(NamedTuple):
 class Landscape:
     """Potential about a configuration: its Hessian off the rigid motions, and bounds of its change nearby.
 
-    Parameters
-    ----------
-    stiffness : callable
-        q -> the Hessian, sparse, in the order of ``q.ravel()``.
-    q : ndarray, shape (n, m)
-        Positions.
-    rigid : ndarray, shape (n m, k)
-        Orthonormal basis of the rigid motions that leave the potential unchanged.
-    force : float
-        What is left of the force, Euclidean norm over all agents.
-    length : float
-        The law's own length: neighbours are about as far apart.
-    unit : float
-        The law's own force, of whose terms what is left was taken: it is known to their rounding.
-
     Examples
     --------
     A spring of stiffness 3 between two agents on a line, of which the sum is free:

@@ -105,17 +105,6 @@ class Program:
     force scale. The gauge Cᵀ(x − x⁰) = 0, C a basis of the potential's symmetries at the start, takes the directions
     out in which it is flat by construction; every configuration has a copy that satisfies it, so nothing is lost.
 
-    Parameters
-    ----------
-    potential : Potential
-        What is minimised.
-    shape : tuple of int
-        (n, m).
-    pairs : int array, shape (M, 2)
-        Pairs that may come within range.
-    gauge : int
-        Number of gauge constraints.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

@@ -15,13 +15,6 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 class Search:
     """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES).
 
-    Parameters
-    ----------
-    start : ndarray, shape (D,)
-        Where the first run of the optimiser begins, in the unit cube.
-    seed : int
-        Of all its randomness.
-
     Examples
     --------
     >>> search = Search(np.full(3, 0.9), 0)

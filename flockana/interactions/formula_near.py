@@ -26,19 +26,7 @@ _CLOSE, _CLOSER = 1e-40, 1e-44  # of y at the range: where limits at 0 are read
 
 @dataclass(frozen=True)
 class Near:
-    """How the weight is computed near 0: ``plain``, by a ``series`` in y below a bound, or ``excluded`` at 0.
-
-    Parameters
-    ----------
-    kind : {"plain", "series", "excluded"}
-        Which of them.
-    bound : float
-        Of y = s² or z, below which the series holds; 0 without one.
-    coefficients : ndarray, shape (12,)
-        Of the powers of y/bound; none without a series.
-    panels : ndarray
-        One panel of the potential on [0, bound], or none.
-    """
+    """How the weight is computed near 0: ``plain``, by a ``series`` in y below a bound, or ``excluded`` at 0."""
 
     kind: Literal["plain", "series", "excluded"]
     bound: float
@@ -47,15 +35,7 @@ class Near:
 
 
 def near_zero(cut: Cut, end: float) -> Near:
-    """Look at the first piece near 0, to many digits.
-
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    end : float
-        y at the range.
-    """
+    """Look at the first piece near 0, to many digits."""
     piece, none = cut.pieces[0], np.zeros(0)
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
     closed = np.zeros((0, 0))

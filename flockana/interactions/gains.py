@@ -95,11 +95,6 @@ class Gains:
     def check_agents(self, n: int) -> None:
         """Raise unless per-agent gains are as many as the agents.
 
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-
         Raises
         ------
         ArgumentError

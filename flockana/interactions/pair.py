@@ -127,8 +127,6 @@ class PairInteraction(ABC):
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         stiffness, damping : float
             Gains c1 of the gradient term and c2 of the velocity-consensus term.
         out : ndarray, shape (n, m), optional
@@ -155,13 +153,7 @@ class PairInteraction(ABC):
         return tuple(self.par.tolist())
 
     def potential_energy(self, q: FloatArray) -> float:
-        """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""
         near, pairs = 0.0, 0
         for i, j in pair_blocks(q, self.range):
             near += self.kernels.potential(q, i, j, self.par, self.panels)
@@ -175,8 +167,6 @@ class PairInteraction(ABC):
 
         Parameters
         ----------
-        q : ndarray, shape (n, m)
-            Positions.
         pairs : iterable of (ndarray, ndarray), optional
             Blocks of pairs that interact, by default those within range.
 
@@ -191,8 +181,6 @@ class PairInteraction(ABC):
 
         Parameters
         ----------
-        q : ndarray, shape (n, m)
-            Positions.
         pairs : iterable of (ndarray, ndarray), optional
             As in `hessian`.
 
@@ -209,8 +197,6 @@ class PairInteraction(ABC):
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         stiffness, damping : float
             Gains c1 and c2, as in `forces`.
         pairs : iterable of (ndarray, ndarray), optional

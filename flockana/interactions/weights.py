@@ -41,13 +41,7 @@ class Weight(ABC):
         return Fact("met", self.proof) if self.proof else Fact("assumed", f"{type(self).__name__} names no proof of it")
 
     def __call__(self, distance: Any) -> Any:
-        """The weight at some distances, a scalar or an array.
-
-        Parameters
-        ----------
-        distance : array_like
-            Distances >= 0.
-        """
+        """The weight at some distances, a scalar or an array."""
         s = np.asarray(distance, dtype=np.float64)
         values = np.where(s < self.range, evaluate(self.kernels.weight, s * s, self.par), 0.0)
         return float(values) if s.ndim == 0 else values

@@ -41,8 +41,6 @@ class ZoneRadii:
 
     Parameters
     ----------
-    r : float or sequence of n floats
-        Of repulsion.
     a : float or sequence of n floats
         Of attraction.
     c : float or sequence of n floats, optional
@@ -92,11 +90,6 @@ class ZoneRadii:
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """(r, c, a, s) of n agents, each of shape (n,).
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
 
         Raises
         ------
@@ -171,8 +164,6 @@ class ZoneWeights:
 
         Parameters
         ----------
-        n : int
-            Number of agents.
         aliens : int
             Number of aliens, K.
 

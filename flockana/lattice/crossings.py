@@ -37,7 +37,6 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Pairs of different agents.
     limit : int, optional
@@ -186,7 +185,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Pairs of different agents.
     reach : float

@@ -65,7 +65,6 @@ def defects(q: Any, links: Any) -> Defects:
 
     Parameters
     ----------
-    q : array_like, shape (n, 2)
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 

@@ -38,20 +38,6 @@ class _Front(NamedTuple):
 class Elimination:
     """A symmetric matrix A, eliminated front by front: the signs of its eigenvalues, and A⁻¹ b.
 
-    Parameters
-    ----------
-    matrix : sparse array, shape (n m, n m)
-        Symmetric, in the order of ``q.ravel()``.
-    q : ndarray, shape (n, m)
-        Places by which the agents are halved; they decide about the time taken and nothing else.
-    keep : bool
-        Keep what `solve` needs.
-    least : float, optional
-        Replace eigenvalues of fronts by their moduli, and by `least` where these are smaller: `solve` is then that of a
-        positive definite matrix, A itself if A is positive definite enough.
-    definite : bool
-        Give up at the first front that is not positive definite: A is not either.
-
     Examples
     --------
     >>> from scipy.sparse import csr_array

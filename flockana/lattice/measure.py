@@ -24,7 +24,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     guard : float
         Relative difference from r up to which a distance counts as r; raise it for lattices far from the origin.
 
@@ -47,10 +46,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 def edge_length_error(q: Any, d: float, r: float) -> float:
     """δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Returns
     -------
     float
@@ -69,10 +64,6 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
 def strain(q: Any, d: float, r: float) -> float:
     """Largest relative error of a link δ/d; NaN without links.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> strain([[0.0], [3.5]], d=7.0, r=8.4)
@@ -86,7 +77,6 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     tol : float
         Largest |link − d|/d that counts as rounding.
 

@@ -54,7 +54,6 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Links; one of length zero has no direction, and a row of zeros.
 
@@ -90,7 +89,6 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
     tol : float
         Singular values below tol times the largest count as zero. Squared in the sparse way, so not below 1e-7. The

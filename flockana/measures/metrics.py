@@ -19,10 +19,6 @@ _SQUARED = 1e-140, 1e150  # between which the square of a speed is a number of f
 def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
     """(C, C*, E) of one net: `connectivity`, `giant_share` and `deviation_energy` for one neighbour search.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> net_measures([[0.0], [3.0], [9.0]], d=3.0, r=4.0)
@@ -46,10 +42,6 @@ def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, floa
 def connectivity(q: Any, r: float) -> float:
     """Relative connectivity C = rank(L)/(n − 1) = (n − number of components)/(n − 1); 1 for a single agent.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Returns
     -------
     float
@@ -66,10 +58,6 @@ def connectivity(q: Any, r: float) -> float:
 def giant_share(q: Any, r: float) -> float:
     """C*: the share of *nodes* in the largest component (E7: the slides print a share of edges and mean this).
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> giant_share([[0.0], [1.0], [9.0], [20.0]], 2.0)
@@ -81,10 +69,6 @@ def giant_share(q: Any, r: float) -> float:
 def cohesion_radius(q: Any) -> float:
     """R = max_i ‖q_i − q_c‖ about the centre of mass.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> cohesion_radius([[0.0, 0.0], [2.0, 0.0]])
@@ -95,10 +79,6 @@ def cohesion_radius(q: Any) -> float:
 
 def deviation_energy(q: Any, d: float, r: float) -> float:
     """E(q) = Σ over ordered neighbour pairs of (‖q_j − q_i‖ − d)², divided by |E| + 1 (ordered count).
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
 
     Returns
     -------
@@ -116,10 +96,6 @@ def deviation_energy(q: Any, d: float, r: float) -> float:
 def velocity_mismatch(p: Any) -> float:
     """K = ½ Σ‖p_i − p_c‖².
 
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
-
     Examples
     --------
     >>> velocity_mismatch([[1.0], [3.0]])
@@ -131,10 +107,6 @@ def velocity_mismatch(p: Any) -> float:
 def inertia(q: Any) -> float:
     """J = ½ Σ‖q_i − q_c‖².
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> inertia([[0.0], [2.0]])
@@ -145,10 +117,6 @@ def inertia(q: Any) -> float:
 
 def min_distance(q: Any) -> float:
     """Least distance between two agents, ∞ for one agent.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
 
     Examples
     --------
@@ -182,10 +150,6 @@ def diameter(x: Any) -> float:
 def order(p: Any) -> float:
     """Polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
 
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
-
     Examples
     --------
     >>> order([[1.0, 0.0], [2.0, 0.0]]), order([[1.0, 0.0], [-2.0, 0.0]])
@@ -198,10 +162,6 @@ def coordination(p: Any) -> float:
     """Return Jond's C, the mean cosine between velocities over all pairs of moving agents.
 
     NaN if fewer than two agents move.
-
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
 
     Examples
     --------
@@ -216,7 +176,6 @@ def coincident_pairs(q: Any, tol: float) -> int:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     tol : float
         Distance below which two agents count as coincident.
 
@@ -233,10 +192,6 @@ def coincident_pairs(q: Any, tol: float) -> int:
 def pairs_at_one_place(q: Any) -> int:
     """Return the number of unordered pairs of coincident agents.
 
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
-
     Examples
     --------
     >>> pairs_at_one_place([[0.0], [0.0], [0.0], [1.0]])
@@ -250,22 +205,12 @@ def pairs_at_one_place(q: Any) -> int:
 
 
 def nets(q: FloatArray, d: float, r: float) -> FloatArray:
-    """`net_measures` over time, unchecked: C, C* and E, shape (3, T).
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
+    """`net_measures` over time, unchecked: C, C* and E, shape (3, T)."""
     return np.array([_net_measures(x, d, r) for x in q]).T
 
 
 def cohesion_radii(q: FloatArray) -> FloatArray:
-    """`cohesion_radius` over time, unchecked.
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
+    """`cohesion_radius` over time, unchecked."""
     q, _, unit = near_one(q)
     radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
     return radii
@@ -284,12 +229,7 @@ def spreads(x: FloatArray) -> FloatArray:
 
 
 def min_distances(q: FloatArray) -> FloatArray:
-    """`min_distance` over time, unchecked.
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
+    """`min_distance` over time, unchecked."""
     q, _, unit = near_one(q)
     if q.shape[1] < _TREE:
         distances: FloatArray = least_distances(q) * unit
@@ -313,22 +253,12 @@ def diameters(x: FloatArray) -> FloatArray:
 
 
 def orders(p: FloatArray) -> FloatArray:
-    """`order` over time, unchecked.
-
-    Parameters
-    ----------
-    p : ndarray, shape (T, n, m)
-    """
+    """`order` over time, unchecked."""
     return lengths(centres(_headings(p)))
 
 
 def coordinations(p: FloatArray) -> FloatArray:
-    """`coordination` over time, unchecked.
-
-    Parameters
-    ----------
-    p : ndarray, shape (T, n, m)
-    """
+    """`coordination` over time, unchecked."""
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k

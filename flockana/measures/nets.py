@@ -28,7 +28,6 @@ def links(q: Any, r: float) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     r : float
         Interaction range; strict.
 

@@ -87,7 +87,6 @@ def reynolds(q: Any, p: Any, *, alpha: AlphaInteraction | None = None, gains: Ga
 
     Parameters
     ----------
-    q, p : array_like, shape (n, m)
     alpha : AlphaInteraction, optional
         The pair law; the paper's by default.
     gains : Gains, optional

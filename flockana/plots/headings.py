@@ -20,11 +20,6 @@ if TYPE_CHECKING:
 def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw every agent's heading over time, as the number that is averaged.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of `HeadingAveraging`.
-
     Raises
     ------
     ArgumentError

@@ -63,17 +63,7 @@ class Ticks:
 
 
 class PlainScale(Artist):
-    """Scale of one axis of two-dimensional axes, in place of matplotlib's own drawing.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes.
-    name : {"x", "y"}
-        Which scale; where its ticks are and how they look is what matplotlib would have drawn.
-    sizes : dict, optional
-        Sizes of texts that are known, for scales that share them.
-    """
+    """Scale of one axis of two-dimensional axes, in place of matplotlib's own drawing."""
 
     def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size] | None = None) -> None:
         super().__init__()

@@ -143,8 +143,6 @@ class Scenario:
 
         Parameters
         ----------
-        name : str
-            Its id.
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
         """
@@ -239,8 +237,6 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
 
     Parameters
     ----------
-    name : str
-        One of `scenarios`.
     seed : int
         Seed of its random start, >= 0.
     **options

@@ -90,19 +90,7 @@ class Region(NamedTuple):
 
 
 def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: str = "") -> list[Fact]:
-    """Whether a formula is analytic inside an interval and up to its ends: nothing if it is, else what is the matter.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval.
-    name : str
-        The formula, in messages.
-    scale, slope : float
-        Of its values and slopes: what a jump is compared with.
-    kinks : str
-        What jumps where the slope does, in messages; nothing if kinks are allowed, whose points then stay open.
-    """
+    """Return reasons why a formula is not analytic on a closed interval, or leaves it open; empty if it is analytic."""
     of, whole = region.enclosed, region.right - region.left
     open_: list[Fact] = []
     stack, looked = [(region.left, region.right, 0)], 0
@@ -170,15 +158,7 @@ def _looked_at(
 
 
 def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
-    """Whether a formula is nonnegative on an interval, and positive inside it.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval; zeros at its ends are decided by the first derivative that is not 0.
-    name : str
-        The formula, in messages.
-    """
+    """Whether a formula is nonnegative on an interval, and positive inside it."""
     if region.expression == 0:
         return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", _ends(region, region.left, region.right))
     left, right = region.left, region.right
@@ -273,15 +253,7 @@ class Least(NamedTuple):
 
 
 def least_on(region: Region, scale: float) -> Least:
-    """The least value on an interval, as an enclosure; −∞ from below where the formula has none.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval.
-    scale : float
-        Of its values: the width that is enough is 1e-15 of it, or 1e-13 of the value.
-    """
+    """The least value on an interval, as an enclosure; −∞ from below where the formula has none."""
     of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
     best, where, looked = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []

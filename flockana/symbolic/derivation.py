@@ -55,8 +55,6 @@ class Derivation:
 
     Parameters
     ----------
-    title : str
-        What is derived.
     steps : tuple of Step
         How, each with its condition.
     result : sympy.Basic

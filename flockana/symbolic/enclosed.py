@@ -47,13 +47,6 @@ class UndefinedError(ArithmeticError):
 class Enclosed:
     """A formula in one variable as a function of balls.
 
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Without pieces, all numbers exact.
-    variable : sympy.Symbol
-        Its only symbol.
-
     Examples
     --------
     >>> s = sp.Symbol("s", positive=True)

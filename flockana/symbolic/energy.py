@@ -47,8 +47,6 @@ class EnergyIdentity:
 
     Parameters
     ----------
-    name : str
-        What is identified.
     energy : sympy.Expr
         The energy, as sums over n agents.
     rate : sympy.Expr
@@ -89,13 +87,6 @@ class EnergyIdentity:
 
 class GenericPair:
     """Agents i and j among n, by components: the terms of dH/dt that involve both.
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    frame : tuple of sympy.IndexedBase
-        Positions and velocities: (Q, P) in the given frame, (X, V) in the moving one.
 
     Examples
     --------

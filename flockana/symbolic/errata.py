@@ -42,10 +42,6 @@ class RisingEnergy:
 
     Parameters
     ----------
-    alpha : AlphaSymbols
-        Interaction parameters, rational.
-    gains : GainSymbols
-        Gains, rational.
     q, p : tuple of sympy.Rational
         Positions and velocities of the agents, m = 1.
     rate : sympy.Expr

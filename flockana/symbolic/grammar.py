@@ -79,13 +79,6 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
     """Number of nodes of an expression, height of its tower of exponentials, and degree of its powers.
 
-    Parameters
-    ----------
-    value : sympy.Basic
-        The expression.
-    known : dict
-        What was measured before; it is added to, so that repeated parts cost nothing.
-
     Examples
     --------
     >>> s = sp.Symbol("s")

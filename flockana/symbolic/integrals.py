@@ -19,17 +19,7 @@ Bounds = tuple[float, float]
 
 
 def integral_least(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
-    """Bounds of the least value of an integral and of its value at the left end; it vanishes at an anchor.
-
-    Parameters
-    ----------
-    regions : list of Region
-        The integrand from left to right; one of the ends is the anchor, but for rounding.
-    anchor : fmpq
-        Where the integral is 0.
-    scale : float
-        Of its values.
-    """
+    """Bounds of the least value of an integral and of its value at the left end; it vanishes at an anchor."""
     total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
     with precision(_BITS, _TERMS):
         for region in regions:

@@ -61,13 +61,6 @@ def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) 
 class GenericObstacle:
     """Agent and obstacle of one kind, by components.
 
-    Parameters
-    ----------
-    kind : str
-        ``"wall"`` or ``"sphere"``.
-    m : int
-        Dimension, 1, 2 or 3.
-
     Examples
     --------
     >>> GenericObstacle("sphere", 2).reduce(sp.sqrt(sp.Symbol("x1", real=True)**2 + sp.Symbol("x2", real=True)**2))

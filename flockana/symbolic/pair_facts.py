@@ -38,15 +38,6 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
 def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFacts:
     """The facts of a formula with its numbers.
 
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    eps : float
-        ε of the σ-norm, 0 for a formula in s.
-    strength, tallest : float
-        The unit of forces and that of the adjacency: what jumps are compared with.
-
     Examples
     --------
     >>> from flockana.symbolic.pair_formula import read_pair

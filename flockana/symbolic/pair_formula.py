@@ -189,15 +189,7 @@ class Cut:
         return found
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """An expression without its pieces, those chosen that hold at a distance.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of the distance.
-        at : float
-            In the distance of the formula.
-        """
+        """An expression without its pieces, those chosen that hold at a distance."""
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):

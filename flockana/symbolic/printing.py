@@ -13,13 +13,6 @@ _WHOLE = 8  # powers up to it are products
 class Constants:
     """Constant subexpressions, by their place among the parameters.
 
-    Parameters
-    ----------
-    variables : iterable of sympy.Symbol
-        The variables.
-    first : int
-        Place of the first constant.
-
     Examples
     --------
     >>> x, k = sp.symbols("x k")

@@ -28,21 +28,7 @@ class SlopeBound(NamedTuple):
 
 
 def slope_bounds(cut: Cut, eps: float, r: float, places: list[float], parts: int) -> tuple[SlopeBound, ...]:
-    """Bounds of the slopes on equal parts of the range, split at the cuts.
-
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    eps : float
-        ε of the σ-norm, 0 for a formula in s.
-    r : float
-        The range.
-    places : list of float
-        Euclidean distances of the cuts.
-    parts : int
-        Number of equal parts.
-    """
+    """Bounds of the slopes on equal parts of the range, split at the cuts."""
     numbers, found = exact_numbers(cut.numbers, eps), []
     root = sp.sqrt(1 + EPS * S**2)
     norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
