@@ -1,4 +1,4 @@
-"""Facts about a function over its whole range: proved, disproved by a witness, or assumed."""
+"""Facts about a function over its whole range: proved, disproved by a counterexample, or assumed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Fact:
 
 
 def together(facts: Iterable[Fact], proof: str = "") -> Fact:
-    """All of several facts: unmet if one is, else assumed if one is, else met.
+    """Return the conjunction of facts: unmet if one is, else assumed if one is, else met.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def together(facts: Iterable[Fact], proof: str = "") -> Fact:
 
 @dataclass(frozen=True)
 class PairFacts:
-    """What is known about a pair law over all distances up to its range.
+    """Facts about a pair law over all distances up to its range.
 
     Attributes
     ----------
@@ -73,5 +73,5 @@ class PairFacts:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What the pair law certainly lacks of `smooth`, each in words."""
+        """Violations of smoothness that are certain, each in words."""
         return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()
