@@ -1,4 +1,4 @@
-"""The surroundings of zone-based flocking: obstacles, a box, and aliens that hunt."""
+"""Surroundings of zone-based flocking: obstacles, a box, and aliens that pursue agents."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flockana.kernels.zones import World
 
 @dataclass(frozen=True)
 class Alien:
-    """An agent that is not of the flock: it goes for the nearest flock agent that it detects, and else rests.
+    """Agent outside the flock that pursues the nearest flock agent it detects, and otherwise rests.
 
     The paper gives the range of detection, 9 m, and that it is trapped in a triangle; speed and triangle are ours.
 
@@ -122,7 +122,7 @@ class ZoneWorld:
         return np.array([alien.start for alien in self.aliens]) if self.aliens else np.empty((0, 0))
 
     def arrays(self, m: int, *, buffer: bool = False) -> World:
-        """The world as the compiled step reads it.
+        """Return the world's data as arrays for the compiled step.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class ZoneWorld:
         return least
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
-        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
+        """Return signed distances from all obstacles at samples, and lower bounds over the given intervals.
 
         Each obstacle is measured once at each sample. The bound is exact outside the obstacles. Shapes (T, n), (K, n).
 
@@ -192,5 +192,5 @@ class ZoneWorld:
 
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
-    """Rows of all parts one after the other, and where each part begins and ends."""
+    """Return the rows of all parts concatenated, and the indices at which the parts begin and end."""
     return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

@@ -1,4 +1,4 @@
-"""Classification of links against the lattice's scale: α-lattice, quasi-α-lattice, or neither."""
+"""Classification of configurations by link lengths: α-lattice, quasi-α-lattice, or neither."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
 
 def edge_length_error(q: Any, d: float, r: float) -> float:
-    """δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
+    """Return δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
 
 
 def strain(q: Any, d: float, r: float) -> float:
-    """Largest relative error of a link δ/d; NaN without links.
+    """Return the largest relative error of a link, δ/d; NaN without links.
 
     Examples
     --------
