@@ -34,7 +34,7 @@ _KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Counterexample:
-    """A law, a start and the claim that a run from there refutes.
+    """Law, start and claim that a run from there refutes.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Keyword arguments of `simulate`, none that it does not have."""
+    """Return the known keyword arguments of `simulate` among data."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")

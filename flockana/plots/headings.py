@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's heading over time, as the number that is averaged.
+    """Draw every agent's heading over time, the angle that the law averages.
 
     Raises
     ------

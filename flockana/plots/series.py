@@ -1,4 +1,4 @@
-"""Quantities of a run over time."""
+"""Plots of quantities of a run over time."""
 
 from __future__ import annotations
 

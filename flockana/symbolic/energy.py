@@ -81,12 +81,12 @@ class EnergyIdentity:
         return latex_steps(self.name, self.steps)
 
     def _repr_latex_(self) -> str:
-        """Show the derivation in a notebook."""
+        """Return the LaTeX that a notebook shows."""
         return f"$${self.latex()}$$"
 
 
 class GenericPair:
-    """Agents i and j among n, by components: the terms of dH/dt that involve both.
+    """Two agents i and j among n, by components: the terms of dH/dt that involve both.
 
     Examples
     --------

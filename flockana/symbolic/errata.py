@@ -38,7 +38,7 @@ def e1_identity(m: int = 2) -> EnergyIdentity:
 
 @dataclass(frozen=True)
 class RisingEnergy:
-    """A state at which the printed H rises, while the true one falls.
+    """State at which the printed H rises, while the true one falls.
 
     Parameters
     ----------

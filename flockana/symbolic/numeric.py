@@ -1,4 +1,4 @@
-"""Reference values from the symbolic expressions: thirty digits in mpmath, handed over as numpy arrays.
+"""Reference values of the symbolic expressions, by mpmath with thirty digits, as numpy arrays.
 
 Slow and exact, for tests that hold a fast kernel against the formula itself. psi_alpha comes from its
 derived pieces, the rate of the energy from the chain rule, not from the closed form.
@@ -72,7 +72,7 @@ class NumericLaw:
 
 
 def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
-    """Return a function of z with fixed parameters, hidden from sympy by name."""
+    """Return a function of z with fixed parameters."""
     named = ALPHA_NAMED
     parameters = [named.h, named.a, named.b, named.c, named.d_alpha, named.r_alpha]
     function = sp.lambdify([Z, *parameters], scalar(Z, alpha=named), "mpmath")
