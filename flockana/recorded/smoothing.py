@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 
-_FINEST = 1e-8  # noise, over the spread of a series, below which it counts as exact
-_DIFFUSE = 100.0  # variance of the state before the first sample, in spreads and sample intervals
+_FINEST = 1e-7  # noise, over the spread of a series, below which it counts as exact
+_DIFFUSE = 6.0  # deviation of the state before the first sample, over the largest differences of the samples
 _JERKS = 12  # intensities that are tried, each a factor of e from the next
 _WINDOW = 6  # samples to each side over which a likelihood is local
 _DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
@@ -82,7 +82,7 @@ def _steepest(x: FloatArray) -> float:
 def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, groups: int) -> FloatArray:
     """Intensity of the jerk at each sample of each series, by the likelihood of the samples nearby, shape (T, K)."""
     top, (count, series) = _steepest(x), x.shape
-    tried = top - np.arange(_JERKS, dtype=np.float64)
+    tried = np.maximum(top - np.arange(_JERKS, dtype=np.float64), np.log(sd.min()) - 6.0)
     weights = np.minimum(np.arange(1.0, 2 * _WINDOW + 2), np.arange(2 * _WINDOW + 1.0, 0.0, -1.0)) / (_WINDOW + 1.0)
     local = np.empty((_JERKS, count, series // groups))
     for g, jerk in enumerate(tried):
@@ -112,7 +112,7 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
     seen: npt.NDArray[np.bool_] = ~np.isnan(y)
     alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk))  # then all have the same covariances
     wide = 1 if alike else series
-    state, cov = np.zeros((series, 3)), np.broadcast_to(_DIFFUSE * np.eye(3), (wide, 3, 3))
+    state, cov = np.zeros((series, 3)), np.broadcast_to(np.diag(_spread(y, sd)), (wide, 3, 3))
     means, covs = np.empty((count, series, 3)), np.empty((count, wide, 3, 3))
     before, cov_before = np.empty_like(means), np.empty_like(covs)
     likelihood, use, variance = np.zeros((count, series)), seen[:, :wide], sd[:, :wide] ** 2
@@ -131,6 +131,7 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
             keep[:, :, 0] -= gain
             noise = (variance[k] * use[k])[:, None, None] * gain[:, :, None] * gain[:, None, :]
             cov = keep @ cov @ keep.swapaxes(1, 2) + noise
+            cov = 0.5 * (cov + cov.swapaxes(1, 2))
         means[k], covs[k] = state, cov
     for k in range(count - 2 if backwards else -1, -1, -1):
         way = np.linalg.solve(cov_before[k + 1], turns[k + 1] @ covs[k]).swapaxes(1, 2)
@@ -138,6 +139,13 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
         covs[k] += way @ (covs[k + 1] - cov_before[k + 1]) @ way.swapaxes(1, 2)
     deviations = np.sqrt(np.maximum(np.diagonal(covs, axis1=2, axis2=3), 0.0))
     return _Filtered(means, np.broadcast_to(deviations, means.shape).copy(), likelihood)
+
+
+def _spread(y: FloatArray, sd: FloatArray) -> FloatArray:
+    """Variances of position, velocity and acceleration before the first sample: what the samples show at most."""
+    sizes = [np.abs(np.diff(y, k, axis=0)) if len(y) > k else y for k in range(3)]
+    largest = np.array([float(np.nanmax(x)) if np.isfinite(x).any() else 1.0 for x in sizes])
+    return (_DIFFUSE * (largest + float(sd.max()))) ** 2
 
 
 def _transition(h: float) -> tuple[FloatArray, FloatArray]:
