@@ -100,6 +100,8 @@ from .measures.nets import laplacian as laplacian
 from .measures.nets import links as links
 from .measures.windows import joint_windows as joint_windows
 from .plots.animation import animate as animate
+from .recorded.read import read_recording as read_recording
+from .recorded.recording import Recording as Recording
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
 from .scenarios.scenario import scenarios as scenarios
