@@ -58,6 +58,7 @@ TRUTHS = {
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
     "tanner-minimum": {"r": "printed", "v": "corrected second-order"},
     "delay-margin": {"v": " ".join([*(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED), "pair"])},
+    "sampling-margins": {"r": "msn", "v": "msn-few msn-few-in-place notebook-1 notebook-2 minimal"},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "delayed-consensus": {"v": "margin below above root-below root-above average"},
@@ -65,7 +66,7 @@ TRUTHS = {
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},
 }
 THEOREMS = tuple(TRUTHS)
-SLOW = ("E3", "J11", "delay-margin", "linearised-decay", "heterogeneous-gains")
+SLOW = ("E3", "J11", "delay-margin", "sampling-margins", "linearised-decay", "heterogeneous-gains")
 
 
 def cases():
