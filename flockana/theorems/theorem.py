@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]
@@ -257,6 +258,13 @@ class Verdict:
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
         lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.claims]
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return verdict_html(self)
+
+    def to_latex(self) -> str:
+        """Return the claims as a LaTeX ``tabular`` in the style of booktabs."""
+        return verdict_latex(self)
 
 
 Lead = Callable[[Any, Claim], float]
