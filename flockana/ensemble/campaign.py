@@ -153,7 +153,9 @@ def ensemble(
             text = f"runs, {len(grid) - len(missing)} stored before" if len(missing) < len(grid) else "runs"
             done = 0
             if executor is None and cluster is None:
-                jobs = min(jobs or cores(), len(missing)) if can_start_processes(request) else 1
+                jobs = min(jobs or cores(), len(missing))
+                if jobs > 1 and not can_start_processes(request):
+                    jobs = 1
             with crew(executor, cluster=cluster, jobs=jobs) as workers:
                 for made in make_runs(request, missing, workers):
                     new = {keys[record.job]: record for record in made}

@@ -42,7 +42,8 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
     'verified'
     """
     if not isinstance(name, str) or not name or not callable(margin):
-        raise ArgumentError(f"claim({format_value(name)}, {format_value(margin)}): expected a name and a function of a run")
+        given = f"{format_value(name)}, {format_value(margin)}"
+        raise ArgumentError(f"claim({given}): expected a name and a function of a run")
 
     def of_run(run: Trajectory) -> Claim:
         given = margin(run)
@@ -51,7 +52,8 @@ def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = ""
         except (TypeError, ValueError):
             values = np.array([np.nan])
         if values.size == 0 or np.isnan(values).any():
-            raise ArgumentError(f"the margin of {name!r} is {format_value(given)}: expected a number, or one for each sample")
+            shown = format_value(given)
+            raise ArgumentError(f"the margin of {name!r} is {shown}: expected a number, or one for each sample")
         k = int(np.argmin(values))
         at = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
         detail = f"{statement or name}: margin {values.flat[k]:.4g} {at}"

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.progress import progress_bar
+from flockana.base.tables import MARKS, html_table, latex_table, tex
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.catalogue import catalogue, theorem, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
-from flockana.theorems.written import MARKS, html_table, latex_table, tex
 
 
 class Verdicts(tuple[Verdict, ...]):
