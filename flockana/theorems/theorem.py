@@ -11,6 +11,7 @@ from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
 from flockana.theorems.headline import BYLINES, headline
 from flockana.theorems.tolerances import Tolerances as Tolerances
+from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]
@@ -221,6 +222,13 @@ class Verdict:
         lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.main_claims]
         lines += [f"  {c.name:>14} {c.status:12} [{BYLINES[c.by]}] {c.detail}{c.cited}" for c in self.further_claims]
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return verdict_html(self)
+
+    def to_latex(self) -> str:
+        """Return the claims as a LaTeX ``tabular`` in the style of booktabs."""
+        return verdict_latex(self)
 
 
 Lead = Callable[[Any, Claim], float]
