@@ -6,7 +6,7 @@ from functools import lru_cache
 from math import sqrt
 
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import nudged, squeezed
+from flockana.equilibria.collapse import perturbed, pulled_law
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
@@ -25,8 +25,8 @@ _MANY, _FEW = 4, 1  # rings of the patches: 61 and 7 agents
 @lru_cache(maxsize=8)
 def pressed_patch(rings: int, ratio: float, contact: float) -> tuple[TerminalState, Basin]:
     """Return where a hexagonal patch, slightly disturbed, rests downhill under the project's pair law."""
-    law = squeezed(_ALPHA, ratio)
-    limit = gradient_flow(law, nudged(hexagonal_patch(rings, _ALPHA.d), _ALPHA.d))
+    law = pulled_law(_ALPHA, ratio)
+    limit = gradient_flow(law, perturbed(hexagonal_patch(rings, _ALPHA.d), _ALPHA.d))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     still = 0.0 * limit.q
