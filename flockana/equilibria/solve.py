@@ -20,6 +20,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.tables import facts_html, facts_text
 from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
@@ -97,6 +98,26 @@ class Equilibrium:
     index: int
     success: bool
     message: str
+
+    def facts(self) -> dict[str, str]:
+        """Return what a table shows."""
+        lowest = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
+        return {
+            "law": type(self.law).__name__,
+            "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
+            "kind": self.kind + (f" of index {self.index}" if self.index else ""),
+            "energy": f"{self.energy:.6g}",
+            "residual": f"{self.residual:.2g} of the law's forces",
+            "lowest curvature": lowest,
+            "rigid, soft modes": f"{self.rigid_modes}, {self.zero_modes}",
+            "success": f"{'yes' if self.success else 'no'}: {self.message}",
+        }
+
+    def __str__(self) -> str:
+        return facts_text("Equilibrium", self.facts())
+
+    def _repr_html_(self) -> str:
+        return facts_html("Equilibrium", self.facts())
 
     def strain(self) -> float:
         """Largest |link − d|/d to twelve digits; NaN without links.

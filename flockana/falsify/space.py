@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
 from math import log
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import Scenario
+from flockana.scenarios.flock import law_parameter, with_parameter
 
 STATE = ("q", "p")
 _ROOM = 0.1  # by which the flock's box is widened on every side, of its longest side
@@ -74,7 +74,7 @@ class Space:
         values = np.split(x, max(1, len(self.vary)))
         state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
         for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
-            law = _with_parameter(law, name, _value(share, *ends))
+            law = with_parameter(law, name, _value(share, *ends))
         return replace(self.scenario, law=law, **state)
 
 
@@ -123,22 +123,6 @@ def search_space(
     return Space(scenario, chosen, low, high, ranges)
 
 
-def law_parameter(law: Any, name: str) -> Any:
-    """Return the value of a law's parameter by its dotted name.
-
-    Parameters
-    ----------
-    name : str
-        Such as ``"gains.c1_alpha"``.
-    """
-    return reduce(getattr, name.split("."), law)
-
-
-def _with_parameter(law: Any, name: str, value: float) -> Any:
-    head, _, rest = name.partition(".")
-    return replace(law, **{head: _with_parameter(getattr(law, head), rest, value) if rest else value})
-
-
 def _share(value: float, low: float, high: float) -> float:
     return log(value / low) / log(high / low) if low > 0.0 < value else (value - low) / (high - low)
 
@@ -161,7 +145,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
     if not low < high:
         raise ArgumentError(f"{name} = ({low:g}, {high:g}): expected low < high")
     try:
-        _with_parameter(law, name, float(law_parameter(law, name)))
+        with_parameter(law, name, float(law_parameter(law, name)))
     except (AttributeError, TypeError, ValueError):
         raise ArgumentError(
             f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"

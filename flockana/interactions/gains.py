@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
@@ -104,6 +104,20 @@ class Gains:
             gain = getattr(self, name)
             if isinstance(gain, tuple) and len(gain) != n:
                 raise ArgumentError(f"{name} has {len(gain)} gains but there are {n} agents: expected one per agent")
+
+
+def gains_of(values: Mapping[str, Any]) -> Gains:
+    """Return gains from a mapping; gains that it lacks keep their defaults.
+
+    Examples
+    --------
+    >>> gains_of({"c1_alpha": 2.0}).c1_alpha
+    2.0
+    """
+    names = [field.name for field in fields(Gains)]
+    if (unknown := [name for name in values if name not in names]) != []:
+        raise UnknownNameError("gain", unknown[0], names)
+    return Gains(**values)
 
 
 def _gain(name: str, value: Any) -> float:

@@ -20,6 +20,7 @@ from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
+from flockana.scenarios.flock import chosen
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -99,9 +100,13 @@ def animation(
 
 
 def animate(
-    trajectory: Trajectory,
-    path: str | os.PathLike[str],
+    trajectory: Trajectory | None = None,
+    path: str | os.PathLike[str] = "",
     *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
     seconds: float = 10.0,
     fps: float = 15.0,
     velocities: bool = False,
@@ -112,10 +117,14 @@ def animate(
 
     Parameters
     ----------
+    trajectory : Trajectory, optional
+        The run.
+    law, q0, p0, t_span : optional
+        Instead of a run: the parts of a `Flock`, which is simulated.
     path : path-like
         File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
     fps : float
-        Frames per second; a GIF rounds the time of a frame to hundredths of a second.
+        Frames per second.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
     progress : callable
@@ -128,11 +137,14 @@ def animate(
     FileError
         If the file cannot be written, or ffmpeg is missing.
     """
-    from matplotlib.animation import FFMpegWriter, PillowWriter
+    from matplotlib.animation import FFMpegWriter
+
+    from flockana.plots.gif import GifWriter
 
     target = ensure_film(path, seconds=seconds, fps=fps)
-    film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
-    writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+    run = chosen(law=law, q0=q0, p0=p0, t_span=t_span).run() if trajectory is None else trajectory
+    film = animation(run, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
+    writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
     with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):

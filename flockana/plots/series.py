@@ -14,6 +14,7 @@ from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
 from flockana.plots.style import (
     BLUE,
+    FAINT,
     GREEN,
     INK,
     MUTED,
@@ -53,13 +54,35 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     except UnknownNameError:
         return finish_empty(ax, drawn.label, "not defined for this law")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    if drawn.logarithmic and (values > 0.0).any():
+    logarithmic = drawn.logarithmic or _spans_decades(values)
+    if logarithmic and (values > 0.0).any():
         ax.set_yscale("log")
+        _shade_floor(trajectory, name, values, ax)
     if drawn.at_most_one:
         ax.set_ylim(float(np.nanmin(values, initial=0.0)) - 0.03, 1.05)
-    elif not drawn.logarithmic and not (values < 0.0).any():
+    elif not logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
     return finish_over_time(ax, trajectory.t, drawn.label)
+
+
+def _spans_decades(values: Any) -> bool:
+    """Return whether values that are not negative span three decades or more."""
+    positive = values[values > 0.0]
+    return bool(positive.size > 1 and not (values < 0.0).any() and positive.max() > 1e3 * positive.min())
+
+
+def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
+    """Shade what lies below the error that one step of the solver may carry, where the curve reaches that far down."""
+    place, speed, _ = trajectory.floors
+    d = trajectory.scales.length
+    floor = {
+        "normalised_velocity_mismatch": 0.5 * speed**2,
+        "velocity_diameter": 2.0 * speed,
+        "normalised_deviation_energy": (2.0 * place / d) ** 2,
+    }.get(name, 0.0)
+    positive = values[values > 0.0]
+    if floor > 0.0 and positive.min() < floor:
+        ax.axhspan(positive.min(), floor, color=FAINT, alpha=0.6, linewidth=0.0, label="noise floor")
 
 
 def has_metric(trajectory: Trajectory, name: str) -> bool:

@@ -18,6 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_count
+from flockana.plots.paper import column_size
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ _STYLE = {
     "figure.constrained_layout.use": True,
     "font.size": 9,
     "svg.hashsalt": "flockana",
+    "pdf.fonttype": 42,  # TrueType: publishers refuse Type 3
+    "ps.fonttype": 42,
 }
 
 
@@ -92,6 +95,7 @@ def style() -> Iterator[None]:
 
 
 _WIDER = 1.15  # than the axes may a legend be, for the names of their ticks stand beside them
+_MOST_LINES = 2  # of a label
 _EM = 0.55  # width of a letter, over its size
 
 
@@ -107,7 +111,7 @@ def ensure_axes(ax: Any, *, m: int = 2) -> Any:
 
 
 def subplots(
-    rows: int = 1, columns: int = 1, *, size: tuple[float, float] | None = None, m: int = 2
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float] | str | None = None, m: int = 2
 ) -> tuple[Any, Any]:
     """Return a new figure in flockana's style, as ``pyplot.subplots``: (figure, Axes or array of Axes).
 
@@ -115,8 +119,9 @@ def subplots(
     ----------
     rows, columns : int
         Of the grid.
-    size : (float, float), optional
-        Width and height in inches; by default 4.4 by 3.4 for each Axes.
+    size : (float, float) or str, optional
+        Width and height in inches, or a journal's column by its name in `flockana.plots.paper.COLUMNS`, such as
+        ``"ieee"``; by default 4.4 by 3.4 for each Axes.
     m : int
         Dimension of what will be drawn: 3 for three-dimensional axes.
 
@@ -131,7 +136,8 @@ def subplots(
     rows, columns = ensure_count("rows", rows), ensure_count("columns", columns)
     with style():
         kind = {"projection": "3d"} if m == 3 else {}
-        return plt.subplots(rows, columns, figsize=size or (4.4 * columns, 3.4 * rows), subplot_kw=kind)
+        wanted = column_size(size, rows, columns) if isinstance(size, str) else size or (4.4 * columns, 3.4 * rows)
+        return plt.subplots(rows, columns, figsize=wanted, subplot_kw=kind)
 
 
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:
@@ -140,7 +146,11 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
         ax.set_xlabel(typeset(x))
     if y:
         letters = ax.get_window_extent().height / ax.figure.dpi * 72.0 / (_EM * ax.yaxis.label.get_size())
-        lines = [y] if "$" in y else wrap(y, max(int(1.1 * letters), 12))
+        room = max(int(1.1 * letters), 12)
+        lines = [y] if "$" in y else wrap(y, room, break_long_words=False)
+        if len(lines) > _MOST_LINES and "," in y:  # the symbol and its unit alone
+            unit = y.rpartition(" (")
+            lines = [y.partition(",")[0] + (f" ({unit[2]}" if unit[1] else "")]
         ax.set_ylabel("\n".join(map(typeset, lines)))
     if ax.get_legend_handles_labels()[0]:
         place_legend(ax)

@@ -242,6 +242,8 @@ def _collapse(seed: int = 0) -> Scenario:
             "alpha-flocking-strict:flock": "verified",
             "os-5-terminal:i": "vacuous",
             "E11": "refuted",
+            "E11:printed": "refuted",
+            "E11:minimum": "verified",
             "source": "verified",
         },
         (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
@@ -307,6 +309,8 @@ def _three_agents(seed: int = 0) -> Scenario:
             "os-3:iv-none": "vacuous",
             "os-5-terminal:i": "vacuous",
             "E13": "refuted",
+            "E13:printed": "refuted",
+            "E13:corrected": "verified",
         },
         references=("olfati-saber-2006", "flockana"),
     )
