@@ -28,7 +28,7 @@ import numpy as np
 import flockana as fl
 from flockana import lattice, plots
 from flockana.course import grade
-from flockana.equilibria.barrier import energy_floor, lattice_reach, none_from
+from flockana.equilibria.barrier import energy_floor, lattice_reach, least_infeasible_size
 
 alpha = fl.AlphaInteraction()
 sizes = np.arange(2, 31)
@@ -40,7 +40,8 @@ ax.plot(sizes, floor, "s--", label="proved floor of V, any state")
 ax.axhline(alpha.c_star, color="black", linestyle=":", label="c*")
 ax.set(xlabel="n, agents", ylabel="energy", ylim=(0, 150))
 ax.legend()
-print(f"lattices stay below c* up to n = {lattice_reach(alpha)}, and from n = {none_from(alpha)} on no state does")
+largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
+print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
 # The floor is a theorem of its own. A pair that lowers $V$ below $\psi_\alpha(r_\alpha)$ is between 6.568 and 8.4
@@ -112,7 +113,7 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
 n_none = ...
 
 # %% tags=["solution"]
-n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
+n_none = least_infeasible_size(fl.AlphaInteraction(a=1.0, b=1.0))
 
 # %% tags=["check"]
 grade(n_none, 23, hint="how do V and c* change when a = b does?")

@@ -294,7 +294,7 @@ def ensure_dimension(m: int) -> int:
     return int(m)
 
 
-def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
+def ensure_returned_array(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
     """Raise unless the array that a law returned is real and of the flock's shape."""
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
         kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__

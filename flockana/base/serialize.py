@@ -107,12 +107,12 @@ def read_json(text: str) -> Any:
     ValueError: the key 'x' is given twice
     """
     try:
-        return json.loads(text, object_pairs_hook=_without_twins)
+        return json.loads(text, object_pairs_hook=_unique_keys)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
 
 
-def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return a JSON object; raise on duplicate keys."""
     data: dict[str, Any] = {}
     for key, value in pairs:

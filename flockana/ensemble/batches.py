@@ -25,7 +25,7 @@ Batch = tuple[Any, ...]
 Pending = dict[Future[Any], Batch]
 
 
-def work_through(
+def map_in_batches(
     items: Sequence[Item],
     function: Callable[[tuple[Item, ...]], tuple[Result, ...]],
     workers: WorkerPool,
@@ -40,9 +40,9 @@ def work_through(
 
     Examples
     --------
-    >>> from flockana.ensemble.executors import crew
-    >>> with crew(jobs=1) as workers:
-    ...     list(work_through([2, 3], lambda batch: tuple(x * x for x in batch), workers))
+    >>> from flockana.ensemble.executors import worker_pool
+    >>> with worker_pool(jobs=1) as workers:
+    ...     list(map_in_batches([2, 3], lambda batch: tuple(x * x for x in batch), workers))
     [((2, 4),), ((3, 9),)]
     """
     waiting, suspects = deque(items), deque[Any]()

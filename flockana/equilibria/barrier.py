@@ -165,13 +165,13 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
 
 
-def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
+def least_infeasible_size(alpha: AlphaInteraction, m: int = 2) -> int | None:
     """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown.
 
     Examples
     --------
-    >>> none_from(AlphaInteraction()), none_from(AlphaInteraction(d=15.0, r=18.0, h=0.1, a=3.0, b=3.0))
-    (23, 26)
+    >>> least_infeasible_size(AlphaInteraction())
+    23
     """
     # the floor rises with n: every agent more adds pairs outside the cliques
     return next((n for n in range(2, _LARGEST) if energy_floor(alpha, n, m) >= alpha.c_star > 0.0), None)

@@ -183,7 +183,7 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
     return float(values[0]) / largest, min((landscape.change(0) + 2.0 * landscape.rounding) / largest, float("inf"))
 
 
-def downhill(landscape: Landscape) -> FloatArray:
+def descent_direction(landscape: Landscape) -> FloatArray:
     """Return the unit direction (n, m) of steepest second-order descent.
 
     The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.

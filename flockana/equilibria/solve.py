@@ -25,9 +25,9 @@ from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
     EquilibriumKind,
+    classify_spectrum,
     ensure_small,
     falling,
-    kind_of,
     spectrum,
 )
 from flockana.equilibria.descent import descend
@@ -238,7 +238,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         energy=potential.energy(q),
         residual=residual,
         links=links(q, potential.pair.range),
-        kind=kind_of(modes),
+        kind=classify_spectrum(modes),
         hessian_eigenvalues=modes.eigenvalues,
         rigid_modes=modes.rigid,
         zero_modes=modes.zero,
@@ -249,7 +249,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
     return sealed(found)
 
 
-def ensure_found(name: str, equilibrium: Equilibrium) -> None:
+def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
     """Raise unless an equilibrium is unchanged since a solver returned it."""
     source = "one as find_equilibrium returned it or read it from a file"
     ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     """
     from scipy.sparse import csr_array
 
-    q = near_one(ensure_points("q", q))[0]
+    q = scaled_near_one(ensure_points("q", q))[0]
     links = ensure_links(links, len(q))
     m = q.shape[1]
     step = q[links[:, 1]] - q[links[:, 0]]
@@ -107,7 +107,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     >>> rigidity(square, sides).flexes, rigidity(square, [*sides, [0, 2]]).infinitesimally_rigid
     (1, True)
     """
-    q, tol = near_one(ensure_points("q", q))[0], ensure_positive("tol", tol)
+    q, tol = scaled_near_one(ensure_points("q", q))[0], ensure_positive("tol", tol)
     matrix = rigidity_matrix(q, links)
     if dense is None:
         dense = q.size <= DENSE_MAX

@@ -17,7 +17,7 @@ from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.measures.metrics import coincident_pairs, connectivity, giant_share
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.scenarios.findings import as_tightly, component_count, finding
+from flockana.scenarios.findings import component_count, finding, same_accuracy
 from flockana.scenarios.scenario import Report
 from flockana.theorems import Claim, Tolerances
 
@@ -62,7 +62,7 @@ def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     was = run.law
     printed = isinstance(was, MSNDiscretisation)
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
-    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **as_tightly(run)))
+    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **same_accuracy(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
     return _about("unit-gains", rank, 0.7, _SCATTER[1.0], text)
 
