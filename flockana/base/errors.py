@@ -13,7 +13,7 @@ _FEW = 16  # names that are all told
 DIGITS = 40  # of a whole number beyond which it is told by its size: Python itself refuses to write some
 
 
-def told(value: Any) -> str:
+def format_value(value: Any) -> str:
     """A value as a message writes it: on one line, and a whole number of very many digits by its size.
 
     Parameters
@@ -23,7 +23,7 @@ def told(value: Any) -> str:
 
     Examples
     --------
-    >>> told("x"), told([1, 2]), told(-(10**400))
+    >>> format_value("x"), format_value([1, 2]), format_value(-(10**400))
     ("'x'", '[1, 2]', 'about -1e+400')
     """
     if isinstance(value, int) and abs(value) >= 10**DIGITS:
@@ -69,14 +69,14 @@ class UnknownNameError(ArgumentError):
 
         names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
         folded = {known_name.casefold(): known_name for known_name in names}
-        text = name if isinstance(name, str) else told(name)
+        text = name if isinstance(name, str) else format_value(name)
         wanted = text.casefold()
         close = [folded[one] for one in get_close_matches(wanted, folded, n=1)]
         hint = f"did you mean {close[0]!r}? " if close else ""
         nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
         many = len(names) > _FEW
         rest = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
-        super().__init__(f"unknown {kind} {told(name)}; {hint}{rest}")
+        super().__init__(f"unknown {kind} {format_value(name)}; {hint}{rest}")
         self._arguments = (str(kind), text, names)
 
     def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:

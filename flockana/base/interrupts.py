@@ -10,12 +10,12 @@ from multiprocessing import resource_tracker
 
 
 @contextmanager
-def interrupts_held() -> Iterator[list[int]]:
+def defer_sigint() -> Iterator[list[int]]:
     """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
 
     Examples
     --------
-    >>> with interrupts_held() as came:
+    >>> with defer_sigint() as came:
     ...     print("whole", came)
     whole []
     """
@@ -36,12 +36,12 @@ def interrupts_held() -> Iterator[list[int]]:
 
 
 @contextmanager
-def interrupts_hidden() -> Iterator[None]:
+def block_sigint() -> Iterator[None]:
     """Processes that this thread starts meanwhile never get Ctrl-C, not even before they can ignore it.
 
     Examples
     --------
-    >>> with interrupts_hidden():
+    >>> with block_sigint():
     ...     pass
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
@@ -56,13 +56,13 @@ def interrupts_hidden() -> Iterator[None]:
 
 
 @contextmanager
-def interrupts_recognised() -> Iterator[None]:
+def restore_interrupts() -> Iterator[None]:
     """Make Ctrl-C again what others made of it: a kernel's call fails where it comes, a lock is found in disorder.
 
     Examples
     --------
     >>> try:
-    ...     with interrupts_recognised():
+    ...     with restore_interrupts():
     ...         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
     ... except KeyboardInterrupt:
     ...     print("interrupted")

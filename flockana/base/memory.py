@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 _Value = TypeVar("_Value")
 
 
-class Remembering:
+class ResultCache:
     """An object that keeps, beside its fields, what others computed from it."""
 
-    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
+    def cached(self, name: str, compute: Callable[[], _Value]) -> _Value:
         """What was computed from this object before, or is now.
 
         Parameters
@@ -24,8 +24,8 @@ class Remembering:
 
         Examples
         --------
-        >>> kept = Remembering()
-        >>> kept.remembered("answer", lambda: 42), kept.remembered("answer", lambda: 0)
+        >>> kept = ResultCache()
+        >>> kept.cached("answer", lambda: 42), kept.cached("answer", lambda: 0)
         (42, 42)
         """
         if name not in self._memory:

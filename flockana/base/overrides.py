@@ -10,7 +10,7 @@ from typing import Any
 from flockana.base.errors import ArgumentError
 
 
-def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
+def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
     """Whether no subclass of the class that defines an attribute, as far as `kind`, defines any of the others anew.
 
     Examples
@@ -20,7 +20,7 @@ def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
     ...     area = 4.0
     >>> class Larger(Square):
     ...     side = 3.0
-    >>> speaks_for(Square, "area", ["side"]), speaks_for(Larger, "area", ["side"])
+    >>> overrides_consistently(Square, "area", ["side"]), overrides_consistently(Larger, "area", ["side"])
     (True, False)
     """
     ways = list(kind.__mro__)

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError, FileError, told
+from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.modules import modules
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
@@ -117,7 +117,7 @@ def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     data: dict[str, Any] = {}
     for key, value in pairs:
         if key in data:
-            raise ValueError(f"the key {told(key)} is given twice")
+            raise ValueError(f"the key {format_value(key)} is given twice")
         data[key] = value
     return data
 

@@ -35,7 +35,7 @@ from flockana.base.seals import ensure_sealed, sealed
 from flockana.certified.alignment import centred, projects, turned_to
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.damping import damping
-from flockana.certified.decimals import floored
+from flockana.certified.decimals import round_down
 from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
@@ -258,8 +258,8 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
     lengths = {pair: length for pair, (_, length) in around.gaps.items()}
     second, degree = damping(u, lengths, reach)
     least, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
-    curvature = floored(shells.curvature, _STATED)
-    surplus = floored(shells.surplus, _STATED)
+    curvature = round_down(shells.curvature, _STATED)
+    surplus = round_down(shells.surplus, _STATED)
     apart = min((length - ball(reach)).lower() for length in lengths.values())
     if not (least > 0 and curvature > 0 and apart > 0 and projects(u, around.rest, shells.radius)):
         return None
@@ -271,12 +271,12 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
         law=law,
         rest=np.array(computed).reshape(u.n, u.m),
         radius=_fraction(shells.radius),
-        level=_fraction(floored(shells.level, _STATED)),
+        level=_fraction(round_down(shells.level, _STATED)),
         curvature=_fraction(curvature),
         damping=_fraction(least),
         rate=_fraction(found.rate),
         overshoot=_fraction(found.overshoot),
-        distance=_fraction(floored(apart, _STATED)),
+        distance=_fraction(round_down(apart, _STATED)),
         connected=second > 0,
         proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
     )

@@ -18,7 +18,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.files import write_whole
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
-from flockana.certified.decimals import decimal, written
+from flockana.certified.decimals import decimal, format_decimal
 from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
@@ -37,13 +37,13 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
     basin.ensure_whole()
     proof = basin.proof
     u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
-    parameters = {name: written(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
-    gains = {name: written(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
+    parameters = {name: format_decimal(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
+    gains = {name: format_decimal(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
     bonds = [
         {
             "pairs": [list(pair) for pair in bond.pairs],
-            "along": [written(row[k]) for row in shells.along],
-            "across": [written(row[k]) for row in shells.across],
+            "along": [format_decimal(row[k]) for row in shells.along],
+            "across": [format_decimal(row[k]) for row in shells.across],
         }
         for k, bond in enumerate(shells.bonds)
     ]
@@ -54,13 +54,13 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         "prose": list(BASIN_PROSE),
         "law": {"algorithm": type(basin.law).__name__, **parameters, **gains},
         "positions": [[float(x).hex() for x in row] for row in basin.rest],
-        "box": written(proof.box),
+        "box": format_decimal(proof.box),
         "bonds": bonds,
         "curvatures": _all(shells.curvatures),
-        "second_eigenvalue": written(proof.second),
-        "degree": written(proof.degree),
-        "surplus": written(bounds.surplus),
-        "lyapunov": {name: written(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
+        "second_eigenvalue": format_decimal(proof.second),
+        "degree": format_decimal(proof.degree),
+        "surplus": format_decimal(bounds.surplus),
+        "lyapunov": {name: format_decimal(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
         **{name: decimal(getattr(basin, name)) for name in STATED},
         "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
@@ -91,4 +91,4 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
 
 
 def _all(values: tuple[fmpq, ...]) -> list[str]:
-    return [written(value) for value in values]
+    return [format_decimal(value) for value in values]

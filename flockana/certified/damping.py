@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from flint import arb, arb_mat, fmpq
 
-from flockana.certified.decimals import floored, raised
+from flockana.certified.decimals import round_down, round_up
 from flockana.certified.intervals import ball, square
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.certified.structure import Structure
@@ -29,8 +29,8 @@ def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -
     strongest = {pair: u.weight(square((length - away).max(arb(0)))) for pair, length in lengths.items()}
     degrees = [sum((w for pair, w in strongest.items() if i in pair), arb(0)) for i in range(u.n)]
     second = _second_eigenvalue(u.n, weakest)
-    floor = fmpq(0) if second is None else floored(second, _DIGITS)
-    return floor, raised(max(degree.upper() for degree in degrees), _DIGITS)
+    floor = fmpq(0) if second is None else round_down(second, _DIGITS)
+    return floor, round_up(max(degree.upper() for degree in degrees), _DIGITS)
 
 
 def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | None:

@@ -43,19 +43,19 @@ def small(x: arb, digits: int = 2) -> str:
     return f"{_shifted(mantissa, digits - 1)}e{exponent:d}"
 
 
-def floored(x: arb | fmpq, digits: int) -> fmpq:
+def round_down(x: arb | fmpq, digits: int) -> fmpq:
     """The largest decimal of so many significant digits that is certainly not above x, a ball or an exact number."""
     low = Fraction(int(x.p), int(x.q)) if isinstance(x, fmpq) else _end(x.lower())
     unit = _unit(abs(low), digits)
     return _rational(floor(low / unit) * unit)
 
 
-def raised(x: arb | fmpq, digits: int) -> fmpq:
+def round_up(x: arb | fmpq, digits: int) -> fmpq:
     """The smallest decimal of so many significant digits that is certainly not below x."""
-    return -floored(-x, digits)
+    return -round_down(-x, digits)
 
 
-def written(x: fmpq) -> str:
+def format_decimal(x: fmpq) -> str:
     """A rational as the decimal that it is, nothing rounded."""
     return decimal(Fraction(int(x.p), int(x.q)))
 

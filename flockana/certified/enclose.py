@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.certified.flow import Flow
@@ -144,7 +144,7 @@ def _collected(
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 for t, step in _steps(flow, start, span, knobs):
                     if isinstance(step, str):
                         message = step

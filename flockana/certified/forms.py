@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from flockana.base.errors import FlockanaError, told
+from flockana.base.errors import FlockanaError, format_value
 
 NUMBER, BINARY, WHOLE, TRUTH, TEXT, ANY = "number", "binary", "whole", "truth", "text", "any"
 MADE_WITH = {"flockana": TEXT, "python-flint": TEXT}
@@ -68,4 +68,4 @@ def ensure_form(data: Any, form: Any, where: str = "it") -> None:
 
 def _ensure(holds: bool, data: Any, where: str, expected: str) -> None:
     if not holds:
-        raise RejectedError(f"{where} = {told(data)[:_SHOWN]}: expected {expected}")
+        raise RejectedError(f"{where} = {format_value(data)[:_SHOWN]}: expected {expected}")

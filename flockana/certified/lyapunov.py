@@ -27,7 +27,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.decimals import floored, raised
+from flockana.certified.decimals import round_down, round_up
 from flockana.certified.intervals import ball
 
 _DIGITS, _CHOSEN = 3, 9  # of what is proved, and of the choice, some of whose differences are small
@@ -86,10 +86,10 @@ def decay(bounds: Bounds) -> Decay:
         low, high = np.where(left, middle, low), np.where(left, high, middle)
     best = int(np.argmax(low))
     proposed = (eps[best], *(x[best] for x in _others(bounds, eps, low)))
-    eps_, theta, kappa, tau = (floored(arb(float(x)), _CHOSEN) for x in proposed)
-    rate = floored(rate_of(bounds, eps_, theta, kappa, tau) / 2, _DIGITS)
+    eps_, theta, kappa, tau = (round_down(arb(float(x)), _CHOSEN) for x in proposed)
+    rate = round_down(rate_of(bounds, eps_, theta, kappa, tau) / 2, _DIGITS)
     share = ball(eps_) / ball(bounds.curvature).sqrt()
-    return Decay(eps_, theta, kappa, tau, rate, raised((1 + share) / (1 - share), _DIGITS))
+    return Decay(eps_, theta, kappa, tau, rate, round_up((1 + share) / (1 - share), _DIGITS))
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -21,7 +21,7 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.decimals import floored
+from flockana.certified.decimals import round_down
 from flockana.certified.intervals import ball, hull
 from flockana.certified.krawczyk import column, identity, least_eigenvalue
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
@@ -202,7 +202,7 @@ class Shells:
 
 def prove(around: Surroundings, floors: Floors) -> Shells | None:
     """What was proposed, rounded down and proved; None where a bound is not certain."""
-    radius = floored(arb(floors.radius), _DIGITS)
+    radius = round_down(arb(floors.radius), _DIGITS)
     reach = ROOT_TWO * radius
     bonds = around.bonds(reach)
     if len(bonds) != floors.along.shape[1]:
@@ -210,8 +210,8 @@ def prove(around: Surroundings, floors: Floors) -> Shells | None:
     cells = [LengthCells(around.u, bond.rest, reach) for bond in bonds]
     along, across, curvatures = [], [], []
     for i in range(SHELLS):
-        a = tuple(floored(arb(y), _DIGITS) for y in floors.along[i])
-        b = tuple(floored(arb(y), _DIGITS) for y in floors.across[i])
+        a = tuple(round_down(arb(y), _DIGITS) for y in floors.along[i])
+        b = tuple(round_down(arb(y), _DIGITS) for y in floors.across[i])
         if not all(cell.holds(i + 1, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
             return None
         least = around.curvature(bonds, a, b)
@@ -219,5 +219,5 @@ def prove(around: Surroundings, floors: Floors) -> Shells | None:
             return None
         along.append(a)
         across.append(b)
-        curvatures.append(floored(least, _DIGITS))
+        curvatures.append(round_down(least, _DIGITS))
     return Shells(radius, tuple(bonds), tuple(along), tuple(across), tuple(curvatures))

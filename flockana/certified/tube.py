@@ -54,7 +54,7 @@ class Approach(NamedTuple):
     time: float
 
 
-class Touch(NamedTuple):
+class ObstacleApproach(NamedTuple):
     """How near an agent comes to an obstacle: a proved lower bound, which ones, and when (the step's begin)."""
 
     lower: float
@@ -220,18 +220,18 @@ class Tube:
         terms = sphere_terms(self.law) if self.law.obstacles else ()
         return [[term.clearance(x) for x in agents] for term in terms]
 
-    def min_clearance(self) -> Touch:
+    def min_clearance(self) -> ObstacleApproach:
         """A proved lower bound of the clearance of any agent from any obstacle, at all times of the tube."""
         with ctx.workprec(BITS):
             boxes = [self.boxes[0], *(step.during for step in self.taken)]
             rows = [self._clearances(box) for box in boxes]
         each = [
-            Touch(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
+            ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for obstacle, own in enumerate(row)
             for agent, clearance in enumerate(own)
         ]
-        return min(each, key=lambda one: one.lower, default=Touch(inf, 0, 0, self.t[0]))
+        return min(each, key=lambda one: one.lower, default=ObstacleApproach(inf, 0, 0, self.t[0]))
 
     def cohesion_radius(self) -> FloatArray:
         """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""

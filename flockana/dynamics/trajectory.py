@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.memory import Remembering
+from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.seals import changed
 from flockana.base.units import rescale, times
@@ -54,7 +54,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Remembering):
+class Trajectory(ResultCache):
     """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters

@@ -13,7 +13,7 @@ from concurrent.futures import wait as wait_for
 from typing import Any, TypeVar
 
 from flockana.base.errors import FlockanaError, SolverError
-from flockana.ensemble.executors import Crew
+from flockana.ensemble.executors import WorkerPool
 
 _TICK = 0.2  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
@@ -28,7 +28,7 @@ Pending = dict[Future[Any], Batch]
 def work_through(
     items: Sequence[Item],
     function: Callable[[tuple[Item, ...]], tuple[Result, ...]],
-    workers: Crew,
+    workers: WorkerPool,
     *,
     batch_size: Callable[[tuple[Result, ...]], int] = lambda results: 1,
     watch: Callable[[tuple[Item, ...]], None] = lambda under_way: None,
@@ -109,7 +109,7 @@ def _under_way(pending: Pending) -> Batch:
     return tuple(item for future, batch in pending.items() if future.running() for item in batch)
 
 
-def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Crew) -> Batch:
+def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: WorkerPool) -> Batch:
     """Return the items that may have ended a worker; raise if the failure has another cause."""
     if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
         return batch

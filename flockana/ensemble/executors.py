@@ -33,7 +33,7 @@ class Serial(Executor):
 
 
 @dataclass
-class Crew:
+class WorkerPool:
     """Executor with its width and its way of failing."""
 
     executor: Executor  # who works
@@ -43,20 +43,22 @@ class Crew:
 
 
 @contextmanager
-def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None) -> Iterator[Crew]:
+def crew(
+    executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None
+) -> Iterator[WorkerPool]:
     """Give workers: this process if there shall be one; processes that are started here end here."""
     ensure_crew(executor, cluster, jobs)
     count = cores() if jobs is None else jobs
     if executor is not None:
         width = getattr(executor, "_max_workers", None) or cores()
-        yield Crew(executor, lambda: width)
+        yield WorkerPool(executor, lambda: width)
     elif cluster is not None:
         from flockana.ensemble.cluster import connected
 
         with connected(cluster, count) as (workers, threads):
-            yield Crew(workers, threads, loses=True)
+            yield WorkerPool(workers, threads, loses=True)
     elif count == 1:
-        yield Crew(Serial(), lambda: 1)
+        yield WorkerPool(Serial(), lambda: 1)
     else:
         with _pool(count) as pool:
             yield pool
@@ -77,7 +79,7 @@ def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
 
 
 @contextmanager
-def _pool(count: int) -> Iterator[Crew]:
+def _pool(count: int) -> Iterator[WorkerPool]:
     """Yield a process pool that is replaced when a worker dies."""
     pools = [ProcessPool(count)]
 
@@ -87,7 +89,7 @@ def _pool(count: int) -> Iterator[Crew]:
         return pools[-1]
 
     try:
-        yield Crew(pools[0], lambda: count, renew)
+        yield WorkerPool(pools[0], lambda: count, renew)
         pools[-1].shutdown()
     except BaseException:
         pools[-1].stop()

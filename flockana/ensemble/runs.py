@@ -7,14 +7,14 @@ from functools import partial
 
 from flockana.base.errors import FlockanaError, SolverError
 from flockana.ensemble.batches import work_through
-from flockana.ensemble.executors import Crew
+from flockana.ensemble.executors import WorkerPool
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
 
 BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256
 
 
-def make_runs(request: Request, jobs: Sequence[Job], workers: Crew) -> Iterator[tuple[Record, ...]]:
+def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Iterator[tuple[Record, ...]]:
     """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
         for done in work_through(jobs, partial(run_batch, request), workers, batch_size=_batch_size):

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.seals import SEAL, digest
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
@@ -128,7 +128,7 @@ def run_one(request: Request, job: Job) -> Record:
     """Make one run; errors become part of its record."""
     started = time.perf_counter()
     try:
-        with interrupts_recognised():
+        with restore_interrupts():
             item = build(request.scenario, job)
             run = item.run()
             if run.status == "interrupted":

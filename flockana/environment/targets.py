@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.environment.target import Harmonic, Target
 
@@ -156,7 +156,7 @@ class SineTarget(Target):
         for name in ("amplitude", "frequency", "phase"):
             object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
         if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
-            raise ArgumentError(f"axis = {told(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
+            raise ArgumentError(f"axis = {format_value(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
 
     def _swing(self, value: float) -> FloatArray:
@@ -316,7 +316,7 @@ class CallableTarget(Target):
         try:
             start, end = (float(each) for each in self.span)
         except (TypeError, ValueError):
-            raise ArgumentError(f"span = {told(self.span)}: expected two times, (start, end)") from None
+            raise ArgumentError(f"span = {format_value(self.span)}: expected two times, (start, end)") from None
         if not end - start > 4.0 * _STEP * self.time:
             raise ArgumentError(f"span = {self.span}: expected a start and an end, more than 4e-5 time apart")
         object.__setattr__(self, "span", (start, end))

@@ -53,7 +53,7 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """
     steps, message = 100 * max_iter, "Converged"
     best = relax(potential, q, steps, tol=_ROUGH)
-    for heat in _HEATS if gave_way(potential, q, best) else ():
+    for heat in _HEATS if pairs_collapsed(potential, q, best) else ():
         other = relax(potential, anneal(potential, best, heat), steps, tol=_ROUGH)
         if potential.energy(other) < potential.energy(best):
             best, message = other, "Converged, annealed"
@@ -94,13 +94,13 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
     return q
 
 
-def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
+def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
     """Return whether neighbours at the start moved against each other by more than their distance.
 
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> gave_way(Potential(Algorithm1()), np.array([[0.0], [6.0]]), np.array([[9.0], [16.0]]))
+    >>> pairs_collapsed(Potential(Algorithm1()), np.array([[0.0], [6.0]]), np.array([[9.0], [16.0]]))
     False
     """
     i, j = links(start, potential.pair.range).T

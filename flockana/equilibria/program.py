@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.base.interrupts import interrupts_held
+from flockana.base.interrupts import defer_sigint
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.equilibria.terms import has_form, own_derivatives, pair_term
 from flockana.measures.nets import LinkArray
@@ -125,7 +125,7 @@ class Program:
     (True, True, 'Solve_Succeeded')
     """
 
-    @interrupts_held()
+    @defer_sigint()
     def __init__(self, potential: Potential, shape: tuple[int, int], pairs: LinkArray, gauge: int) -> None:
         self.potential, self.shape, self.pairs, self.gauge = potential, shape, pairs, gauge
         self.size = shape[0] * shape[1]
@@ -137,7 +137,7 @@ class Program:
         value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
         derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
-        self.derivatives = interrupts_held()(derivatives)
+        self.derivatives = defer_sigint()(derivatives)
         self._program: Any = {"x": x, "p": c, "f": value, "g": held}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
@@ -166,7 +166,7 @@ class Program:
         basis = self.potential.symmetries(q0) if basis is None else basis
         held = basis.T @ start
         box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
-        with interrupts_held() as self._watch.came:
+        with defer_sigint() as self._watch.came:
             solver = self._solver(tol, max_iter)
             solution = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
             stats, x = solver.stats(), np.array(solution["x"])

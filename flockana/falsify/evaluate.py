@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, grade
@@ -50,7 +50,7 @@ class Problem:
     def __call__(self, point: FloatArray) -> Evaluation:
         """Evaluate a point; an error becomes the grade of a failed run."""
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 return self.judged(self.space.case(point))
         except Exception as error:  # a search must outlive every state that it tries
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
 
@@ -60,10 +60,10 @@ def pair_law(
         raise ArgumentError("expected a potential or a force, one of the two")
     for name, table in (("parameters", parameters), ("units", units)):
         if not isinstance(table, Mapping | None):
-            raise ArgumentError(f"{name} = {told(table)}: expected a dictionary by the parameters' names")
+            raise ArgumentError(f"{name} = {format_value(table)}: expected a dictionary by the parameters' names")
     for name, both in (units or {}).items():
         if not (isinstance(both, Sequence) and len(both) == 2 and all(type(power) is int for power in both)):
-            raise ArgumentError(f"units[{name!r}] = {told(both)}: expected whole powers (length, time)")
+            raise ArgumentError(f"units[{name!r}] = {format_value(both)}: expected whole powers (length, time)")
     return FormulaInteraction(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),

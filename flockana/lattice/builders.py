@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
-from flockana.base.errors import told
+from flockana.base.errors import format_value
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
@@ -55,7 +55,9 @@ def max_ratio(name: str) -> float:
 
 def _ensure_fits(n: int, m: int) -> None:
     """Raise before a lattice is built that does not fit into memory."""
-    ensure_fits(f"a lattice of {told(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents")
+    ensure_fits(
+        f"a lattice of {format_value(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents"
+    )
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:

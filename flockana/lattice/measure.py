@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_nonnegative, ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.measures import nets
 from flockana.measures.nets import LinkArray, link_lengths
 
@@ -115,7 +115,7 @@ def classify(strain: float, *, lattice: float, quasi: float) -> str:
     """
     for name, value in (("strain", strain), ("lattice", lattice), ("quasi", quasi)):
         if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-            raise ArgumentError(f"{name} = {told(value)}: expected one real number")
+            raise ArgumentError(f"{name} = {format_value(value)}: expected one real number")
     if strain <= lattice:
         return "α-lattice"
     return "quasi-α-lattice" if strain <= quasi else "neither"

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import ensure_state
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
@@ -22,7 +22,7 @@ from flockana.measures.frame import moving_frame
 def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
     """Raise unless a parameter is of its kind."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {told(value)}: expected {example}")
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
 
 
 PAIR, GAINS, TARGET = (

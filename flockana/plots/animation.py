@@ -15,7 +15,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import ensure_path, ensure_target, replacing
-from flockana.base.interrupts import interrupts_held
+from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
@@ -135,7 +135,7 @@ def animate(
     writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
-    with replacing(target) as partial, interrupts_held() as came, style(), mpl.rc_context(_STILL):
+    with replacing(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):
 
         def drawn(k: int, total: int) -> None:
             if came:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -53,11 +53,11 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
     if not isinstance(responses, Mapping):
-        raise ArgumentError(f"responses = {told(responses)}: expected frequency responses by label")
+        raise ArgumentError(f"responses = {format_value(responses)}: expected frequency responses by label")
     for label, response in responses.items():
         if not (hasattr(response, "omega") and hasattr(response, "complex")):
             raise ArgumentError(
-                f"responses[{label!r}] = {told(response)}: expected a frequency response, such as that of CentreOfMass"
+                f"responses[{label!r}] = {format_value(response)}: expected a frequency response, as of CentreOfMass"
             )
     if ax is None:
         import matplotlib.pyplot as plt

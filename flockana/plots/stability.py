@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import ensure_links, ensure_points
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.plots.animation import animate
 from flockana.plots.style import (
     BLUE,
@@ -56,10 +56,12 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     try:
         values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"poles = {told(poles)}: expected complex numbers, or groups of them by label") from None
+        raise ArgumentError(
+            f"poles = {format_value(poles)}: expected complex numbers, or groups of them by label"
+        ) from None
     whole = np.concatenate([*values.values(), np.empty(0)])
     if whole.size == 0:
-        raise ArgumentError(f"poles = {told(poles)}: expected at least one eigenvalue")
+        raise ArgumentError(f"poles = {format_value(poles)}: expected at least one eigenvalue")
     axes = ensure_axes(ax)
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.ensemble.batches import work_through
 from flockana.ensemble.executors import crew
 from flockana.laws.discrete import DiscreteLaw
@@ -75,7 +75,7 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
 def check(task: Work) -> Done:
     """Run and verify one task in this process; an error names the task."""
     try:
-        with interrupts_recognised():
+        with restore_interrupts():
             if isinstance(task, Survey):
                 return make_survey(task)
             if isinstance(task, Section):

@@ -30,7 +30,7 @@ class Enclosure:
 
     def verdict(self, name: str, run: Trajectory, *, tolerances: Tolerances | None, subject: str) -> Verdict:
         """Check a theorem on all that starts where a run does."""
-        tube, basin = run.remembered("enclosed", lambda: self._enclosed(run))
+        tube, basin = run.cached("enclosed", lambda: self._enclosed(run))
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:

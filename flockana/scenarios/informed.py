@@ -118,9 +118,9 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("lag", 1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
 
 
-def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
+def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Scenario]:
     expected: dict[str, Status] = {"energy": "verified", "cohesion": "verified"}
-    if told:
+    if feedforward:
         expected |= dict.fromkeys(("su-varying", "su-varying:centre", "su-varying:velocities"), "verified")
         expected |= {"su-varying:distance": "verified", "collision-energy:below": "verified"}
     else:
@@ -129,19 +129,27 @@ def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
     def build(seed: int = 0) -> Scenario:
         q, p = _near_lattice(seed, 12, 0.2)
         plain = Algorithm2(target=_CIRCLE)
-        law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, told=True) if told else plain
+        law = (
+            compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, feedforward=True)
+            if feedforward
+            else plain
+        )
         return Scenario(
             name,
             title,
             "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
-            + ("radius 20 and are told its acceleration." if told else "radius 20; its acceleration is not told."),
+            + (
+                "radius 20 and are told its acceleration."
+                if feedforward
+                else "radius 20; its acceleration is not told."
+            ),
             law,
             q,
             p,
             (0.0, 40.0),
             seed,
             expected,
-            () if told else (Report("lag", "the centre of mass does not come to the leader", _lag),),
+            () if feedforward else (Report("lag", "the centre of mass does not come to the leader", _lag),),
             references=_REFERENCES,
         )
 
@@ -206,9 +214,9 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "leader-told": _varying(
         "leader-told",
         "A leader that circles, and tells its acceleration: the centre of mass converges to it",
-        told=True,
+        feedforward=True,
     ),
     "leader-untold": _varying(
-        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", told=False
+        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", feedforward=False
     ),
 }

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from flockana.base.checks import ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, UnknownNameError, told
+from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
@@ -174,7 +174,7 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
         from flockana.certified.basin import Basin
 
         if not isinstance(basin, Basin):
-            raise ArgumentError(f"basin = {told(basin)}: expected a basin, as certify(...) returns it, or None")
+            raise ArgumentError(f"basin = {format_value(basin)}: expected a basin, as certify(...) returns it, or None")
         basin.ensure_whole()
     return Verdict(item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
 

@@ -222,7 +222,7 @@ def reach(seen: Observed) -> float:
 
 def nets_at(seen: Observed) -> Nets:
     """Return the net at each sample of a run of a law with a range."""
-    return seen.remembered("nets at samples", lambda: _nets_at(seen))
+    return seen.cached("nets at samples", lambda: _nets_at(seen))
 
 
 def _nets_at(seen: Observed) -> Nets:
@@ -237,7 +237,7 @@ def _nets_at(seen: Observed) -> Nets:
 
 def nets_between(seen: Observed) -> Nets:
     """Return the net in each interval between samples: what the motion may bring to r is left open."""
-    return seen.remembered("nets between samples", lambda: _nets_between(seen))
+    return seen.cached("nets between samples", lambda: _nets_between(seen))
 
 
 def _nets_between(seen: Observed) -> Nets:

@@ -216,7 +216,7 @@ def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
 
 
 def test_a_stated_number_has_its_digits_and_no_more():
-    rounded = check_basin.rounded_down
+    rounded = check_basin.round_down_float
     assert rounded("7.740", Fraction("7.7405"))
     assert not rounded("7.7399", Fraction("7.7405"))
     assert not rounded("7.739", Fraction("7.7405"))

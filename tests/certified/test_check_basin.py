@@ -14,7 +14,7 @@ from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS
 from flockana.certified.check_net import ROOT_TWO, Net
-from flockana.certified.decimals import floored, written
+from flockana.certified.decimals import format_decimal, round_down
 from tests.certified.conftest import basin_of
 
 
@@ -120,7 +120,10 @@ def test_the_rate_counts_all_that_damps_the_velocities(share):
     free = theta * curvature + 2 * (theta * surplus + (1 - theta) * curvature)
     kappa = (1 - share * min(1, theta * (curvature + eps * tau) / free)) * free / most
     rate = eps * (free - kappa * most) / (curvature + eps * tau) / 2
-    data["lyapunov"]["kappa"], data["rate"] = str(kappa), written(floored(fmpq(rate.numerator, rate.denominator), 3))
+    data["lyapunov"]["kappa"], data["rate"] = (
+        str(kappa),
+        format_decimal(round_down(fmpq(rate.numerator, rate.denominator), 3)),
+    )
     if share > 0:
         checked(data)
     else:

@@ -7,7 +7,7 @@ import pytest
 
 from flockana.base.errors import SolverError
 from flockana.ensemble.batches import work_through
-from flockana.ensemble.executors import Crew, crew
+from flockana.ensemble.executors import WorkerPool, crew
 
 
 class Mortal(Executor):
@@ -31,7 +31,7 @@ def squares(batch):
 
 
 def worked(pool, items, **options):
-    workers = Crew(pool, lambda: 2, renew=lambda: pool)
+    workers = WorkerPool(pool, lambda: 2, renew=lambda: pool)
     return [pair for done in work_through(items, squares, workers, **options) for pair in done]
 
 

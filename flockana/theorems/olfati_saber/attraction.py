@@ -84,7 +84,7 @@ def final_basin(seen: Observed) -> Basin:
     """Return the basin beside the last state of a run, as far as that is known; kept with the run."""
     q, p, q_error, p_error = seen.end
     off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
-    return seen.remembered("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
+    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
 
 
 def _translations(q: FloatArray) -> FloatArray:

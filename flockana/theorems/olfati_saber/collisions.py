@@ -36,7 +36,7 @@ IndexArray = npt.NDArray[np.intp]
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Return contacts of a run: pairs whose interpolated paths come within the contact distance."""
     tol = tolerances.contact * run.law.alpha.length
-    return run.remembered(
+    return run.cached(
         f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0])
     )
 
@@ -65,7 +65,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
     """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
-    return seen.remembered(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
+    return seen.cached(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
 
 def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
