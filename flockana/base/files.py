@@ -64,18 +64,7 @@ def _in_the_way(target: Path) -> str:
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
-    """Open a temporary file that replaces the target when complete, and is removed after an error.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     target = Path(folder) / "it.txt"
-    ...     with atomic_write(target) as partial:
-    ...         _ = partial.write_text("whole")
-    ...     target.read_text(), partial.exists()
-    ('whole', False)
-    """
+    """Open a temporary file that replaces the target when complete, and is removed after an error."""
     target = ensure_target(path, remedy=remedy)
     # the suffix stays last: writers of pictures and films go by it
     partial = target.parent / f".{target.stem}.{os.getpid()}.partial{target.suffix}"
