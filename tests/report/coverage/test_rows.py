@@ -65,9 +65,9 @@ def test_a_table_is_named_for_an_entry_of_the_bibliography(tmp_path):
 
 
 def test_what_is_absent_is_held_by_nothing():
-    with pytest.raises(ArgumentError, match="Fig. 1: a run: absent, and held by theorem:os-3; call it weaker"):
+    with pytest.raises(ArgumentError, match=r"Fig\. 1: a run: absent, and held by theorem:os-3; call it weaker"):
         Row("Fig. 1", "a run", "absent", (Reference("theorem", "os-3"),), "not there")
-    with pytest.raises(ArgumentError, match="Fig. 1: a run: absent, without a remark that says why"):
+    with pytest.raises(ArgumentError, match=r"Fig\. 1: a run: absent, without a remark that says why"):
         Row("Fig. 1", "a run", "absent")
 
 
