@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from importlib import import_module
@@ -21,7 +20,6 @@ STUDIES = (
     "right_hand_side",
     "formulas",
     "pairs",
-    "threads",
     "laws",
     "engines",
     "runs",
@@ -63,7 +61,6 @@ def _options() -> argparse.Namespace:
 
 def _measured(names: tuple[str, ...] | list[str], *, quick: bool) -> dict[str, object]:
     """Everything that the studies find, as what JSON holds."""
-    os.environ.setdefault("NUMBA_NUM_THREADS", str(cores()))  # numba counts them once pinned: one study wants them all
     available, core = cores(), pin()  # before numpy is imported, which counts the cores for its threads
     from benchmarks.rows import to_json
 

@@ -23,7 +23,7 @@ def listed_evaluation(
     """An evaluation over a list that is kept, in one call: agents in the order of cells, which is given too."""
     order, few = spatial_order(q, REACH), np.empty(1, np.uint32)
     x, v, own = q[order].copy(), p[order].copy(), np.arange(len(q), dtype=np.uint64)
-    first, second, count, _ = list_pairs(x, REACH, few, few)
+    first, second, count = list_pairs(x, REACH, few, few)
     rate, given = _rate(law)
 
     def call() -> tuple[FloatArray, float]:

@@ -17,9 +17,8 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
-from flockana.dynamics.stepping import ONE_STEP, Balance, Check, Flow, Frame, Meetings, Stepper
+from flockana.dynamics.stepping import ONE_STEP, Balance, Check, EncounterCheck, Flow, Frame, Stepper
 from flockana.dynamics.switches import Switches
-from flockana.dynamics.threads import ensure_one_thread
 from flockana.dynamics.tolerance import Floors
 from flockana.kernels.advance import TOO_SMALL
 from flockana.laws.law import Law
@@ -38,7 +37,6 @@ def adaptive(
     floor: Floors,
     keep: FloatArray | None,
     tally: Tally,
-    threads: int = 1,
 ) -> Iterator[Sample | Samples]:
     """Samples and steps of a run, each kept as soon as it is made.
 
@@ -47,9 +45,8 @@ def adaptive(
     the run. `tally.notes` gets the numbers of steps made again and of switches.
     """
     switches = Switches(law, q0) if isinstance(law, SwitchedLaw) and law.located else None
-    engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor, threads)
+    engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor)
     if engine is None:
-        ensure_one_thread(law, threads)
         yield from _by_scipy(law, q0, p0, t_span, method.removeprefix(SCIPY), rtol, floor, keep, tally, switches)
         return
     ends, due = np.array([t_span[1]]), np.empty(0) if keep is None else keep
@@ -157,7 +154,7 @@ def _solver(
 def _checks(law: Law, frame: Frame, method: str, rtol: float, floor: Floors) -> tuple[Check, ...]:
     """What every step of a law without jumps must stand up to."""
     encounters = Encounters.of(law, frame.shape[0])
-    checks: list[Check] = [Meetings(encounters)] if encounters.any else []
+    checks: list[Check] = [EncounterCheck(encounters)] if encounters.any else []
     if frame.energetic and method in ONE_STEP:
         checks.append(Balance(law, rtol, floor.work))
     return tuple(checks)

@@ -17,7 +17,6 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
-from flockana.dynamics.threads import threads_of_numba
 from flockana.dynamics.tolerance import Floors
 from flockana.kernels.advance import CROWDED, RUNNING, advance
 from flockana.kernels.bodies import no_guard
@@ -33,7 +32,7 @@ _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floors(0.0, 0.0, 0.0)
 
 
-class Allowed(NamedTuple):
+class StepTolerances(NamedTuple):
     """Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by."""
 
     rtol: float
@@ -66,10 +65,8 @@ class Engine:
         The coefficients.
     encounters : Encounters
         What no step may leap over.
-    allowed : Allowed
+    allowed : StepTolerances
         Tolerances.
-    threads : int
-        That sum the pairs; the bits are the same for any number.
     """
 
     law: Law
@@ -77,8 +74,7 @@ class Engine:
     frame: Frame
     method: Tableau
     encounters: Encounters
-    allowed: Allowed
-    threads: int = 1
+    allowed: StepTolerances
 
     def start(self, q0: FloatArray, p0: FloatArray) -> tuple[Sample, Point]:
         """The start as a sample and as a point."""
@@ -90,15 +86,12 @@ class Engine:
     @cached_property
     def _system(self) -> tuple[Any, ...]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
-        from flockana.kernels.slabs import sum_of_slabs
-
         frame, size = self.frame, self.frame.shape[1]
         terms = self.form.padded
         view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
         arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
-        helpers = search_of_pairs()[0], sum_of_slabs(self.threads > 1)
         guards = (term.guard or no_guard() for term in terms)
-        functions = (*helpers, *(term.act for term in terms), *(term.energy for term in terms), *guards)
+        functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms), *guards)
         met = self.encounters
         bodies = met.bodies is not None
         around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, bodies, (met.shell, met.skirt))
@@ -110,7 +103,6 @@ class Engine:
             view,
             self.form.moving,
             len(self.form.terms),
-            np.array([term.of_pairs for term in terms]),
             *self.method,
             *around,
             *allowed,
@@ -119,15 +111,14 @@ class Engine:
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
         most = int(np.clip(_NUMBERS // (3 * self.frame.size), 1, _STEPS))
-        with threads_of_numba(self.threads):
-            result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
+        result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
         return result
 
     def fits(self, q: FloatArray, p: FloatArray) -> bool:
         """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
         q, p = np.array(q), np.array(p)  # what is compiled takes arrays that may be written to
         few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
-        first, second, count, _ = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
+        first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
         if count < 0:
             return False
         own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
@@ -146,7 +137,6 @@ def engine_of(
     method: str,
     rtol: float = 0.0,
     floor: Floors = EXACT,
-    threads: int = 1,
 ) -> Engine | None:
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
@@ -158,7 +148,7 @@ def engine_of(
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.work) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
-    engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance), threads)
+    engine = Engine(law, form, frame, tableau(method), encounters, StepTolerances(rtol, floor, balance))
     return engine if engine.fits(q0, p0) else None
 
 

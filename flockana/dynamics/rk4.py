@@ -11,7 +11,6 @@ from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters, State
 from flockana.dynamics.iterate import count_steps
 from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
-from flockana.dynamics.threads import ensure_one_thread
 from flockana.kernels.advance import GROWTH
 from flockana.laws.law import Law
 
@@ -24,20 +23,18 @@ def rk4(
     dt: float,
     keep: FloatArray | None,
     tally: Tally,
-    threads: int = 1,
 ) -> Iterator[Sample | Samples]:
     """Classical RK4 on (q, p, work); steps are shortened to land on the times to keep, and to meet every encounter.
 
     A step that would leap over an encounter is made again, and shorter: dt is the longest step, and what a step does
     not see is not an error of its order. `tally.notes` gets how many were.
     """
-    engine = engine_of(law, q0, p0, t_span[0], "RK4", threads=threads)
+    engine = engine_of(law, q0, p0, t_span[0], "RK4")
     if engine is not None:
         stops = np.array([t for t, _ in _stops(t_span, dt, keep)])
         marked = stops if keep is None else keep
         yield from stepped(engine, q0, p0, stops, np.empty(0), marked, tally, lambda _, t: _left(t, dt))
         return
-    ensure_one_thread(law, threads)
     energetic, encounters = has_energy(law, t_span[0], q0, p0), Encounters.of(law, len(q0))
     t, state, work = t_span[0], State(q0.copy(), p0.copy(), np.empty(0)), 0.0
     u, rate = law.flow(t, q0, p0)

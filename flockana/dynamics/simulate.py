@@ -22,7 +22,7 @@ from flockana.base.checks import (
     real_array,
 )
 from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.dynamics.adaptive import SCIPY, adaptive
@@ -31,7 +31,6 @@ from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Samples, Tally, copied, start_sample
-from flockana.dynamics.threads import ensure_threads
 from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
@@ -52,7 +51,6 @@ def simulate(
     atol: float | None = None,
     dt: float | None = None,
     t_eval: Any = None,
-    threads: int = 1,
     progress: bool = False,
     watch: Callable[[Sample], object] | None = None,
 ) -> Trajectory:
@@ -85,8 +83,6 @@ def simulate(
     t_eval : array_like, optional
         Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
         such as `Trajectory.min_distance`, rest on the steps in either case.
-    threads : int
-        That sum the pairs of a compiled run: worth it for some thousands of agents. The run is the same to the bit.
     progress : bool
         Show a progress bar on the terminal.
     watch : callable, optional
@@ -117,23 +113,21 @@ def simulate(
     check_first_call(law, t_span[0], q0, p0)
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
-    tally, how, threads = Tally(), dict[str, Any](), ensure_threads(threads)
+    tally, how = Tally(), dict[str, Any]()
     if isinstance(law, DiscreteLaw):
         if dt is not None or method != "DOP853":
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
-        if threads > 1:
-            raise ArgumentError(f"threads = {threads}: the steps of a discrete law take one; expected 1")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples: Iterator[Sample | Samples] = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally, threads)
+        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
     else:
         how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
         floor = error_floor(law, q0, p0, t_span, **how)
-        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally, threads)
+        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally)
         how["floors"] = list(floor)
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
@@ -221,7 +215,7 @@ def _collect(
     recorder, reached = Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 for found in samples if watch is None else _one_by_one(samples):
                     if found.wanted:
                         kept.append(found)

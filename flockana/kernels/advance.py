@@ -61,17 +61,17 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
     if bodies:
         points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
-        seen = _at_rest(t, h, points, system[5], system[13])
+        seen = _at_rest(t, h, points, system[5], system[11])
         for k in range(system[10]):
             share = guards[k](seen, allowance, system[2][k], shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
     common = common_way(h, q0, p0, u0, q1, p1, u1)
     between = band(common, farthest_ways(h, q0, p0, u0, q1, p1, u1, common), radii, far)
-    first, second, count, places, _ = pairs
+    first, second, count, places = pairs
     reach, skin = system[7]
     if not (places.size and holds(q0, between[1], reach + skin, places)):  # it may lack a pair so near at the beginning
-        first, second, count, _ = system[9](q0, between[1], scratch[0], scratch[1])
+        first, second, count = system[9](q0, between[1], scratch[0], scratch[1])
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
@@ -114,7 +114,7 @@ def _moved(vector, order, shape, back, out):
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _record(t, y, f, system, out):
     """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
-    (n, m), view, order, frame = system[4], system[5], system[8], system[13]
+    (n, m), view, order, frame = system[4], system[5], system[8], system[11]
     frame_at(t, view, frame)
     for i in range(n):
         own = np.int64(order[i])
@@ -163,10 +163,10 @@ def _controlled(h, error, exponent, rejected):
 
 
 def _advance(
-    search, summed, act0, act1, act2, act3, act4, act5, act6, act7,
+    search, act0, act1, act2, act3, act4, act5, act6, act7,
     energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7,
     guard0, guard1, guard2, guard3, guard4, guard5, guard6, guard7,
-    numbers, panels, shape, view, moving, terms, of_pairs,
+    numbers, panels, shape, view, moving, terms,
     tableau_a, tableau_c, estimates, interpolant, rows, stages, exponent,
     reach, radii, far, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
 ):  # fmt: skip
@@ -181,7 +181,7 @@ def _advance(
     system = (
         (act0, act1, act2, act3, act4, act5, act6, act7),
         (energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7),
-        numbers, panels, shape, view, moving, reach, order, search, terms, of_pairs, summed, np.empty((2, m)),
+        numbers, panels, shape, view, moving, reach, order, search, terms, np.empty((2, m)),
         np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)),
     )  # fmt: skip
     method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
@@ -275,8 +275,6 @@ def advance() -> Callable[..., Any]:
     """`_advance`, compiled when first asked for: what it is handed functions for, no two laws compile twice."""
     from numba import boolean, float64, int64, types
 
-    from flockana.kernels.slabs import slabs_signature
-
     def several(kind: Any, count: int) -> Any:
         return types.containers.UniTuple(kind, count)
 
@@ -284,9 +282,9 @@ def advance() -> Callable[..., Any]:
     matrix, vector = float64[:, ::1], float64[::1]
     search = types.FunctionType(search_of_pairs()[1])
     terms = (kind for each in (act, energy, guard) for kind in (each,) * MOST_TERMS)
-    law = (search, types.FunctionType(slabs_signature()), *terms)
+    law = (search, *terms)
     law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
-    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64, boolean[::1])
+    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64)
     method = (matrix, vector, matrix, matrix, int64[::1], int64, float64)
     around = (several(float64, 2), matrix, float64, boolean, several(float64, 2))
     limits = (float64, several(float64, 3), several(float64, 2), vector)

@@ -13,7 +13,7 @@ from typing import Any
 from numba.core import compiler
 from numba.core.compiler_lock import global_compiler_lock
 
-from flockana.base.garbage import garbage_seldom_sought
+from flockana.base.garbage import relaxed_gc
 
 _DEFAULTS = {name: option.default for name, option in compiler.Flags.options.items()}
 
@@ -34,5 +34,5 @@ class Compiler(compiler.Compiler):
     def compile_extra(self, func: Any) -> Any:
         """Compile a function."""
         self.state.flags = Flags(self.state.flags)
-        with global_compiler_lock, garbage_seldom_sought():
+        with global_compiler_lock, relaxed_gc():
             return super().compile_extra(func)

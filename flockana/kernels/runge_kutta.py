@@ -62,26 +62,23 @@ def _kept_up(y, system, pairs):
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def _act(t, y, f, system, pairs):
     """The rate of y into f, its pairs being listed."""
-    acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, of_pairs, summed, frame, near, room = system
-    (first, second, count, _, slabs), size, power = pairs, n * m, 0.0
+    acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, frame, near, room = system
+    (first, second, count, _), size, power = pairs, n * m, 0.0
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     frame_at(t, view, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     for k in range(terms):
-        if of_pairs[k] and slabs.size > 2:
-            power += summed(acts[k], t, x, v, u, frame, numbers[k], panels[k], first, second, slabs, order)
-        else:
-            power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order, near, room)
+        power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order, near, room)
     f[2 * size] = power
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, _, _, frame, near, room = system
+    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, frame, near, room = system
     x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
-    (first, second, count, _, _), total = pairs, 0.0
+    (first, second, count, _), total = pairs, 0.0
     frame_at(t, view, frame)
     if moving:
         total = 0.5 * squared_deviations(v)

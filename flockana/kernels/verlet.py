@@ -1,7 +1,7 @@
 """A Verlet list: the pairs within a range and a skin, good until ways beside the flock's own differ by the skin.
 
 A list is a half list of two index arrays with room to spare. Agents sorted by cell keep what a pair needs close in
-memory. Where the list was made in a grid its slabs follow each other (`flockana.kernels.slabs`), else it is one slab.
+memory.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from flockana.kernels.sums import slope_along
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
 MOST = 2**27  # room for pairs, at most: a gigabyte
-_SHARE, _SLABS = 2048, 16  # agents of a slab, at least; slabs at most
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -43,19 +42,12 @@ def _grown(first, second, needed):
 @njit(cache=True, error_model="numpy", nogil=True)
 def _list_by_grid(q, reach, order, start, rows, first, second):
     """The pairs of a flock sorted into a grid: cell by cell, each with what follows it."""
-    n, m = q.shape
+    m = q.shape[1]
     x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
     for i in range(order.size):
         for c in range(m):
             x[i, c] = q[order[i], c]
-    most = min(max(n // _SHARE, 1), _SLABS)
-    share, ahead = (n + most - 1) // most, np.int64(rows[rows.size - 1]) + 1 if rows.size else 1
-    slabs, parts, opened = np.zeros(most + 2, np.int64), 0, np.int64(0)
     for cell in range(start.size - 2):
-        before = np.int64(start[cell])
-        if cell - opened >= ahead and before - np.int64(start[opened]) >= share and before < n:
-            parts, opened = parts + 1, np.int64(cell)
-            slabs[parts] = count
         begin, end = start[cell], start[cell + 1]
         if begin == end:
             continue
@@ -65,7 +57,7 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
             candidates += np.int64(start[there + 2] - start[there - 1])
         needed = count + candidates * np.int64(end - begin)
         if needed > MOST:
-            return first, second, -1, slabs[:2]
+            return first, second, -1
         if needed > first.size:
             first, second = _grown(first, second, needed)
         for i in range(begin, end):
@@ -81,20 +73,18 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
                         square += gap * gap
                     first[count], second[count] = order[i], order[j]
                     count += square < limit
-    slabs[parts + 1] = count
-    return first, second, count, slabs[: parts + 2]
+    return first, second, count
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def list_pairs(q, reach, first, second):
-    """(first, second, count, slabs): the pairs closer than `reach`, written into the arrays given, or longer ones.
+    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
 
-    The count is −1, and nothing is listed, where there are too many for memory. Slab s are the pairs from slabs[s] on
-    to slabs[s + 1].
+    The count is −1, and nothing is listed, where there are too many for memory.
     """
-    (n, m), whole = q.shape, np.zeros(2, np.int64)
+    n, m = q.shape
     if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
-        return first, second, 0, whole
+        return first, second, 0
     order, start, rows = sort_into_grid(q, reach)
     if start.size:
         return _list_by_grid(q, reach, order, start, rows, first, second)
@@ -108,10 +98,9 @@ def list_pairs(q, reach, first, second):
         row, more = _fill_cells(*parts, forward, limit, row, first[count:], second[count:])
         count += more
         if row == n:
-            whole[1] = count
-            return first, second, count, whole
+            return first, second, count
         if count + n > MOST:
-            return first, second, -1, whole
+            return first, second, -1
         first, second = _grown(first, second, count + n)
 
 
@@ -162,9 +151,9 @@ def holds(q, within, made, reference):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def empty_list(n):
-    """(first, second, count, places, slabs) of a list that is yet to be made."""
+    """(first, second, count, places) of a list that is yet to be made."""
     first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return first, second, np.int64(0), np.empty((0, 0)), np.zeros(2, np.int64)
+    return first, second, np.int64(0), np.empty((0, 0))
 
 
 @njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
@@ -176,8 +165,8 @@ def outdated(q, reach, skin, pairs):
 @njit(cache=True, error_model="numpy", nogil=True)
 def listed_anew(q, reach, pairs, search):
     """A new list in the room of an old one, by `search`: `list_pairs`, handed in so that it is compiled once."""
-    first, second, count, slabs = search(q, reach, pairs[0], pairs[1])
-    return first, second, count, q.copy(), slabs
+    first, second, count = search(q, reach, pairs[0], pairs[1])
+    return first, second, count, q.copy()
 
 
 @cache
@@ -186,7 +175,7 @@ def search_of_pairs() -> tuple[Any, Any]:
     from numba import float64, int64, types, uint32
 
     indices = uint32[::1]
-    found = types.containers.Tuple((indices, indices, int64, int64[::1]))
+    found = types.containers.Tuple((indices, indices, int64))
     signature = found(float64[:, ::1], float64, indices, indices)
     list_pairs.compile(signature)
     return list_pairs.dispatcher, signature

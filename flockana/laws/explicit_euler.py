@@ -1,4 +1,4 @@
-"""Any continuous law, stepped by the explicit Euler scheme."""
+"""Any continuous law, stepped by the explicit Euler scheme: positions and velocities both with the old state."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ from flockana.laws.scheme import Scheme
 
 @dataclass(frozen=True)
 class ExplicitEuler(Scheme):
-    """q' = q + dt p, p' = p + dt u(t, q, p): both with the state at the beginning of the step.
-
-    A scheme of first order that feeds every vibration with energy: x'' = -ω² x grows by √(1 + ω² dt²) a step.
+    """q' = q + dt p, p' = p + dt u(t, q, p): of first order, and unstable wherever a swing is not damped.
 
     Parameters
     ----------
@@ -35,6 +33,8 @@ class ExplicitEuler(Scheme):
     >>> float(q[0, 0]), float(p[0, 0])
     (0.5, 1.0)
     """
+
+    position_factor = 0.0
 
     def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, UnknownNameError, told
+from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.recorded.contributions import SYMBOLS, contributions
 
 
@@ -29,7 +29,8 @@ class Free:
             if not names:
                 raise ArgumentError(f"free = None: {type(law).__name__} has no gains; name parameters: {_known(law)}")
         if isinstance(names, str) or not names or len(set(names)) < len(names):
-            raise ArgumentError(f"free = {told(names)}: expected names of parameters, each once, such as ('c1_alpha',)")
+            got = format_value(names)
+            raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
         paths = tuple(_path(law, str(name)) for name in names)
         found = cls(law, tuple(map(str, names)), paths)
         for name, value in zip(found.names, found.values, strict=True):
@@ -46,7 +47,7 @@ class Free:
             for part in path:
                 value = getattr(value, part)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-                raise ArgumentError(f"{name} = {told(value)}: expected a parameter that is one number")
+                raise ArgumentError(f"{name} = {format_value(value)}: expected a parameter that is one number")
             found.append(float(value))
         return np.array(found)
 

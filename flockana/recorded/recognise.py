@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from flockana.base.errors import ArgumentError, FlockanaError, told
+from flockana.base.errors import ArgumentError, FlockanaError, format_value
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
@@ -74,7 +74,7 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
     if laws is None:
         laws = {"Algorithm 1": Algorithm1(), "dead-zone": DeadZoneFlocking(), "Cucker-Smale": CuckerSmale()}
     if not isinstance(laws, Mapping) or not laws:
-        raise ArgumentError(f"laws = {told(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
+        raise ArgumentError(f"laws = {format_value(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
     found: list[tuple[str, Comparison]] = []
     refused: dict[str, str] = {}
     for name, law in laws.items():

@@ -280,7 +280,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
-    monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1, None))
+    monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
     assert engine_of(Algorithm1(), q, p, 0.0, "DOP853", 1e-8, Floors(1e-8, 1e-8, 1e-8)) is None
     monkeypatch.undo()
     run = compiled.Engine.run

@@ -10,7 +10,7 @@ from flockana.kernels.verlet import empty_list, holds, list_pairs, listed_anew, 
 
 
 def listed(q, reach, room=1):
-    first, second, count, _ = list_pairs(q, reach, np.empty(room, np.uint32), np.empty(room, np.uint32))
+    first, second, count = list_pairs(q, reach, np.empty(room, np.uint32), np.empty(room, np.uint32))
     return sorted((min(i, j), max(i, j)) for i, j in zip(first[:count].tolist(), second[:count].tolist(), strict=True))
 
 

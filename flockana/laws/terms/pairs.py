@@ -88,7 +88,7 @@ class PairTerm(Term):
         if pair.par.size > PARAMETERS:
             return None
         numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
-        return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range, of_pairs=True)
+        return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * self.pair.potential_energy(q)

@@ -28,8 +28,6 @@ class TermKernel(NamedTuple):
         Within which they need all pairs; 0 if they need none.
     guard : callable, optional
         What share of a step may be taken (`flockana.kernels.bodies`), of the same numbers.
-    of_pairs : bool
-        Its force and power are sums over the pairs of the list: it may be asked for some of them at a time.
     """
 
     act: CompiledFunction
@@ -38,7 +36,6 @@ class TermKernel(NamedTuple):
     panels: FloatArray
     reach: float
     guard: CompiledFunction | None = None
-    of_pairs: bool = False
 
 
 def nothing() -> TermKernel:
