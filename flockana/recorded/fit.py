@@ -154,7 +154,7 @@ def _stepped(rec: Recording, parameters: Free) -> Fit:
         return np.concatenate([((rec.q[1:] - q_next) / h).ravel(), (p[1:] - p_next).ravel()])
 
     low = np.where(start > 0.0, _LEAST, -inf)
-    found = least_squares(residual, start / unit, bounds=(low, inf), xtol=1e-10, ftol=1e-10, max_nfev=60)
+    found: Any = least_squares(residual, start / unit, bounds=(low, inf), xtol=1e-10, ftol=1e-10, max_nfev=60)
     left = found.fun.reshape(2 * (len(rec.t) - 1), rec.n, rec.m)
     slopes = found.jac.reshape(*left.shape, -1)
     inverse = np.linalg.pinv(found.jac.T @ found.jac)
