@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from rich.console import Group
@@ -16,7 +17,7 @@ from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
 from flockana.report.tables import WholeTable, column, fact_table, headed_table
 from flockana.report.text import MARKS, deciding_claim, show
-from flockana.theorems import Verdict, theorem, theorems
+from flockana.theorems import Claim, Verdict, theorem, theorems
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
@@ -83,10 +84,20 @@ def details(verdict: Verdict) -> Group:
     table = WholeTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
-    for c in verdict.claims:
+    for c in _told_once(verdict):
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
         table.add_row(Text(c.name), _status(c.status), Text(c.detail + margin))
     return Group(title, Padding(table, (0, 0, 1, 2)))
+
+
+def _told_once(verdict: Verdict) -> Iterable[Claim]:
+    """Yield the claims of a verdict; those that are vacuous for one reason as one, with all their names."""
+    groups: dict[tuple[str, ...], list[Claim]] = {}
+    for claim in verdict.claims:
+        key = ("vacuous", claim.detail) if claim.status == "vacuous" else (claim.name,)
+        groups.setdefault(key, []).append(claim)
+    for first, *others in groups.values():
+        yield replace(first, name=", ".join(claim.name for claim in (first, *others)))
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:
