@@ -101,6 +101,8 @@ from .measures.nets import laplacian as laplacian
 from .measures.nets import links as links
 from .measures.windows import joint_windows as joint_windows
 from .plots.animation import animate as animate
+from .recorded.read import read_recording as read_recording
+from .recorded.recording import Recording as Recording
 from .scenarios.flock import Flock as Flock
 from .scenarios.scenario import Scenario as Scenario
 from .scenarios.scenario import scenario as scenario
@@ -112,6 +114,7 @@ from .stability.slowest import slowest_modes as slowest_modes
 from .theorems.catalogue import theorem as theorem
 from .theorems.catalogue import theorems as theorems
 from .theorems.catalogue import verify as verify
+from .theorems.errata import errata as errata
 from .theorems.own import claim as claim
 from .theorems.theorem import Theorem as Theorem
 from .theorems.theorem import Tolerances as Tolerances

@@ -85,11 +85,15 @@ _ = ax.set(xlabel="t (time)", ylabel="x (length)")
 # paths, and bounds what it cannot see.
 #
 # ## All errata at once
+#
+# What is printed, and what is right. `E1` to `E16` are of lecture slides and student projects on the paper; of none is
+# it shown that the paper has it. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
+# *vacuous* (true of next to nothing) or, after all, *confirmed*.
 
 # %%
-for name in fl.theorems():
-    if name.startswith("E"):
-        print(f"{name:>4}  {fl.theorem(name).title}")
+for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
+    print(f"\n{sort}")
+    print(*(item for item in fl.errata() if item.sort == sort and item.id.startswith("E")), sep="\n")
 
 # %% [markdown]
 # ## Summary

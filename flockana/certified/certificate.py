@@ -1,4 +1,4 @@
-"""A certified basin as JSON that `flockana check` can verify without the code that made it.
+"""Basin certificates as JSON, for verification by `flockana check`.
 
 Numbers are exact: decimals as text, computed positions in hexadecimal. A name of a field says which number of
 `flockana.certified.basin` it is; what no machine checks stands in the file.
@@ -23,7 +23,7 @@ from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
-    """The certificate as plain data, with its digest; `ArgumentError` of what is no basin.
+    """Return a basin's certificate as plain data with its digest.
 
     Examples
     --------
@@ -71,14 +71,12 @@ STATED = ("radius", "level", "curvature", "rate", "overshoot", "distance")
 
 
 def write_certificate(basin: Basin, path: str | Path) -> None:
-    """Write a basin's certificate; `flockana check` verifies the file.
+    """Write a basin's certificate to a file for `flockana check`.
 
     Parameters
     ----------
     basin : Basin
         Of `certify`.
-    path : str or Path
-        File, usually .json.
 
     Raises
     ------

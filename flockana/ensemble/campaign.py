@@ -1,4 +1,4 @@
-"""Many runs of a scenario: over seeds and options, on any number of processors, into a store that can be resumed."""
+"""Ensembles of a scenario over seeds and options, in parallel, with a store to resume from."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
-    """Options with several values, and options with one: (axes, fixed)."""
+    """Return options with several values and options with one: (axes, fixed)."""
     axes: dict[str, list[Scalar]] = {}
     fixed: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):

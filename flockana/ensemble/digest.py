@@ -34,7 +34,7 @@ _ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
 
 @cache
 def mathematics() -> str:
-    """Version of all that decides the numbers of a run, 16 hexadecimal digits.
+    """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def mathematics() -> str:
 
 
 def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
-    """`digest_of_sources`, read from a folder where these very files were digested before.
+    """Return `digest_of_sources`, cached in a folder by the files' contents.
 
     To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
@@ -74,7 +74,7 @@ def _libraries() -> dict[str, str]:
 
 
 def source_files(root: Path) -> list[Path]:
-    """The package's modules and data that decide numbers."""
+    """Return the package's modules and data that decide a run's numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
     pairs = ((p, p.relative_to(root)) for p in files)
     return sorted(p for p, r in pairs if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
@@ -111,7 +111,7 @@ def _meaning(source: bytes) -> bytes:
 
 
 def run_key(what: Mapping[str, Any]) -> str:
-    """Key of one run in a store: a digest of plain data in which the order of names does not matter.
+    """Return the key of a run in a store: a digest of plain data, independent of the order of names.
 
     Examples
     --------

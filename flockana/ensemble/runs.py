@@ -1,4 +1,4 @@
-"""Make the runs of an ensemble, by whoever works."""
+"""Execution of an ensemble's runs on workers."""
 
 from __future__ import annotations
 

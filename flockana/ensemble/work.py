@@ -1,4 +1,4 @@
-"""Execution of one run of an ensemble, from names and numbers to a plain record."""
+"""Execution of a single run of an ensemble, from plain data to a plain record."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Record:
 
     @classmethod
     def from_json(cls, text: str, key: str = "") -> Record:
-        """Read what `to_json` wrote.
+        """Return the record of a JSON text from `to_json`.
 
         Examples
         --------
@@ -102,7 +102,7 @@ class Record:
 
 
 def reference(function: Callable[..., Any]) -> str:
-    """``"module:name"`` of a function that another process can import.
+    """Return ``"module:name"`` of a function that another process can import.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def reference(function: Callable[..., Any]) -> str:
 
 
 def resolve(name: str) -> Any:
-    """The function of a ``"module:name"``."""
+    """Return the function of a ``"module:name"``."""
     module, _, path = name.partition(":")
     item: Any = importlib.import_module(module)
     for part in path.split("."):
@@ -130,7 +130,7 @@ def resolve(name: str) -> Any:
 
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
-    """Make some runs, one after the other, in this process."""
+    """Make runs one after the other in this process."""
     if mathematics() != request.mathematics:
         raise SolverError(
             f"a worker computes with version {mathematics()} of the mathematics, expected {request.mathematics}: "

@@ -19,7 +19,7 @@ MAX_SIZE = 60_000  # n m
 
 
 class Spectrum(NamedTuple):
-    """Eigenvalues off the rigid motions, rising, the number of rigid motions, of negative and of zero eigenvalues.
+    """Eigenvalues off the rigid motions, with the numbers of rigid motions, negative and zero eigenvalues.
 
     Of a large flock the eigenvalues are some only, with all negative and zero ones and the largest among them.
     """
@@ -42,7 +42,7 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
-    """The potential about a configuration, with the force that is left there.
+    """Return the potential's second-order model about a configuration, with its residual force.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def landscape(potential: Potential, q: FloatArray) -> Landscape:
 
 
 def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
-    """Eigenvalues of the Hessian on the complement of the rigid motions that leave the potential unchanged.
+    """Return eigenvalues of the Hessian on the complement of the potential's rigid motions.
 
     What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
     no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
@@ -95,7 +95,7 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
 
 
 def kind_of(modes: Spectrum) -> EquilibriumKind:
-    """The kind of critical point: any negative eigenvalue excludes a minimum, and else any zero one leaves it open.
+    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open.
 
     Examples
     --------

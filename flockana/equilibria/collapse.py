@@ -64,7 +64,7 @@ def nudged(q: FloatArray, d: float) -> FloatArray:
 
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
-    """The minimum of U_λ that IPOPT finds from a hexagonal spiral of n agents, slightly disturbed.
+    """Return the minimum of U_λ that IPOPT finds from a slightly disturbed hexagonal spiral of n agents.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
 
 
 def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
-    """Shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
+    """Return shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
 
 
 def natural_ratio(alpha: AlphaInteraction) -> float:
-    """c1γ/c1α at which the γ-agent pulls as hard at a distance d as two agents repel each other at most.
+    """Return the c1γ/c1α at which the pull of the γ-agent at distance d equals the largest repulsion of a pair.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def natural_ratio(alpha: AlphaInteraction) -> float:
 def threshold(
     collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
 ) -> tuple[float, float]:
-    """(largest ratio seen safe, least ratio seen to collapse): raised from a safe ratio until it collapses, bisected.
+    """Return (largest ratio found safe, least ratio found to collapse), by bisection.
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).

@@ -1,4 +1,4 @@
-"""Write an equilibrium and its law as JSON, and read it back with all its properties computed and compared."""
+"""Equilibria as JSON files, checked against recomputed properties when read."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
-    """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
+    """Return an equilibrium from a file, after recomputing its properties and comparing them with the file."""
     data = _read(path)
     try:
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
@@ -59,7 +59,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
 
 
 def _read(path: str | Path) -> dict[str, Any]:
-    """What the file says, if it says that it is an equilibrium."""
+    """Return a file's data; raise unless it holds an equilibrium."""
     try:
         data = read_json(read_whole(path))
     except FlockanaError as error:
@@ -78,7 +78,7 @@ def _not_one(path: str | Path, reason: object) -> FileError:
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
-    """Raise unless kind, links, modes, energy and spectrum are what the file says."""
+    """Raise unless kind, links, modes, energy and spectrum agree with the file."""
     exact = {"kind": equilibrium.kind, "links": len(equilibrium.links), "rigid_modes": equilibrium.rigid_modes}
     for name, value in exact.items():
         if data[name] != value:
@@ -96,7 +96,7 @@ def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
 
 
 def smallest_strained() -> Equilibrium:
-    """The smallest strict local minimum of V known to us with distinct agents that is no α-lattice, verified anew.
+    """Return the smallest known strict minimum of V with distinct agents that is no α-lattice, verified anew.
 
     Thirteen agents, 24 links of 6.849 to 7.116 for d = 7: one more than a rigid net needs, so the lengths cannot all
     be d. Found from random starts of 15, by taking away what its stress does not need; no smaller one turned up.

@@ -1,5 +1,4 @@
-"""Equilibria of the continuous laws with a potential: minima by IPOPT or, of large flocks, by damped motion and sparse
-Newton steps; critical points of any kind by a root-finder."""
+"""Equilibria of laws with a potential, by IPOPT, damped motion with Newton steps, or a root-finder."""
 
 from __future__ import annotations
 
@@ -251,7 +250,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
 
 
 def ensure_found(name: str, equilibrium: Equilibrium) -> None:
-    """Raise unless an equilibrium is as it was found."""
+    """Raise unless an equilibrium is unchanged since a solver returned it."""
     source = "one as find_equilibrium returned it or read it from a file"
     ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
 
@@ -274,7 +273,7 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Solve in a box about the start, then about each solution, until the box does not matter.
+    """Minimise in a box about the start, then about each solution, until the box is not active.
 
     The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
@@ -305,7 +304,7 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
 
 
 def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Levenberg-Marquardt on the scaled gradient with the gauge as extra equations, over all pairs."""
+    """Find a zero of the gradient by Levenberg-Marquardt, with the gauge as extra equations."""
     import casadi as ca
     from scipy.optimize import least_squares
 
@@ -328,7 +327,7 @@ def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> 
 
 
 def _polish(potential: Potential, q: FloatArray) -> FloatArray:
-    """Refine by Newton's method with the law's stiffness; rigid motions stay, a small shift keeps soft modes finite."""
+    """Refine by Newton's method with the law's stiffness; a small shift keeps soft modes finite."""
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 

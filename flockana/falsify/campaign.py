@@ -1,4 +1,4 @@
-"""Search the neighbourhood of a scenario for a run that refutes a claim of a theorem."""
+"""Search for a run that refutes a theorem's claim, in the neighbourhood of a scenario."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
 
 
 def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluation]:
-    """The evaluation of the scenario's own start, and the problem with units for margins from it; errors are raised."""
+    """Return the evaluation of the scenario's own start, and the problem with units for margins."""
     with np.errstate(all="ignore"):
         run = begin.run()
         if run.status == "interrupted":
@@ -194,7 +194,7 @@ class _Record:
             self.best, self.point = evaluation, point
 
     def columns(self, claim: str) -> dict[str, Any]:
-        """`margins` and `statuses` by claim; of a run that failed there is neither."""
+        """Return `margins` and `statuses` by claim, NaN and "failed" for failed runs."""
         names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
         absent = [("vacuous" if row else "failed", np.nan) for row in self.rows]
         table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}

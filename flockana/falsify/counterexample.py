@@ -34,7 +34,7 @@ _KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Counterexample:
-    """A law, a start and the claim that a run from there refutes.
+    """Law, start and claim that a run from there refutes.
 
     Parameters
     ----------
@@ -42,12 +42,8 @@ class Counterexample:
         The claim that is refuted, and its theorem.
     scenario : str
         Where the search began.
-    law : Law or DiscreteLaw
-        The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
-    tolerances : Tolerances
-        Thresholds of the verdict.
     margin, error : float
         Of the claim when it was refuted; NaN if it has none.
     version : str
@@ -152,11 +148,6 @@ class Counterexample:
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
         """Read a counterexample that `save` wrote.
 
-        Parameters
-        ----------
-        path : path-like
-            File to read.
-
         Raises
         ------
         FileError
@@ -199,8 +190,6 @@ def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> V
 
     Parameters
     ----------
-    path : path-like
-        A file that `Falsification.save` wrote.
     theorem : Theorem, optional
         The theorem itself, if it is not one of the catalogue.
 
@@ -226,7 +215,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Keyword arguments of `simulate`, none that it does not have."""
+    """Return the known keyword arguments of `simulate` among data."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")

@@ -21,7 +21,7 @@ _FASTER = 2.0  # the bound on velocities, over the largest component at the star
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """A unit cube whose points are initial states, and parameters of the law, within bounds.
+    """Unit cube that parametrises initial states, and parameters of the law, within bounds.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Space:
 
     @property
     def start(self) -> FloatArray:
-        """The point nearest to the scenario's own start, shape (D,)."""
+        """Point nearest to the scenario's own start, shape (D,)."""
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
@@ -57,7 +57,7 @@ class Space:
         return point
 
     def case(self, point: FloatArray) -> Scenario:
-        """The scenario with the state and the parameters of a point.
+        """Return the scenario with the state and the parameters of a point.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ def search_space(
     speed: float | None = None,
     parameters: Mapping[str, tuple[float, float]] | None = None,
 ) -> Space:
-    """The space about a scenario's start (arguments as in `falsify`).
+    """Return the search space about a scenario's start (arguments as in `falsify`).
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
 
 
 def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Bounds of each coordinate of each agent, shape (n, m)."""
+    """Return bounds of each coordinate of each agent, shape (n, m)."""
     if isinstance(region, int | float | np.number):
         around, farthest = ensure_positive("region", region), float(np.abs(q).max())
         low, high = q - around, q + around

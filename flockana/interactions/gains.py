@@ -18,7 +18,7 @@ PER_AGENT = ("c1_gamma", "c2_gamma")
 
 
 def weighted(gain: Any, values: FloatArray) -> float:
-    """Σ_i gain_i values_i, for one gain or one per agent.
+    """Return Σ_i gain_i values_i, for one gain or one per agent.
 
     Examples
     --------
@@ -84,21 +84,16 @@ class Gains:
 
     @cached_property
     def pull(self) -> Any:
-        """c1γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        """Gain c1γ in the shape that multiplies (n, m): a number, or a column of n."""
         return _column(self.c1_gamma)
 
     @cached_property
     def drag(self) -> Any:
-        """c2γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        """Gain c2γ in the shape that multiplies (n, m): a number, or a column of n."""
         return _column(self.c2_gamma)
 
     def check_agents(self, n: int) -> None:
-        """Raise unless per-agent gains are as many as the agents.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
+        """Raise unless there is one per-agent gain for each agent.
 
         Raises
         ------

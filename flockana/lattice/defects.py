@@ -1,4 +1,4 @@
-"""Coordination numbers, and the defects of a triangular lattice: agents inside it without six neighbours."""
+"""Coordination numbers, and defects of a triangular lattice: interior agents without six neighbours."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ IntArray = npt.NDArray[np.int64]
 
 
 def coordination(n: int, links: Any) -> IntArray:
-    """Number of neighbours of each agent.
+    """Return the number of neighbours of each agent.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
 @dataclass(frozen=True, eq=False)
 class Defects:
-    """Return coordination numbers of a planar net, with interior and rim agents separate.
+    """Coordination numbers of a planar net, with interior and rim agents separate.
 
     Attributes
     ----------
@@ -65,7 +65,6 @@ def defects(q: Any, links: Any) -> Defects:
 
     Parameters
     ----------
-    q : array_like, shape (n, 2)
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 

@@ -32,7 +32,7 @@ _CHUNK = 50_000  # agent-intervals handled at once
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """The least clearance of a run."""
+    """Least clearance of a run from its obstacles."""
 
     # lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
     # and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles
@@ -116,7 +116,7 @@ class _Bound(NamedTuple):
 
 
 class _Least:
-    """The least clearance from one obstacle, so far; it begins with the samples."""
+    """Running minimum of the clearance from one obstacle, starting with the samples."""
 
     def __init__(self, t: FloatArray, at_samples: FloatArray) -> None:
         k, self.agent = divmod(int(np.argmin(at_samples)), at_samples.shape[1])

@@ -1,4 +1,4 @@
-"""A run as a film: frames at equal spacing in time, in a view that holds still."""
+"""Films of runs: frames at equal spacing in time, in a fixed view."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _SUFFIXES = ".gif", ".mp4"
 
 
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
-    """The run at equally spaced times, between samples by cubics that match values and slopes.
+    """Return the run at equally spaced times, interpolated by cubics.
 
     Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them, each once:
     fewer than asked for where it has fewer. So of a run of one sample, that sample.
@@ -60,7 +60,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
 def animation(
     trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
 ) -> FuncAnimation:
-    """Make a film of a run: `snapshot` after `snapshot`; in a notebook show it by its ``to_jshtml()``.
+    """Return a matplotlib animation of `snapshot`s; in a notebook show it by ``to_jshtml()``.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
 
 
 def frame_count(seconds: float, fps: float) -> int:
-    """Number of frames of a film, at least 1.
+    """Return the number of frames of a film, at least 1.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def frame_count(seconds: float, fps: float) -> int:
 
 
 def film_view(trajectory: Trajectory) -> FloatArray:
-    """Two opposite corners of a box about all that the film shows, with a margin."""
+    """Return opposite corners of a box about all that the film shows, with a margin."""
     points = in_view(drawn_law(trajectory), trajectory)
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max()) or 1.0

@@ -1,4 +1,4 @@
-"""Pictures that control engineers know: Bode plot, root locus, gain sweep, norms against size, delay margins."""
+"""Control-engineering plots: Bode, root locus, gain sweep, norms against size, delay margins."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
 
 
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw the branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
+    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Ensembles: shares with their intervals, distributions over runs, phase diagrams."""
+"""Ensembles: shares with confidence intervals, distributions over runs, phase diagrams."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def distribution(
     ax: Axes | None = None,
     title: str = "",
 ) -> Axes:
-    """Draw how a measure is distributed over runs: for each value, the share of runs that stay at or below it.
+    """Draw the cumulative distribution of a measure over runs.
 
     A cumulative curve, unlike a histogram, hides nothing in bins and lets groups be compared. Each run is a tick below.
 
@@ -231,7 +231,7 @@ def phase_diagram(
     title: str = "",
     labels: Sequence[str] = ("", ""),
 ) -> Axes:
-    """Draw the phases in which runs ended over two parameters; each cell shows the shares of its seeds.
+    """Draw the phases in which runs ended over two parameters; cells show the shares of their seeds.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def phase_diagram(
 
 
 def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[str] | None, of: str) -> list[str]:
-    """The claims to draw, of a table of shares over these parameters and no others."""
+    """Return the claims to draw; raise unless a table of shares has these parameters and no others."""
     if of not in ("verified", "refuted"):
         raise ArgumentError(f"of = {of!r}: expected 'verified' or 'refuted'")
     others = {str(name) for name in table.runs.dims} - {"claim"}

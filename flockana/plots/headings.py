@@ -18,12 +18,7 @@ if TYPE_CHECKING:
 
 
 def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's heading over time, as the number that is averaged.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of `HeadingAveraging`.
+    """Draw every agent's heading over time, the angle that the law averages.
 
     Raises
     ------

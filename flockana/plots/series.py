@@ -1,4 +1,4 @@
-"""Quantities of a run over time."""
+"""Plots of quantities of a run over time."""
 
 from __future__ import annotations
 
@@ -42,11 +42,6 @@ PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "norm
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
     """Draw one metric of a run over time; empty axes say why where the law does not define it.
-
-    Parameters
-    ----------
-    name : str
-        A variable of ``trajectory.metrics()``.
 
     Raises
     ------

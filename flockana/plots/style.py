@@ -1,4 +1,4 @@
-"""Figure style as a context; matplotlib's global settings are never changed."""
+"""Figure style as a context, without changes to matplotlib's global settings."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ _EM = 0.55  # width of a letter, over its size
 
 
 def ensure_axes(ax: Any, *, m: int = 2) -> Any:
-    """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3."""
+    """Return `ax`, or new axes in flockana's style: flat ones, or three-dimensional ones for m = 3."""
     if ax is not None:
         return ax
     import matplotlib.pyplot as plt
@@ -113,7 +113,7 @@ def ensure_axes(ax: Any, *, m: int = 2) -> Any:
 def subplots(
     rows: int = 1, columns: int = 1, *, size: tuple[float, float] | str | None = None, m: int = 2
 ) -> tuple[Any, Any]:
-    """A new figure in flockana's look, as ``pyplot.subplots`` makes one: (figure, Axes or array of Axes).
+    """Return a new figure in flockana's style, as ``pyplot.subplots``: (figure, Axes or array of Axes).
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def subplots(
 
 
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:
-    """Label the axes and add a legend above them if something has a label; return the axes."""
+    """Label the axes, add a legend above them if there are labels, and return the axes."""
     if x:
         ax.set_xlabel(typeset(x))
     if y:
@@ -158,14 +158,14 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
 
 
 def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
-    """Finish a drawing over time: from the first of the times to the last."""
+    """Label axes over time, limited to the first and last time, and return them."""
     if len(t) > 1:
         ax.set_xlim(t[0], t[-1])
     return finish(ax, "t (time)", y)
 
 
 class OverTime(Protocol):
-    """A plot of a run over time."""
+    """Plot function of a run over time."""
 
     def __call__(self, trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         """Draw on axes, or on new ones."""
@@ -200,7 +200,7 @@ def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
 
 
 def finish_empty(ax: Any, y: str, reason: str) -> Axes:
-    """Show a reason in the middle of empty axes."""
+    """Show a reason in the middle of empty axes, and return them."""
     ax.set_xticks([])
     ax.set_yticks([])
     ax.text(0.5, 0.5, typeset(reason), ha="center", va="center", transform=ax.transAxes, color=MUTED)
@@ -208,13 +208,13 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
 
 
 def head(ax: Any, title: str, **look: Any) -> None:
-    """Write the title at the left above the axes, in flockana's look wherever they were made."""
+    """Write the title at the left above the axes."""
     look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
     ax.set_title(typeset(title), loc="left", **look)
 
 
 def legend_above(ax: Any) -> None:
-    """Put the legend above the axes, where it hides no data, in as many columns as are no wider than these."""
+    """Put the legend above the axes, in as many columns as fit their width."""
     handles, labels = ax.get_legend_handles_labels()
     for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
         legend = ax.legend(
@@ -233,7 +233,7 @@ def legend_above(ax: Any) -> None:
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
-    """Add a colour bar as a part of axes, a little to the right of them."""
+    """Add a colour bar to the right of axes, as a part of them."""
     beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
@@ -243,7 +243,7 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
 
 
 def hairline(n: int) -> tuple[float, float]:
-    """Width and opacity of one of n lines that share axes: the more there are, the fainter.
+    """Return width and opacity of one of n lines on the same axes: fainter the more there are.
 
     Examples
     --------
@@ -259,12 +259,12 @@ def in_plane(points: FloatArray) -> FloatArray:
 
 
 def lines(segments: Any, **look: Any) -> Any:
-    """A collection of lines to add to axes, of the plane or of space: each a sequence of as many points."""
+    """Return a collection of lines in the plane or in space, from arrays of their points."""
     return (Line3DCollection if np.shape(segments)[-1] == 3 else LineCollection)(segments, **look)
 
 
 def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
-    """Label the axes of space and scale them equally: a cube about the points where m = 3; a line has no y."""
+    """Label the axes of space and scale them equally."""
     if m == 1:
         ax.set(xlabel=typeset("x (length)"), yticks=[], ylim=(-1.0, 1.0))
         return ax  # type: ignore[no-any-return]

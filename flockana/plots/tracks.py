@@ -1,4 +1,4 @@
-"""Paths through space: of every agent, and of the centre of mass against the γ-agent."""
+"""Paths in space: of every agent, and of the centre of mass against the γ-agent."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
-    """A path as points to draw: (t, x) where space is a line."""
+    """Return a path as points to draw: (t, x) on a line."""
     return np.column_stack([t, x]) if x.shape[1] == 1 else x
 
 

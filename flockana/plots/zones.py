@@ -115,7 +115,7 @@ def _(law: Any, trajectory: Trajectory) -> FloatArray:
 
 
 def _corners(world: ZoneWorld, m: int) -> FloatArray:
-    """Points that must be in view: obstacles and box."""
+    """Return points that must be in view: obstacles and box."""
     seen = [np.empty((0, m))]
     for solid in world.obstacles:
         seen.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
@@ -125,7 +125,7 @@ def _corners(world: ZoneWorld, m: int) -> FloatArray:
 
 
 def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
-    """The obstacle zone ahead of every agent that has a heading."""
+    """Draw the obstacle zone ahead of every agent that has a heading."""
     _, c, _, _ = law.radii.arrays(len(q))
     ahead = heading * law.altitudes(p)[:, None]
     aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])

@@ -80,18 +80,18 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
 
 
 def as_tightly(run: Trajectory) -> dict[str, Any]:
-    """Options of `simulate` for a run beside another one, to be integrated as tightly as that."""
+    """Return options of `simulate` that integrate a second run as accurately as the first."""
     return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:
-    """Number of components of the net at sample k of a run."""
+    """Return the number of components of the net at sample k of a run."""
     pair = run.law.pair
     assert pair is not None
     return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
-    """Number of components of the net at each sample of a run, shape (T,)."""
+    """Return the number of components of the net at each sample of a run, shape (T,)."""
     counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
     return counts

@@ -27,7 +27,7 @@ _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
 
 
 def ensure_parts(parts: Mapping[str, Any]) -> None:
-    """Raise unless the fields of a scenario are a law, a start, a time span and statuses to expect; draw no start."""
+    """Raise unless a scenario's fields have the right kinds; no start is drawn."""
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
     ensure_law(parts["law"])

@@ -1,4 +1,4 @@
-"""Runs of the R² notebook, with its tenfold push below 0.05 as an option."""
+"""Scenarios of the R² notebook, with its tenfold push below 0.05 as an option."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The net is connected at first, and in several components later."""
+    """Claim that the net is connected at first, and disconnected later."""
     counts = component_counts(run)
     whole = np.flatnonzero(counts == 1)
     if whole.size == 0:
@@ -70,7 +70,7 @@ def _passed_between(run: Trajectory) -> int:
 
 
 def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """All agents are beyond both spheres of the gap at the end."""
+    """Claim that all agents are beyond both spheres of the gap at the end."""
     x = run.q[-1, :, 0]
     detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
     margin = float(np.clip(x.min() - 175.0, -25.0, 25.0))  # a sphere's radius is enough: how far agents get varies
@@ -78,7 +78,7 @@ def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """More than half of the agents go through the gap between the two spheres."""
+    """Claim that more than half of the agents pass the gap between the two spheres."""
     through = _passed_between(run)
     detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
     margin = float(np.clip(through - 0.5 * run.n, -0.1 * run.n, 0.1 * run.n))  # a tenth is enough: the number varies
@@ -86,7 +86,7 @@ def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
-    """Which agents have an obstacle on the straight way to the γ-agent, shape (n,).
+    """Return which agents have an obstacle on the straight path to the γ-agent, shape (n,).
 
     Examples
     --------
@@ -103,7 +103,7 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 
 
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Held back: behind an obstacle at the end, and slower than what counts as a standstill for the last tenth."""
+    """Claim that agents stand still behind an obstacle at the end."""
     held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
     last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
     limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
@@ -152,13 +152,13 @@ def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
 
 
 def touches(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Some agent rests within the range of an obstacle, at d' from it."""
+    """Claim that an agent rests within the range of an obstacle, at distance d'."""
     end, _, detail = _measured(run)
     return finding("in-touch", end.beta_links - 0.5, detail, computed=end.beta_links, stated="β-neighbours")
 
 
 def constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The end is a quasi constrained α-lattice."""
+    """Claim that the end is a quasi constrained α-lattice."""
     _, strain, detail = _measured(run)
     margin = (tolerances.quasi - strain) / tolerances.quasi
     certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")

@@ -1,4 +1,4 @@
-"""Figures 9 and 14 to 17 of Olfati-Saber (2006): flocks among obstacles, and runs of our own for Theorem 6."""
+"""Scenarios of Olfati-Saber (2006), Figures 9 and 14 to 17, and more runs for Theorem 6."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures 10 to 13 of Olfati-Saber (2006), and three runs of our own on the same parameters."""
+"""Scenarios of Olfati-Saber (2006), Figures 10 to 13, and three more with the same parameters."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ _MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_
 
 
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
-    """The paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
+    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
 
     Examples
     --------
@@ -242,6 +242,8 @@ def _collapse(seed: int = 0) -> Scenario:
             "alpha-flocking-strict:flock": "verified",
             "os-5-terminal:i": "vacuous",
             "E11": "refuted",
+            "E11:printed": "refuted",
+            "E11:minimum": "verified",
             "source": "verified",
         },
         (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
@@ -282,7 +284,7 @@ def _hexagon(seed: int = 0) -> Scenario:
 
 
 def _three_agents(seed: int = 0) -> Scenario:
-    """Erratum E13: energy for one coincident pair at a time, and two pairs that coincide, one after the other."""
+    """Return erratum E13: enough energy for one coincident pair, and two that coincide in turn."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     p0 = later((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
@@ -307,6 +309,8 @@ def _three_agents(seed: int = 0) -> Scenario:
             "os-3:iv-none": "vacuous",
             "os-5-terminal:i": "vacuous",
             "E13": "refuted",
+            "E13:printed": "refuted",
+            "E13:corrected": "verified",
         },
         references=("olfati-saber-2006", "flockana"),
     )

@@ -1,4 +1,4 @@
-"""Small starts that keep a claim, or just break it: where a search for counterexamples begins."""
+"""Small scenarios at the edge of a claim, from which a search for counterexamples begins."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 
 
 def _five_agents(seed: int = 0) -> Scenario:
-    """Erratum E3: next to the basin of the smallest strained minimum that we know."""
+    """Return erratum E3: a start next to the basin of the smallest known strained minimum."""
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
     q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)

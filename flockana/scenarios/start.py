@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class _Later:
-    """An array of a known shape, and how to compute it."""
+    """Array of known shape with a function that computes it."""
 
     shape: tuple[int, int]
     compute: Callable[[], FloatArray]
@@ -63,7 +63,7 @@ class _Field:
 
 
 def given_later(*names: str) -> Callable[[type[T]], type[T]]:
-    """Let fields of a dataclass be given by `later`.
+    """Decorate a dataclass so that fields may be given by `later`.
 
     Examples
     --------

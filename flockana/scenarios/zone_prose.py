@@ -123,7 +123,7 @@ _NOISY = (
 
 
 def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
-    """Five agents on the left and five on the right of the box, that run apart."""
+    """Return five agents on the left and five on the right of the box, moving apart."""
     rng = np.random.default_rng(seed)
     side = np.repeat([-1.0, 1.0], N // 2)
     x = 25.0 + side * rng.uniform(5.0, 13.0, N)
@@ -132,7 +132,7 @@ def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _head_on() -> tuple[FloatArray, FloatArray]:
-    """Three agents that run at the origin, and far off two pairs that run at each other."""
+    """Return three agents heading for the origin, and far away two pairs heading for each other."""
     directions = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     pairs = [(x, y) for y in _LANES for x in (-10.0, 10.0)]
     ways = [(way * _SPEED, 0.0) for _ in _LANES for way in (1.0, -1.0)]

@@ -188,7 +188,7 @@ def verify(
     subject_data: tuple[Any, ...] = ()
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
-    return Verdict(item.id, *item.examine(*subject_data, used), used, subject)
+    return Verdict(item.id, *item.examine(*subject_data, used), used, subject, item.author)
 
 
 def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
@@ -218,7 +218,9 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
         if not isinstance(basin, Basin):
             raise ArgumentError(f"basin = {format_value(basin)}: expected a basin, as certify(...) returns it, or None")
         basin.ensure_whole()
-    return Verdict(item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
+    return Verdict(
+        item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject, item.author
+    )
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
@@ -226,4 +228,4 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
     ensure_fits(run)
     seen = Observed.of(run)
     hypotheses, claims = item.examine(seen, tolerances)
-    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject)
+    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject, item.author)

@@ -1,4 +1,4 @@
-"""Erratum E4: c < c* excludes collisions, but soon no state at all is below c*; a barrier that does not go vacuous."""
+"""E4: c < c* excludes collisions, as said, and soon no state is below c*; a barrier that does not go vacuous."""
 
 from __future__ import annotations
 
@@ -120,7 +120,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E4",
-    title="c < c* soon certifies nothing",
     statement=(
         "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
         "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 "
@@ -131,4 +130,5 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "verified", "found": "verified", "vacuous": "verified", "barrier": "verified"},
+    ours=("found", "vacuous", "barrier"),
 )

@@ -19,6 +19,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.errata import printed
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.observed import Observed
@@ -124,7 +125,7 @@ def _thresholds(law: Algorithm2) -> Claim:
 
 THEOREM = Theorem(
     id="E11",
-    title="Algorithm 2 collapses when c1γ/c1α is too large",
+    title=printed("E11"),
     statement=(
         "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
         "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
@@ -136,4 +137,5 @@ THEOREM = Theorem(
     claims=("printed", "minimum", "threshold"),
     reason="not so: {name}",
     references=("geschwender-2016", "isola-2024", "notebook-r2"),
+    ours=("minimum", "threshold"),
 )
