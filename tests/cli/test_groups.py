@@ -60,7 +60,7 @@ def test_a_saved_run_is_animated_and_checked_with_one_refusal(capsys, tmp_path):
     assert printed(capsys, "animate", "--on", str(run), "-o", str(film), "--seconds", "0.2")[0] == 0
     assert film.stat().st_size > 0
     _, text, _ = printed(capsys, "verify", "os-3", "--on", str(run), "--no-report")
-    assert text.count("Algorithm 2 is applied: Algorithm1") == 1
+    assert text.count("Algorithm 2 is applied: Algorithm1") == 3  # one for each author of claims
     code, _, error = printed(capsys, "animate", "-o", str(film))
     assert code == 2
     assert "expected a scenario, or --on" in error
