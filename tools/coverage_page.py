@@ -10,8 +10,10 @@ from __future__ import annotations
 import sys
 from itertools import groupby
 from pathlib import Path
+from typing import get_args
 
 from flockana.report.coverage import Reference, Row, Source, coverage, faults, locate
+from flockana.report.coverage.rows import Standing
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "coverage.md"
 _OPENING = """\
@@ -21,47 +23,48 @@ Written by `make coverage` from the tables in `flockana/report/coverage`; edit t
 where it stands there, what it is in our words, and what holds it: a *function* (or class) of the library, a *plot*, a
 *scenario* of the catalogue, a *report* (something that a source says of a run, judged on that scenario), a *theorem*,
 a *claim* of one, an *erratum*, an executable *proof*, a *notebook*. That a theorem holds an item means that it is
-checked, not that it is true: `flockana verify NAME` tells. Items in part are weaker than the source, and the remark
-says why.
+checked, not that it is true: `flockana verify NAME` tells. Items in part are weaker than the source, absent ones are
+not there, and the remark says why. The papers of other authors were not at hand where a table says "in our words".
 """
+_STANDING = {"held": "", "weaker": "*in part*", "absent": "*absent*", "prose": "*prose*"}
 _HEADER = ("place", "what stands there", "held by", "remark")
 
 
 def page(sources: tuple[Source, ...]) -> str:
     """The page as Markdown."""
-    parts = [_OPENING, _counts(sources), "## In part", _in_part(sources)]
+    parts = [_OPENING, _counts(sources), "## In part, or absent", _in_part(sources)]
     for source in sources:
-        parts += [f"## {source.title}", _table(_HEADER, [_cells(row) for row in source.rows])]
+        parts += [f"## {source.title}", markdown_table(_HEADER, [_cells(row) for row in source.rows])]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
 def _counts(sources: tuple[Source, ...]) -> str:
     rows = [(source.title, *(str(number) for number in (len(source.rows), *_numbers(source)))) for source in sources]
-    return _table(("source", "items", "held", "in part", "prose"), rows)
+    return markdown_table(("source", "items", "held", "in part", "absent", "prose"), rows)
 
 
-def _numbers(source: Source) -> tuple[int, int, int]:
-    return source.count("held"), source.count("weaker"), source.count("prose")
+def _numbers(source: Source) -> tuple[int, ...]:
+    return tuple(source.count(standing) for standing in get_args(Standing))
 
 
 def _in_part(sources: tuple[Source, ...]) -> str:
     rows = [
-        (source.title, _plain(row.place), _plain(row.what), _plain(row.remark))
+        (source.title, plain(row.place), plain(row.what), _STANDING[row.standing], plain(row.remark))
         for source in sources
         for row in source.rows
-        if row.standing == "weaker"
+        if row.standing in ("weaker", "absent")
     ]
-    return _table(("source", "place", "what stands there", "why"), rows) if rows else "Nothing."
+    return markdown_table(("source", "place", "what stands there", "standing", "why"), rows) if rows else "Nothing."
 
 
 def _cells(row: Row) -> tuple[str, ...]:
     names = "; ".join(_named(kind, list(some)) for kind, some in groupby(row.held_by, key=lambda one: one.kind))
-    standing = {"held": "", "weaker": "*in part*", "prose": "*prose*"}[row.standing]
+    standing = _STANDING[row.standing]
     return (
-        _plain(row.place),
-        _plain(row.what),
+        plain(row.place),
+        plain(row.what),
         ": ".join(text for text in (standing, names) if text),
-        _plain(row.remark),
+        plain(row.remark),
     )
 
 
@@ -70,14 +73,15 @@ def _named(kind: str, references: list[Reference]) -> str:
     return f"{kind} {links}"
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text that Markdown leaves as it is."""
     for mark in ("\\", "*", "_", "<", "`"):
         text = text.replace(mark, f"\\{mark}")
     return text
 
 
-def _table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def markdown_table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """Return a table as Markdown."""
     lines = [header, ("---",) * len(header), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
