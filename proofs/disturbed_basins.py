@@ -39,8 +39,8 @@ PROOF = Proof(
     title="Why a bounded disturbance leaves a flock near its certified equilibrium",
     statement=(
         "If in a certified basin F = E + ε⟨w, v⟩ falls at least at the rate α without a disturbance, and "
-        "(1 - e)E <= F, then under a disturbance of size W at most √F <= max(√F(0), Wc/α), and limsup √F <= Wc/α, as long as that is "
-        "less than √((1 - e)ΔH)."
+        "(1 - e)E <= F, then under a disturbance of size W at most √F <= max(√F(0), Wc/α), and limsup √F <= Wc/α, "
+        "as long as that is less than √((1 - e)ΔH)."
     ),
     hypotheses=(
         "A certified basin; the disturbance of the accelerations with its mean taken off. Prose: d adds ⟨v + εw, d⟩ to "
