@@ -73,6 +73,21 @@ def test_corrections_and_extensions_are_told_apart():
     assert Verdict("x", (), claims).summary == expected
 
 
+def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
+    needs = (MET, UNMET)
+    assert Claim("i", "vacuous", needs=needs, detail="3 links").account == "'connected' does not hold; 3 links"
+    assert Claim("i", "vacuous", needs=needs, detail="connected: 2 parts").account == "connected: 2 parts"
+    assert Claim("i", "verified", needs=(MET,), detail="3 links").account == "3 links"
+
+
+def test_claims_that_are_vacuous_for_one_reason_are_shown_as_one():
+    verdict = a_theorem(lambda run, tolerances: ([UNMET], [])).examine(None, Tolerances())
+    lines = str(Verdict("mine", *verdict)).splitlines()
+    assert [line.split() for line in lines[-1:]] == [["i,", "ii,", "iii", "vacuous", "connected:"]]
+    measured = tuple(Claim(name, "vacuous", computed=1, needs=(UNMET,), detail="1 link") for name in ("i", "ii"))
+    assert len(str(Verdict("mine", (UNMET,), measured)).splitlines()) == 5
+
+
 def test_a_theorem_says_whose_each_claim_is():
     def check(tolerances):
         return [UNMET], [Claim("mine", "verified"), Claim("theirs", "verified", by="corrected")]
