@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -50,6 +51,27 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
         raise FileError(f"cannot write {str(given)!r}: {error.strerror or error}; {remedy}") from error
     if reason:
         raise FileError(f"cannot write {str(given)!r}: {reason}; {remedy}")
+    return target
+
+
+def ensure_folder_of(path: Any) -> Path:
+    """Return a path whose folder exists and can be written to; raise if it does not, rather than make it.
+
+    Examples
+    --------
+    >>> ensure_folder_of("no-such-folder/run.nc")
+    Traceback (most recent call last):
+    flockana.base.errors.FileError: cannot write no-such-folder/run.nc: ... mkdir -p no-such-folder
+    """
+    target = ensure_path(path, action="write")
+    folder = target.parent
+    if not folder.exists():
+        raise FileError(f"cannot write {target}: there is no folder {folder}; make it first: mkdir -p {folder}")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise FileError(f"cannot write to {folder}: {error.strerror or error}; choose another folder") from error
     return target
 
 

@@ -136,9 +136,8 @@ def given_layout(columns: Mapping[str, Any], names: Sequence[Any], where: str) -
     if lacking:
         raise ArgumentError(f"{where} has no column {lacking[0]!r}: expected one of {', '.join(map(str, names))}")
     if "q" not in kinds or any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3:
-        raise ArgumentError(
-            f"columns = {format_value(dict(columns))}: expected 1 to 3 columns for q, and as many for p and u"
-        )
+        got = format_value(dict(columns))
+        raise ArgumentError(f"columns = {got}: expected 1 to 3 columns for q, and as many for p and u")
     return Layout(columns.get("t"), columns.get("frame"), columns.get("id"), kinds, {})
 
 
