@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from flockana.theorems.observed import Observed, with_doubt
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
-    from flockana.certified.tube import Tube
     from flockana.theorems.together import Verdicts
 
 T_SPAN = (0.0, 20.0)  # of a law that is run without one
@@ -97,13 +96,28 @@ def _printed(source: str) -> str:
     return re.split(r";| \(", source)[0]
 
 
+class _Case(TypedDict, total=False):
+    """Keyword arguments of `verify`."""
+
+    basin: Any
+    law: Any
+    q0: Any
+    p0: Any
+    t_span: Any
+    q: Any
+    d: float | None
+    r: float | None
+    tolerances: Tolerances | None
+    subject: str
+
+
 @overload
-def verify(name: None = None, trajectory: Any = None, **case: Any) -> Verdicts: ...
+def verify(name: None = None, trajectory: Any = None, **case: Unpack[_Case]) -> Verdicts: ...
 @overload
-def verify(name: str | Theorem, trajectory: Any = None, **case: Any) -> Verdict: ...
+def verify(name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]) -> Verdict: ...
 def verify(
     name: str | Theorem | None = None,
-    trajectory: Trajectory | Tube | None = None,
+    trajectory: Any = None,
     *,
     basin: Any = None,
     law: Any = None,
