@@ -1,4 +1,4 @@
-"""Whether what a class says of its methods still holds of a subclass that changed them."""
+"""Consistency of overridden methods with class attributes that describe them."""
 
 from __future__ import annotations
 
@@ -11,25 +11,14 @@ from flockana.base.errors import ArgumentError
 
 
 def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
-    """Whether no subclass of the class that defines an attribute, as far as `kind`, defines any of the others anew.
-
-    Examples
-    --------
-    >>> class Square:
-    ...     side = 2.0
-    ...     area = 4.0
-    >>> class Larger(Square):
-    ...     side = 3.0
-    >>> overrides_consistently(Square, "area", ["side"]), overrides_consistently(Larger, "area", ["side"])
-    (True, False)
-    """
+    """Return whether no subclass overrides `others` without overriding `name` too."""
     ways = list(kind.__mro__)
     defined = next(k for k, base in enumerate(ways) if name in vars(base))
     return not any(other in vars(base) for base in ways[:defined] for other in others)
 
 
 def ensure_consistent(item: Any) -> None:
-    """Raise if a law or what it is made of was given a method anew that the integrators do not ask.
+    """Raise if a law overrides a public method whose counterpart for integrators it keeps.
 
     A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
     that changes the former alone would be integrated without the change. So would a method set on an instance.

@@ -1,4 +1,4 @@
-"""Frozen parameter objects to plain data and back, so that a saved run carries its law and can be re-verified.
+"""Conversion of parameter objects to JSON data and back.
 
 A class of flockana is written by its name alone, ``flockana:Algorithm1``, wherever in the package it lives. Files that
 named a module are read the same way. A user's class is named with its module, which must be imported before the file
@@ -25,13 +25,7 @@ _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # w
 
 @cache
 def parameter_classes() -> dict[str, type]:
-    """Every parameter class that a file may name, by its name.
-
-    Examples
-    --------
-    >>> parameter_classes()["Algorithm1"].__module__
-    'flockana.laws.olfati_saber'
-    """
+    """Return every parameter class that a file may name, by its name."""
     classes_by_name: dict[str, type] = {}
     for module in chain.from_iterable(map(modules, _ROOMS)):
         classes = (x for x in vars(module).values() if isinstance(x, type))
@@ -40,13 +34,7 @@ def parameter_classes() -> dict[str, type]:
 
 
 def to_data(value: Any) -> Any:
-    """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``.
-
-    Examples
-    --------
-    >>> to_data((1.0, np.array([2.0, 3.0])))
-    [1.0, [2.0, 3.0]]
-    """
+    """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``."""
     if is_dataclass(value) and not isinstance(value, type):
         data = {f.name: to_data(getattr(value, f.name)) for f in fields(value) if f.init}
         kind = type(value)
@@ -69,13 +57,7 @@ def to_data(value: Any) -> Any:
 
 
 def from_data(data: Any) -> Any:
-    """Rebuild what `to_data` wrote; only dataclasses of flockana, or of modules already imported, are made.
-
-    Examples
-    --------
-    >>> from_data([1.0, "two"])
-    (1.0, 'two')
-    """
+    """Rebuild an object from `to_data`; only classes of flockana, or of imported modules, are allowed."""
     if isinstance(data, list):
         return tuple(from_data(v) for v in data)
     if not isinstance(data, dict):
@@ -95,7 +77,7 @@ def from_data(data: Any) -> Any:
 
 
 def read_json(text: str) -> Any:
-    """What a JSON text says; one nested too deeply or with a key given twice raises ValueError, as one that is no JSON.
+    """Return the data of a JSON text; raise ValueError on bad JSON, duplicate keys and too deep nesting.
 
     Examples
     --------
@@ -107,13 +89,13 @@ def read_json(text: str) -> Any:
     ValueError: the key 'x' is given twice
     """
     try:
-        return json.loads(text, object_pairs_hook=_without_twins)
+        return json.loads(text, object_pairs_hook=_unique_keys)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
 
 
-def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object whose keys differ."""
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a JSON object; raise on duplicate keys."""
     data: dict[str, Any] = {}
     for key, value in pairs:
         if key in data:
@@ -123,7 +105,7 @@ def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _own_class(module: str, qualname: str) -> Any:
-    """A user's class, of a module that is imported already."""
+    """Return a user's class from a module that is already imported."""
     item: Any = sys.modules[module]
     for part in qualname.split("."):
         item = getattr(item, part)
@@ -131,7 +113,7 @@ def _own_class(module: str, qualname: str) -> Any:
 
 
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data of a mapping with text keys.
+    """Return plain data of a mapping with text keys.
 
     Examples
     --------

@@ -15,7 +15,7 @@ _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in
 
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
-    """All pairwise distances in rising order: equal for congruent configurations, and rarely for others.
+    """Return all pairwise distances in rising order; configurations with the same are rarely incongruent.
 
     Examples
     --------
@@ -32,15 +32,6 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
     Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
     a spectrum.
-
-    Examples
-    --------
-    >>> triangle = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
-    >>> congruent(triangle, triangle[[2, 0, 1]] * [-1.0, 1.0] + 5.0, tol=1e-9)
-    True
-    >>> first, second = np.array([[0.0, 1, 4, 10, 12, 17], [0, 1, 8, 11, 13, 17]])[:, :, None]
-    >>> congruent(first, second, tol=1e-9)  # the same distances all the same
-    False
     """
     from scipy.spatial import KDTree
     from scipy.spatial.distance import cdist
@@ -58,7 +49,7 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
 
 def _frame(x: FloatArray) -> list[int]:
-    """Up to m agents whose positions about the centre are independent, the farthest first."""
+    """Return up to m agents with independent positions about the centre, the farthest first."""
     chosen: list[int] = []
     rest, extent = x.copy(), float(np.linalg.norm(x, axis=1).max())
     for _ in range(min(x.shape)):
@@ -73,7 +64,7 @@ def _frame(x: FloatArray) -> list[int]:
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
-    """Tuples of agents with the frame's distances to the centre and between each other."""
+    """Return tuples of agents with the frame's distances to the centre and to each other."""
     images: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
         images = [

@@ -1,4 +1,4 @@
-"""States of rest of laws without a potential, by Newton's method on the forces."""
+"""Resting states of laws without a potential, by Newton's method on the forces."""
 
 from __future__ import annotations
 
@@ -17,15 +17,9 @@ _SHORTEN = 0.5  # factor on a step, as often as the force grows by it
 
 
 def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
-    """Positions near q0 at which the force on every agent at rest vanishes, by Newton's method in least squares.
+    """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares).
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
-
-    Examples
-    --------
-    >>> from flockana.laws.minimal import MinimalFlocking
-    >>> resting_state(MinimalFlocking(edges=[(0, 1)], spacing=2.0), [[0.0], [1.9]]).round(12).tolist()
-    [[-0.05], [1.95]]
     """
     if not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")

@@ -1,4 +1,4 @@
-"""Last state of a run: distance from equilibrium, links, second-order character."""
+"""Final state of a run: distance from equilibrium, links, second-order character."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
 @dataclass(frozen=True)
 class TerminalState:
-    """The geometry and the second-order character of a configuration under Algorithm 1 or 2."""
+    """Geometry and second-order character of a configuration under Algorithm 1 or 2."""
 
     # largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`
     force: float
@@ -45,14 +45,7 @@ class TerminalState:
 def terminal_state(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, contact: float = 1e-9
 ) -> TerminalState:
-    """Measure a state: residual force, link lengths, Hessian off the rigid motions.
-
-    Examples
-    --------
-    >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
-    >>> at_rest.strain, at_rest.force, at_rest.connected
-    (0.0, 0.0, True)
-    """
+    """Return residual force, link lengths and Hessian off the rigid motions of a state."""
     if law.target is not None:
         ensure_one_gain(law.gains)
     alpha = law.alpha
@@ -78,19 +71,13 @@ def terminal_state(
 
 
 def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Forces in the moving frame at zero relative velocity."""
+    """Return the forces in the moving frame at zero relative velocity."""
     still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
     return moving_frame(law.flow(0.0, q, still)[0])
 
 
 def rigid_motions(q: FloatArray) -> FloatArray:
-    """Orthonormal basis of the infinitesimal translations and rotations of a configuration, shape (n m, k).
-
-    Examples
-    --------
-    >>> rigid_motions(np.array([[0.0, 0.0], [1.0, 0.0]])).shape
-    (4, 3)
-    """
+    """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k)."""
     n, m = q.shape
     x = moving_frame(q)
     size = float(np.linalg.norm(x))
@@ -108,14 +95,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
-    """Return the structural potential about a configuration; None where its Hessian is too large.
-
-    Examples
-    --------
-    >>> around = surroundings(Algorithm1(), np.array([[0.0], [7.0]]))
-    >>> around.holds(1e-3), around.holds(1e3)
-    (True, False)
-    """
+    """Return the structural potential about a configuration; None where its Hessian is too large."""
     if q.size > DENSE_LIMIT:
         return None
     own = law.scales

@@ -47,8 +47,6 @@ class EnergyIdentity:
 
     Parameters
     ----------
-    name : str
-        What is identified.
     energy : sympy.Expr
         The energy, as sums over n agents.
     rate : sympy.Expr
@@ -83,25 +81,12 @@ class EnergyIdentity:
         return latex_steps(self.name, self.steps)
 
     def _repr_latex_(self) -> str:
-        """Show the derivation in a notebook."""
+        """Return the LaTeX that a notebook shows."""
         return f"$${self.latex()}$$"
 
 
 class GenericPair:
-    """Agents i and j among n, by components: the terms of dH/dt that involve both.
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    frame : tuple of sympy.IndexedBase
-        Positions and velocities: (Q, P) in the given frame, (X, V) in the moving one.
-
-    Examples
-    --------
-    >>> GenericPair(1).tidy(pair_potential(*GenericPair(1).q))
-    c_1^alpha*psi_alpha(z_ij)
-    """
+    """Two agents i and j among n, by components: the terms of dH/dt that involve both."""
 
     z = sp.Symbol("z_ij", nonnegative=True)
 

@@ -10,14 +10,7 @@ from flockana.symbolic.pair_formula import EPS, PairFormula, S, Z
 
 
 def pair_derivation(formula: PairFormula) -> Derivation:
-    """Derive the consequences of a formula, with the residual of every equation that can be checked.
-
-    Examples
-    --------
-    >>> from flockana.symbolic.pair_formula import read_pair
-    >>> pair_derivation(read_pair("k*(s**2 - d**2)**2", "", "1", ["k"])).holds
-    True
-    """
+    """Derive the consequences of a formula, with the residual of every equation that can be checked."""
     y = formula.distance
     psi, named = sp.Function("psi")(y), "s" if y == S else "z"
     derivative = formula.derivative
@@ -40,12 +33,12 @@ def _at(expression: sp.Expr, at: sp.Expr, y: sp.Symbol) -> sp.Expr:
 
 
 def _along(potential: sp.Expr, at: sp.Expr, y: sp.Symbol, square: sp.Symbol) -> sp.Expr:
-    """2 dψ/d(s²), which the weight must be."""
+    """Return 2 dψ/d(s²), which must equal the weight."""
     return 2 * sp.diff(potential.subs(y, at), square)
 
 
 def alpha_steps() -> tuple[Step, ...]:
-    """Force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
+    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Matrices of directed perception graphs, and what they give on rooted trees: the bearing-distance Theorem 1.
+"""Matrices of directed perception graphs on rooted trees (bearing-distance Theorem 1).
 
 Edge e = (j, i): j sends, i receives; D has +1 at the receiver and -1 at the sender, D_in keeps the +1. With
 x = (-D^T (x) I) p the minimal model reads u = -D_in W^s D^T p - D_in W^a D^T v, W^s = diag w_e. Everything here is
@@ -36,16 +36,7 @@ def incidence_matrix(edges: Edges) -> sp.Matrix:
 
 
 def receiver_matrix(edges: Edges) -> sp.Matrix:
-    """Return D_in: the entries +1 of D.
-
-    Examples
-    --------
-    >>> receiver_matrix([(0, 1), (1, 2)]) * incidence_matrix([(0, 1), (1, 2)]).T
-    Matrix([
-    [ 0,  0, 0],
-    [-1,  1, 0],
-    [ 0, -1, 1]])
-    """
+    """Return D_in: the entries +1 of D."""
     return incidence_matrix(edges).applyfunc(lambda entry: sp.Max(entry, 0))
 
 
@@ -80,7 +71,7 @@ def stacked_form(edges: Edges) -> Derivation:
 
 
 def separation_forms(edges: Edges) -> dict[str, Derivation]:
-    """Derive the separation from its sums, and hold the paper's matrix forms against it, as printed and corrected.
+    """Derive the separation from its sums, compared with the paper's matrix forms, printed and corrected.
 
     With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1). The printed
     (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used
@@ -170,13 +161,7 @@ def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Ex
 
 
 def symmetric_part(children: int) -> Derivation:
-    """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2.
-
-    Examples
-    --------
-    >>> symmetric_part(5).result, symmetric_part(5).holds
-    (1 - sqrt(5)/2, True)
-    """
+    """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2."""
     edges = [(0, 1), *((1, 2 + k) for k in range(children))]
     edge_laplacian = incidence_matrix(edges).T * receiver_matrix(edges)
     symmetric = (edge_laplacian + edge_laplacian.T) / 2

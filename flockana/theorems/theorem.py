@@ -11,6 +11,7 @@ from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
 from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged
 from flockana.theorems.tolerances import Tolerances as Tolerances
+from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]
@@ -230,6 +231,13 @@ class Verdict:
             whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
             lines.append(f"  {name:>14} {c.status:12} {whose}{c.account}{c.cited}")
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return verdict_html(self)
+
+    def to_latex(self) -> str:
+        """Return the claims as a LaTeX ``tabular`` in the style of booktabs."""
+        return verdict_latex(self)
 
 
 Lead = Callable[[Any, Claim], float]

@@ -16,7 +16,7 @@ TRUTHS = {
     "E1": {"r": "printed printed-state printed-run", "v": "corrected"},
     "E2": {"r": "printed printed-state printed-run", "v": "corrected"},
     "E3": {"r": "share double-agent smallest strained algorithm-2"},
-    "E4": {"v": "printed found vacuous barrier"},
+    "E4": {"v": "printed found vacuous barrier together"},
     "E5": {"r": "printed-13 printed-8", "v": "uncrossed-13 uncrossed-8 six"},
     "E6": {"r": "printed", "v": "corrected sharp"},
     "E7": {"r": "printed", "v": "corrected connectivity-1 connectivity-2 share-2"},
@@ -42,8 +42,8 @@ TRUTHS = {
     "J12": {"r": "printed contact", "v": "corrected stand-off"},
     "J13": {"r": "letter clamped", "v": "reaching stand-off"},
     "J14": {"v": "one-informed none-informed two-of-ten none-of-ten"},
-    "J15": {"r": "printed flock", "v": "rest alone"},
-    "J16": {"r": "at-rest at-walls fragments", "v": "growing", "maybe": "circling"},
+    "J15": {"r": "printed flock", "v": "rest sliding alone"},
+    "J16": {"r": "at-walls fragments", "v": "growing", "maybe": "circling"},
     "J17": {"v": "delay none nearer"},
     "J18": {"v": "flock-10 flock-100 flock-500 local any-direction"},
     "L1": {"r": "printed", "v": "corrected"},
@@ -58,6 +58,7 @@ TRUTHS = {
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
     "tanner-minimum": {"r": "printed", "v": "corrected second-order"},
     "delay-margin": {"v": " ".join([*(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED), "pair"])},
+    "sampling-margins": {"r": "msn", "v": "msn-few msn-few-in-place notebook-1 notebook-2 minimal"},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "delayed-consensus": {"v": "margin below above root-below root-above average"},
@@ -65,7 +66,7 @@ TRUTHS = {
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},
 }
 THEOREMS = tuple(TRUTHS)
-SLOW = ("E3", "J11", "delay-margin", "linearised-decay", "heterogeneous-gains")
+SLOW = ("E3", "J11", "delay-margin", "sampling-margins", "linearised-decay", "heterogeneous-gains")
 
 
 def cases():

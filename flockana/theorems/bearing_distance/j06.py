@@ -1,4 +1,4 @@
-"""Erratum J6: the corrected Theorem 1 holds on a directed and on an undirected tree, in the plane and in space."""
+"""J6: the corrected Theorem 1 holds on a directed and on an undirected tree, in the plane and in space."""
 
 from __future__ import annotations
 

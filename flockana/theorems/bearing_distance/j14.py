@@ -1,4 +1,4 @@
-"""Erratum J14: a new global speed emerges, and it is the desired one as soon as somebody is informed of it."""
+"""J14, confirmed: a new global speed emerges; it is the desired one as soon as somebody is informed of it."""
 
 from __future__ import annotations
 

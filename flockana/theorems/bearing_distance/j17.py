@@ -1,4 +1,4 @@
-"""The bearing-distance paper's delayed reaction: agents that see an alien later than it sees them lose distance."""
+"""J17, confirmed: agents that see an alien later than it sees them react late and lose distance."""
 
 from __future__ import annotations
 

@@ -76,8 +76,9 @@ THEOREM = erratum(
     "J18",
     statement=(
         "The behaviour is said to be scalable. At the density of section 5.1, 10, 100 and 500 agents order, hold "
-        "together and keep apart, and an agent heeds as many others whatever the size. But first velocities in (0, 1) "
-        "are half aligned already: from all directions a large flock falls into many, each in its own direction."
+        "together and keep apart, and an agent has as many neighbours whatever the size. The text does not say from "
+        "which first velocities: its own, in (0, 1), are half aligned already, and from all directions a large flock "
+        "falls into many."
     ),
     source="Jond, bearing-distance flocking, abstract and conclusions",
     check=_check,

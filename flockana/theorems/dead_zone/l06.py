@@ -1,4 +1,4 @@
-"""Erratum L6: no two agents collide, by an explicit bound on distances, exponentially small in the energy."""
+"""L6, confirmed: no two agents collide, by an explicit bound on distances, exponentially small in the energy."""
 
 from __future__ import annotations
 

@@ -38,8 +38,8 @@ def attraction(
 ) -> Basin:
     """Return the basin of the minimum beside a state that is known to some distance.
 
-    Its barrier is 0 where nothing is known: at a saddle, in a flexible net, and of a flock with more coordinates than a
-    dense Hessian is made for.
+    Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
+    of a flock with more coordinates than a dense Hessian is made for.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def attraction(
     """
     if q.shape[0] == 1:
         return ALONE
-    if q.size > DENSE_LIMIT:
+    if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
         return Basin()
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
     if not (everywhere or law.gains.c2_alpha > 0.0):

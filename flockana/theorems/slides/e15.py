@@ -158,10 +158,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "E15",
     statement=(
-        "The MSN project lays the smaller circle of its case 4 to a flock that starts inside the γ-agent's and to a "
-        "speed just great enough to follow, and finds: the faster, the smaller. The start is forgotten, and it is "
-        "smaller at every speed. The faster the smaller holds of its p_r per iteration; with p_r = dq_r/dt the circle "
-        "first grows with the speed, to 1.155 of the γ-agent's, whatever the gains, as long as c2γ = 2√c1γ."
+        "The MSN project finds that the faster the γ-agent, the smaller the flock's circle: true of its program, with "
+        "its p_r per iteration. It lays the smaller circle of case 4 'most likely' to a flock that starts inside the "
+        "γ-agent's and to a speed just great enough to follow: the start is forgotten, and the circle is smaller at "
+        "every speed. With p_r = dq_r/dt it first grows with the speed, to 1.155 of the γ-agent's, whatever the gains, "
+        "as long as c2γ = 2√c1γ."
     ),
     source="MSN project, conclusion, case 4",
     check=_check,
