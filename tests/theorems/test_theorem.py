@@ -73,6 +73,12 @@ def test_corrections_and_extensions_are_told_apart():
     assert Verdict("x", (), claims).summary == expected
 
 
+def test_a_theorem_that_calls_itself_ours_is_not_its_sources():
+    for name in theorems():
+        item = theorem(name)
+        assert item.source.lower().startswith("ours") == (item.author != "source") or "corrected" in item.source, name
+
+
 def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
     needs = (MET, UNMET)
     assert Claim("i", "vacuous", needs=needs, detail="3 links").account == "'connected' does not hold; 3 links"
