@@ -274,6 +274,8 @@ class Theorem:
         Whose theorem it is; the claims are the author's unless named below.
     corrected, ours : tuple of str
         Names of the claims that correct the source, and of the library's own.
+    wrapped : bool
+        Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
 
     id: str
@@ -292,6 +294,7 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+    wrapped: bool = False
 
     @property
     def erratum(self) -> Erratum | None:
