@@ -68,6 +68,7 @@ from .laws.cucker_smale import CuckerSmale as CuckerSmale
 from .laws.dead_zone import DeadZoneFlocking as DeadZoneFlocking
 from .laws.directed import DirectedNet as DirectedNet
 from .laws.discrete import DiscreteLaw as DiscreteLaw
+from .laws.explicit_euler import ExplicitEuler as ExplicitEuler
 from .laws.law import Law as Law
 from .laws.led_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
 from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking
@@ -75,9 +76,11 @@ from .laws.minimal import MinimalFlocking as MinimalFlocking
 from .laws.olfati_saber import Algorithm1 as Algorithm1
 from .laws.olfati_saber import Algorithm2 as Algorithm2
 from .laws.peer_to_peer import PeerToPeer as PeerToPeer
+from .laws.semi_implicit import SemiImplicitEuler as SemiImplicitEuler
 from .laws.sum_of_terms import SumOfTerms as SumOfTerms
 from .laws.tanner import FixedNetFlocking as FixedNetFlocking
 from .laws.tanner import ProximityFlocking as ProximityFlocking
+from .laws.taylor_step import TaylorStep as TaylorStep
 from .laws.terms.alignment import AlignmentTerm as AlignmentTerm
 from .laws.terms.navigation import Navigation as Navigation
 from .laws.terms.obstacles import ObstacleTerm as ObstacleTerm
@@ -101,7 +104,10 @@ from .measures.nets import laplacian as laplacian
 from .measures.nets import links as links
 from .measures.windows import joint_windows as joint_windows
 from .plots.animation import animate as animate
+from .recorded.compare import compare as compare
+from .recorded.fit import fit as fit
 from .recorded.read import read_recording as read_recording
+from .recorded.recognise import recognise as recognise
 from .recorded.recording import Recording as Recording
 from .scenarios.flock import Flock as Flock
 from .scenarios.scenario import Scenario as Scenario

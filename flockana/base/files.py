@@ -85,19 +85,8 @@ def _in_the_way(target: Path) -> str:
 
 
 @contextmanager
-def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
-    """Open a temporary file that replaces the target when complete, and is removed after an error.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     target = Path(folder) / "it.txt"
-    ...     with replacing(target) as partial:
-    ...         _ = partial.write_text("whole")
-    ...     target.read_text(), partial.exists()
-    ('whole', False)
-    """
+def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
+    """Open a temporary file that replaces the target when complete, and is removed after an error."""
     target = ensure_target(path, remedy=remedy)
     # the suffix stays last: writers of pictures and films go by it
     partial = target.parent / f".{target.stem}.{os.getpid()}.partial{target.suffix}"
@@ -113,7 +102,7 @@ def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another fil
             partial.unlink(missing_ok=True)
 
 
-def write_whole(
+def write_atomic(
     path: str | os.PathLike[str], content: str | bytes | memoryview, *, remedy: str = "choose another file"
 ) -> Path:
     """Write a file atomically, text as UTF-8.
@@ -122,22 +111,22 @@ def write_whole(
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_whole(Path(folder) / "it.txt", "whole").read_text()
+    ...     write_atomic(Path(folder) / "it.txt", "whole").read_text()
     'whole'
     """
-    with replacing(path, remedy=remedy) as partial:
+    with atomic_write(path, remedy=remedy) as partial:
         partial.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     return Path(path)
 
 
-def read_whole(path: Any) -> str:
+def read_text_file(path: Any) -> str:
     """Return the UTF-8 text of a regular file; raise on devices and on huge files.
 
     What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
 
     Examples
     --------
-    >>> read_whole(os.devnull)
+    >>> read_text_file(os.devnull)
     Traceback (most recent call last):
     flockana.base.errors.FileError: cannot read ...: it is no regular file; expected a file
     """

@@ -40,15 +40,15 @@ def centres(x: FloatArray) -> FloatArray:
     return along
 
 
-def near_one(x: FloatArray, *others: float) -> tuple[FloatArray, tuple[float, ...], float]:
+def scaled_near_one(x: FloatArray, *others: float) -> tuple[FloatArray, tuple[float, ...], float]:
     """Return numbers divided by a power of two, and that power: 1 unless squares would overflow or underflow.
 
     Examples
     --------
-    >>> x, (r,), unit = near_one(np.array([3.0, 4.0]) * 2.0**600, 2.0**599)
+    >>> x, (r,), unit = scaled_near_one(np.array([3.0, 4.0]) * 2.0**600, 2.0**599)
     >>> x.tolist(), r, unit == 2.0**602
     ([0.75, 1.0], 0.125, True)
-    >>> near_one(np.array([3.0]), 2.0)[2]
+    >>> scaled_near_one(np.array([3.0]), 2.0)[2]
     1.0
     """
     top = max(float(x.max(initial=0.0)), -float(x.min(initial=0.0)), *others)

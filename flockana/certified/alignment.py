@@ -13,7 +13,7 @@ from flockana.certified.intervals import ball, square
 from flockana.certified.structure import Balls, Structure, dot
 
 
-def projects(u: Structure, rest: Balls, radius: fmpq) -> bool:
+def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
     """Return whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
     if u.m == 1:
         return True
@@ -36,7 +36,7 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
     return [x - c for row in rows for x, c in zip(row, middle, strict=True)]
 
 
-def turned_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
+def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
     """Return the equilibrium rotated, exactly but for its enclosure, to nearly the best alignment."""
     rotation = _rotation(*(np.array([float(y) for y in z]).reshape(shape) for z in (rest, x)))
     m = shape[1]

@@ -32,7 +32,7 @@ from flint import arb, ctx, fmpq
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
-from flockana.certified.alignment import centred, projects, turned_to
+from flockana.certified.alignment import centred, rotated_to, unique_projection
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.damping import damping
 from flockana.certified.decimals import round_down
@@ -40,7 +40,7 @@ from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
 from flockana.certified.structure import Structure
-from flockana.equilibria.solve import Equilibrium, ensure_found
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.measures.nets import components, links
 
 DIGITS = 40
@@ -119,12 +119,12 @@ class Basin:
         with ctx.workdps(DIGITS):
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
-            turned = turned_to(self.proof.rest, x, shape)
+            turned = rotated_to(self.proof.rest, x, shape)
             distance = sum((square(a - b) for a, b in zip(x, turned, strict=True)), arb(0)).upper().sqrt()
             excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
             return distance.upper(), excess.upper()
 
-    def ensure_whole(self) -> None:
+    def ensure_unedited(self) -> None:
         """Raise unless the basin is unchanged since `certify` returned it."""
         ensure_sealed("basin", self, "a basin as certify returned it", "certify(equilibrium) proves another")
 
@@ -142,7 +142,7 @@ class Basin:
         ArgumentError
             If the basin was made or changed by hand.
         """
-        self.ensure_whole()
+        self.ensure_unedited()
         distance, excess = self.above(q, p)
         with ctx.workdps(DIGITS):
             return bool(distance < ball(self.radius) and excess < ball(self.level))
@@ -195,7 +195,7 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
     """
     known = isinstance(equilibrium, Equilibrium)
     if known:
-        ensure_found("equilibrium", equilibrium)
+        ensure_unedited_equilibrium("equilibrium", equilibrium)
     law = equilibrium.law if law is None and known else law
     if law is None:
         raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
@@ -259,7 +259,7 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
     curvature = round_down(shells.curvature, _STATED)
     surplus = round_down(shells.surplus, _STATED)
     apart = min((length - ball(reach)).lower() for length in lengths.values())
-    if not (least > 0 and curvature > 0 and apart > 0 and projects(u, around.rest, shells.radius)):
+    if not (least > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
         return None
     bounds = Bounds(curvature, surplus, least, most)
     found = decay(bounds)

@@ -15,7 +15,7 @@ from flint import fmpq
 
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.decimals import decimal, format_decimal
@@ -23,18 +23,10 @@ from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
-    """Return a basin's certificate as plain data with its digest.
-
-    Examples
-    --------
-    >>> from flockana.certified.basin import certify
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> basin_certificate(certify([[0.0], [7.0]], law=Algorithm1()))["kind"]
-    'basin'
-    """
+    """Return a basin's certificate as plain data with its digest."""
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
-    basin.ensure_whole()
+    basin.ensure_unedited()
     proof = basin.proof
     u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
     parameters = {name: format_decimal(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
@@ -85,7 +77,7 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
     FileError
         If the file cannot be written.
     """
-    write_whole(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
+    write_atomic(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
 
 
 def _all(values: tuple[fmpq, ...]) -> list[str]:

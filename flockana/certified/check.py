@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError
-from flockana.base.files import read_whole
+from flockana.base.files import read_text_file
 from flockana.base.seals import without_digest
 from flockana.base.serialize import read_json
 from flockana.certified.forms import MADE_WITH, TEXT, RejectedError, ensure_form
@@ -52,7 +52,7 @@ def check_certificate(path: str | Path) -> Checked:
         If it does not prove what it says.
     """
     try:
-        data = read_json(read_whole(path))
+        data = read_json(read_text_file(path))
     except ValueError as error:
         raise FileError(f"{path} is no certificate: {error}") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:

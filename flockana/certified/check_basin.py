@@ -128,7 +128,7 @@ def _conclusions(
     share = ball(eps) / ball(curvature).sqrt()
     ensure(round_down_float(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
     yield "F = E + ε⟨w, v⟩ falls at twice the rate, and is E but for the overshoot"
-    ensure(net.projects(x, ball(radius)), "the nearest point of the orbit may not be unique")
+    ensure(net.unique_projection(x, ball(radius)), "the nearest point of the orbit may not be unique")
     yield "the nearest point of the orbit is unique, and not degenerate"
 
 

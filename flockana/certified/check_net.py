@@ -204,7 +204,7 @@ class Net:
             cells += [(low, half, depth + 1), (half, high, depth + 1)]
         return True
 
-    def projects(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
+    def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
         """Return whether the nearest point of the orbit is unique up to the radius."""
         gram = [[sum((row[a] * row[b] for row in x), arb(0)) for b in range(self.m)] for a in range(self.m)]
         trace = sum((gram[a][a] for a in range(self.m)), arb(0))

@@ -39,7 +39,7 @@ class BasinLike(Protocol):
     def proof(self) -> Any:
         """Balls that hold the equilibrium, and its structure."""
 
-    def ensure_whole(self) -> None:
+    def ensure_unedited(self) -> None:
         """Raise unless the basin is unchanged since it was proved."""
 
     def holds(self, q: Any, p: Any) -> bool:
@@ -110,7 +110,7 @@ class Tube:
         """Return the same tube with its computing time."""
         return changed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
 
-    def ensure_whole(self) -> None:
+    def ensure_unedited(self) -> None:
         """Raise unless the tube is unchanged since `enclose` returned it."""
         ensure_sealed("tube", self, "a tube as enclose returned it", "enclose(law, q0, p0, t_span) proves another")
 
@@ -268,8 +268,8 @@ class Tube:
         ArgumentError
             If either was made or changed by hand.
         """
-        self.ensure_whole()
-        basin.ensure_whole()
+        self.ensure_unedited()
+        basin.ensure_unedited()
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 

@@ -16,7 +16,7 @@ from flint import arb, ctx
 
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.certificate import basin_certificate
@@ -37,15 +37,7 @@ _TRIES = 30  # of an error that holds itself up
 
 
 def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
-    """Return the certificate of the run in the middle of a tube, as plain data with its digest.
-
-    Examples
-    --------
-    >>> from flockana.certified.enclose import enclose
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> tube_certificate(enclose(Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 0.0625)))["kind"]
-    'tube'
-    """
+    """Return the certificate of the run in the middle of a tube, as plain data with its digest."""
     _ensure_certifiable(tube, basin)
     with ctx.workprec(BITS):
         data = _start(tube, weight) | {"times": [_hexadecimal(arb(t)) for t in tube.t], "paths": _paths(tube)}
@@ -70,13 +62,13 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
     FileError
         If the file cannot be written.
     """
-    write_whole(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
+    write_atomic(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
 
 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
     if not isinstance(tube, Tube):
         raise ArgumentError(f"tube = {tube!r}: expected a tube, as enclose(...) gives it")
-    tube.ensure_whole()
+    tube.ensure_unedited()
     if not isinstance(basin, Basin | None):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it, or None")
     law: Any = tube.law

@@ -25,7 +25,7 @@ Batch = tuple[Any, ...]
 Pending = dict[Future[Any], Batch]
 
 
-def work_through(
+def map_in_batches(
     items: Sequence[Item],
     function: Callable[[tuple[Item, ...]], tuple[Result, ...]],
     workers: WorkerPool,
@@ -37,13 +37,6 @@ def work_through(
 
     The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
     items to send together; `watch` is told what is under way. An error of the function ends all.
-
-    Examples
-    --------
-    >>> from flockana.ensemble.executors import crew
-    >>> with crew(jobs=1) as workers:
-    ...     list(work_through([2, 3], lambda batch: tuple(x * x for x in batch), workers))
-    [((2, 4),), ((3, 9),)]
     """
     waiting, suspects = deque(items), deque[Any]()
     pending: Pending = {}

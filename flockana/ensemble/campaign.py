@@ -21,7 +21,7 @@ from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
-from flockana.ensemble.executors import crew, ensure_crew
+from flockana.ensemble.executors import ensure_worker_options, worker_pool
 from flockana.ensemble.guard import can_start_processes
 from flockana.ensemble.processes import cores
 from flockana.ensemble.runs import make_runs
@@ -123,7 +123,7 @@ def ensemble(
     >>> runs.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
     [0, 0, 0, 0]
     """
-    ensure_crew(executor, cluster, jobs)
+    ensure_worker_options(executor, cluster, jobs)
     seeds = ensure_seeds(seeds)
     axes, fixed = _split(parameters)
     runs = prod(map(len, axes.values()), start=len(seeds))
@@ -156,7 +156,7 @@ def ensemble(
                 jobs = min(jobs or cores(), len(missing))
                 if jobs > 1 and not can_start_processes(request):
                     jobs = 1
-            with crew(executor, cluster=cluster, jobs=jobs) as workers:
+            with worker_pool(executor, cluster=cluster, jobs=jobs) as workers:
                 for made in make_runs(request, missing, workers):
                     new = {keys[record.job]: record for record in made}
                     if kept is not None:

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError
-from flockana.base.files import replacing
+from flockana.base.files import atomic_write
 
 _DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
@@ -43,10 +43,10 @@ def mathematics() -> str:
     """
     root = Path(__file__).resolve().parent.parent
     sources = {str(p.relative_to(root)): p.read_bytes() for p in source_files(root)}
-    return kept_digest(sources, Path(cache_from_source(__file__)).parent)
+    return cached_digest(sources, Path(cache_from_source(__file__)).parent)
 
 
-def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
+def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
     """Return `digest_of_sources`, cached in a folder by the files' contents.
 
     To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
@@ -64,7 +64,7 @@ def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
         return digest
     digest = digest_of_sources(sources)
     if not sys.dont_write_bytecode and folder.is_dir():
-        with suppress(FileError), replacing(kept) as partial:
+        with suppress(FileError), atomic_write(kept) as partial:
             partial.write_text(digest, encoding="ascii")
     return digest
 
@@ -81,16 +81,7 @@ def source_files(root: Path) -> list[Path]:
 
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
-    """Return the digest of source files by name; comments, layout and docstrings do not count.
-
-    Examples
-    --------
-    >>> plain, commented = b"x = 1", b"x = (1)  # one"
-    >>> digest_of_sources({"a.py": plain}) == digest_of_sources({"a.py": commented})
-    True
-    >>> digest_of_sources({"a.py": plain}) == digest_of_sources({"a.py": b"x = 2"})
-    False
-    """
+    """Return the digest of source files by name; comments, layout and docstrings do not count."""
     # the syntax tree is written differently by each version of Python, which is one of the things that compute
     total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
     for name, source in sorted(sources.items()):
@@ -111,11 +102,5 @@ def _meaning(source: bytes) -> bytes:
 
 
 def run_key(what: Mapping[str, Any]) -> str:
-    """Return the key of a run in a store: a digest of plain data, independent of the order of names.
-
-    Examples
-    --------
-    >>> run_key({"seed": 1, "scenario": "hexagon"}) == run_key({"scenario": "hexagon", "seed": 1})
-    True
-    """
+    """Return the key of a run in a store: a digest of plain data, independent of the order of names."""
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()

@@ -14,13 +14,7 @@ from flockana.ensemble.processes import ProcessPool, cores
 
 
 class Serial(Executor):
-    """Executor that runs each call at once in the caller's thread.
-
-    Examples
-    --------
-    >>> Serial().submit(pow, 2, 5).result()
-    32
-    """
+    """Executor that runs each call at once in the caller's thread."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
         """Call the function now; Ctrl-C ends it and goes on to the caller."""
@@ -43,11 +37,11 @@ class WorkerPool:
 
 
 @contextmanager
-def crew(
+def worker_pool(
     executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None
 ) -> Iterator[WorkerPool]:
     """Provide workers: this process, a pool that ends with the block, a cluster, or a given executor."""
-    ensure_crew(executor, cluster, jobs)
+    ensure_worker_options(executor, cluster, jobs)
     count = cores() if jobs is None else jobs
     if executor is not None:
         width = getattr(executor, "_max_workers", None) or cores()
@@ -64,7 +58,7 @@ def crew(
             yield pool
 
 
-def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
+def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
     """Raise on bad executor options before anything is started."""
     if executor is not None and not isinstance(executor, Executor):
         raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")

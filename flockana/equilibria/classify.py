@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.equilibria.curvature import Landscape, downhill
+from flockana.equilibria.curvature import Landscape, descent_direction
 from flockana.equilibria.large import LargeLandscape
 from flockana.equilibria.potential import Potential
 
@@ -42,14 +42,7 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
-    """Return the potential's second-order model about a configuration, with its residual force.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> landscape(Potential(Algorithm1()), np.array([[0.0], [7.0]])).values.size
-    1
-    """
+    """Return the potential's second-order model about a configuration, with its residual force."""
     kind = Landscape if q.size <= DENSE_SIZE else LargeLandscape
     return kind(
         potential.stiffness,
@@ -91,17 +84,11 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     """
     here = landscape(potential, q)
     signs = here.curvatures().signs
-    return downhill(here) if signs.size and signs[0] < 0 else None
+    return descent_direction(here) if signs.size and signs[0] < 0 else None
 
 
-def kind_of(modes: Spectrum) -> EquilibriumKind:
-    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open.
-
-    Examples
-    --------
-    >>> kind_of(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1)), kind_of(Spectrum(np.array([0.0, 2.0]), 3, 0, 1))
-    ('saddle', 'degenerate')
-    """
+def classify_spectrum(modes: Spectrum) -> EquilibriumKind:
+    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open."""
     if modes.negative:
         return "maximum" if modes.negative == modes.eigenvalues.size else "saddle"
     return "degenerate" if modes.zero else "minimum"

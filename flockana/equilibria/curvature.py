@@ -40,20 +40,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby.
-
-    Examples
-    --------
-    A spring of stiffness 3 between two agents on a line, of which the sum is free:
-
-    >>> from scipy.sparse import csr_array
-    >>> spring = Landscape(
-    ...     lambda q: csr_array([[3.0, -3.0], [-3.0, 3.0]]),
-    ...     np.array([[0.0], [1.0]]), np.full((2, 1), 0.5**0.5), force=0.0, length=1.0, unit=3.0
-    ... )
-    >>> spring.curvatures().values.round(12).tolist(), spring.curvatures().signs.tolist()
-    ([6.0], [1])
-    """
+    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby."""
 
     def __init__(
         self,
@@ -183,7 +170,7 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
     return float(values[0]) / largest, min((landscape.change(0) + 2.0 * landscape.rounding) / largest, float("inf"))
 
 
-def downhill(landscape: Landscape) -> FloatArray:
+def descent_direction(landscape: Landscape) -> FloatArray:
     """Return the unit direction (n, m) of steepest second-order descent.
 
     The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.

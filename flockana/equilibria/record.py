@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import FileError, FlockanaError, SolverError
-from flockana.base.files import read_whole, write_whole
+from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.solve import Equilibrium, ensure_found, finish
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium, finish
 
 _FORMAT = "flockana equilibrium 1"
 _EXPECTED = f"expected JSON of the format {_FORMAT!r}, as 'flockana equilibrium SOURCE -o FILE' writes it"
@@ -26,7 +26,7 @@ _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on an
 
 def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
     """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly."""
-    ensure_found("equilibrium", equilibrium)
+    ensure_unedited_equilibrium("equilibrium", equilibrium)
     data = {
         "format": _FORMAT,
         "law": to_data(equilibrium.law),
@@ -38,7 +38,7 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
         "rigid_modes": equilibrium.rigid_modes,
         "hessian_eigenvalues": equilibrium.hessian_eigenvalues.tolist(),
     }
-    write_whole(path, json.dumps(with_digest(data), indent=1) + "\n")
+    write_atomic(path, json.dumps(with_digest(data), indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
@@ -61,7 +61,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
 def _read(path: str | Path) -> dict[str, Any]:
     """Return a file's data; raise unless it holds an equilibrium."""
     try:
-        data = read_json(read_whole(path))
+        data = read_json(read_text_file(path))
     except FlockanaError as error:
         raise _not_one(path, error) from error
     except ValueError as error:

@@ -25,9 +25,9 @@ from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
     EquilibriumKind,
+    classify_spectrum,
     ensure_small,
     falling,
-    kind_of,
     spectrum,
 )
 from flockana.equilibria.descent import descend
@@ -205,14 +205,7 @@ def find_equilibrium(
 
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
-    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> finish(Potential(Algorithm1()), np.array([[0.0], [7.0 + 1e-5]]), True, "given").residual < 1e-12
-    True
-    """
+    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
     q = _polish(potential, q) if converged and q.size <= DENSE_SIZE else q  # the descent has polished what is larger
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
@@ -238,7 +231,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         energy=potential.energy(q),
         residual=residual,
         links=links(q, potential.pair.range),
-        kind=kind_of(modes),
+        kind=classify_spectrum(modes),
         hessian_eigenvalues=modes.eigenvalues,
         rigid_modes=modes.rigid,
         zero_modes=modes.zero,
@@ -249,7 +242,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
     return sealed(found)
 
 
-def ensure_found(name: str, equilibrium: Equilibrium) -> None:
+def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
     """Raise unless an equilibrium is unchanged since a solver returned it."""
     source = "one as find_equilibrium returned it or read it from a file"
     ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
@@ -262,13 +255,7 @@ def _fixed_in_space(potential: Potential) -> bool:
 
 
 def all_pairs(n: int) -> LinkArray:
-    """Return all pairs of n agents.
-
-    Examples
-    --------
-    >>> all_pairs(3).tolist()
-    [[0, 1], [0, 2], [1, 2]]
-    """
+    """Return all pairs of n agents."""
     return np.array(list(combinations(range(n), 2)), dtype=np.int32).reshape(-1, 2)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import FileError, FlockanaError
-from flockana.base.files import read_whole, write_whole
+from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.simulate import simulate
@@ -142,7 +142,7 @@ class Counterexample:
             "options": to_data_mapping(self.options),
             "tolerances": asdict(self.tolerances),
         }
-        return write_whole(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+        return write_atomic(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
@@ -154,7 +154,7 @@ class Counterexample:
             If it cannot be read, is not one of ours, is of another format, or is damaged.
         """
         try:
-            data = read_json(read_whole(path))
+            data = read_json(read_text_file(path))
         except ValueError as error:
             raise FileError(f"{path} is no JSON ({error}): expected a file that `flockana falsify -o` wrote") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:

@@ -23,7 +23,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
 from flockana.measures.nets import LinkArray
@@ -82,7 +82,7 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
 
 def _squarable(q: FloatArray) -> FloatArray:
     """Return positions scaled by a power of two so that no difference overflows."""
-    scaled, _, unit = near_one(q)
+    scaled, _, unit = scaled_near_one(q)
     if (scaled * unit == q).all():
         return scaled
     if np.abs(q).max() < _FARTHEST:  # products that underflow or overflow are left to whole numbers
@@ -117,13 +117,7 @@ class _Exact:
 
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
-    """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly.
-
-    Examples
-    --------
-    >>> turns_left(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]]), [0, 0], [1, 1], [2, 3]).tolist()
-    [True, False]
-    """
+    """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly."""
     near = _squarable(q)
     a, b = near[first] - near[centre], near[second] - near[centre]
     left, right = a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]
@@ -203,6 +197,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     touching = crossings(q, links, limit=1)
     if len(touching):
         return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
-    near, (within,), unit = near_one(q, reach)
+    near, (within,), unit = scaled_near_one(q, reach)
     distance, a, b = nearest_links(near, links, within)
     return Separation(distance * unit, None if a < 0 else (min(a, b), max(a, b)))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.lattice.crossings import turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.measures.nets import LinkArray
@@ -86,7 +86,7 @@ def defects(q: Any, links: Any) -> Defects:
 def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray[np.bool_]:
     n = len(q)
     centre, other = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
-    near = near_one(q)[0]
+    near = scaled_near_one(q)[0]
     step = near[other] - near[centre]
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))

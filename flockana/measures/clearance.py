@@ -140,7 +140,7 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
             break
         left, right = _halves(curves)
         middle = np.ascontiguousarray(left[:, 5])
-        here, bound = at_once(obstacle, curves, middle, tol)
+        here, bound = bounds_over_hull(obstacle, curves, middle, tol)
         bound -= allowance
         lowest = int(np.argmin(here))
         if here[lowest] < value:
@@ -157,7 +157,9 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
     return _Bound(proven, value, where, which)
 
 
-def at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
+def bounds_over_hull(
+    obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float
+) -> tuple[FloatArray, FloatArray]:
     """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
     gap, _, here = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.vectors import centres, lengths, near_one
+from flockana.base.vectors import centres, lengths, scaled_near_one
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
@@ -29,7 +29,7 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
-    q, (d, r), unit = near_one(q, d, r)
+    q, (d, r), unit = scaled_near_one(q, d, r)
     n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
     for first, second in pair_blocks(q, r):
         unite(known, first, second)
@@ -185,7 +185,7 @@ def coincident_pairs(q: Any, tol: float) -> int:
     3
     """
     q = ensure_points("q", q)
-    q, (tol,), _ = near_one(q, ensure_positive("tol", tol))
+    q, (tol,), _ = scaled_near_one(q, ensure_positive("tol", tol))
     return sum(i.size for i, _ in pair_blocks(q, tol))
 
 
@@ -211,7 +211,7 @@ def nets(q: FloatArray, d: float, r: float) -> FloatArray:
 
 def cohesion_radii(q: FloatArray) -> FloatArray:
     """Return `cohesion_radius` over time, unchecked."""
-    q, _, unit = near_one(q)
+    q, _, unit = scaled_near_one(q)
     radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
     return radii
 
@@ -230,7 +230,7 @@ def spreads(x: FloatArray) -> FloatArray:
 
 def min_distances(q: FloatArray) -> FloatArray:
     """Return `min_distance` over time, unchecked."""
-    q, _, unit = near_one(q)
+    q, _, unit = scaled_near_one(q)
     if q.shape[1] < _TREE:
         distances: FloatArray = least_distances(q) * unit
         return distances
@@ -247,7 +247,7 @@ def diameters(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    x, _, unit = near_one(x)
+    x, _, unit = scaled_near_one(x)
     distances: FloatArray = greatest_distances(np.ascontiguousarray(x)) * unit
     return distances
 

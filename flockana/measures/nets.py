@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
-from flockana.base.vectors import lengths, near_one
+from flockana.base.vectors import lengths, scaled_near_one
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 
@@ -40,7 +40,7 @@ def links(q: Any, r: float) -> LinkArray:
     >>> links([[0.0], [1.0], [2.5]], 1.2).tolist()
     [[0, 1]]
     """
-    q, (r,), _ = near_one(ensure_points("q", q), ensure_positive("r", r))
+    q, (r,), _ = scaled_near_one(ensure_points("q", q), ensure_positive("r", r))
     return np.column_stack(pair_list(q, r))
 
 
@@ -52,7 +52,7 @@ def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    q, _, unit = near_one(q)
+    q, _, unit = scaled_near_one(q)
     return lengths(q[pairs[:, 1]] - q[pairs[:, 0]]) * unit
 
 

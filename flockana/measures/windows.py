@@ -73,7 +73,7 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
 
 
-def _tells_its_links(law: Any) -> bool:
+def _gives_links(law: Any) -> bool:
     """Return whether the law gives its own links, so that no neighbour search is needed."""
     return hasattr(law, "links")
 
@@ -84,6 +84,6 @@ MEASURES = (
         "windows of time over which the net is jointly connected",
         of_run=lambda run: len(windows_of(run)),
         of_run_text="contiguous windows of samples, each with a connected union of its nets",
-        defined=_tells_its_links,
+        defined=_gives_links,
     ),
 )

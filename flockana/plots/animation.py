@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import ensure_path, ensure_target, replacing
+from flockana.base.files import atomic_write, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
@@ -147,7 +147,7 @@ def animate(
     writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
-    with replacing(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):
+    with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):
 
         def drawn(k: int, total: int) -> None:
             if came:

@@ -10,7 +10,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.plots.snapshot import configuration, draw_sample
-from flockana.plots.style import INK, ensure_axes, finish_over_time, hairline
+from flockana.plots.style import INK, ensure_axes, finish_over_time, line_width_and_opacity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     if "heading" not in trajectory.extra or trajectory.extra["heading"].ndim != 2:
         raise ArgumentError(f"a run of {type(trajectory.law).__name__} has no headings: expected HeadingAveraging")
     axes: Any = ensure_axes(ax)
-    width, opacity = hairline(trajectory.n)
+    width, opacity = line_width_and_opacity(trajectory.n)
     axes.plot(trajectory.t, trajectory.extra["heading"], color=INK, linestyle="-", linewidth=width, alpha=opacity)
     return finish_over_time(axes, trajectory.t, "heading (radians)")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.measures.metrics import deviation_energy
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, legend_above
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, place_legend
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     _frame(ax, interaction, "energy, in its value at 0")
     ax.set_xlim(x[0], x[-1])
     ax.set_xlabel("place of one agent, seen from the other (length)")
-    legend_above(ax)
+    place_legend(ax)
     return ax
 
 

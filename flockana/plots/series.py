@@ -25,8 +25,8 @@ from flockana.plots.style import (
     ensure_axes,
     finish_empty,
     finish_over_time,
-    hairline,
     levels,
+    line_width_and_opacity,
     over_time,
     subplots,
 )
@@ -187,7 +187,7 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
     if not solids:
         return "there are no obstacles"
     t, q = trajectory.t, trajectory.q
-    width, alpha = hairline(2 * len(solids))
+    width, alpha = line_width_and_opacity(2 * len(solids))
     for k, solid in enumerate(solids):
         least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
         name = "each obstacle, at the samples" if k == 0 else None
@@ -208,7 +208,7 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
 def speeds(trajectory: Trajectory, ax: Any) -> None:
     """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law."""
     (t, p), target = velocities_between(trajectory), trajectory.law.target
-    width, alpha = hairline(trajectory.n)
+    width, alpha = line_width_and_opacity(trajectory.n)
     ax.plot(t, lengths(p), color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
     curves(ax, t, [(np.linalg.norm(p.mean(axis=1), axis=1), "centre of mass", INK, "-")])

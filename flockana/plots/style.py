@@ -154,7 +154,7 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
             lines = [y.partition(",")[0] + (f" ({unit[2]}" if unit[1] else "")]
         ax.set_ylabel("\n".join(map(typeset, lines)))
     if ax.get_legend_handles_labels()[0]:
-        legend_above(ax)
+        place_legend(ax)
     return ax  # type: ignore[no-any-return]
 
 
@@ -215,7 +215,7 @@ def head(ax: Any, title: str, **look: Any) -> None:
     ax.set_title(typeset(title), loc="left", **look)
 
 
-def legend_above(ax: Any) -> None:
+def place_legend(ax: Any) -> None:
     """Put the legend above the axes, in as many columns as fit their width."""
     handles, labels = ax.get_legend_handles_labels()
     for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
@@ -244,12 +244,12 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
     return scale
 
 
-def hairline(n: int) -> tuple[float, float]:
+def line_width_and_opacity(n: int) -> tuple[float, float]:
     """Return width and opacity of one of n lines on the same axes: fainter the more there are.
 
     Examples
     --------
-    >>> hairline(3), hairline(150)
+    >>> line_width_and_opacity(3), line_width_and_opacity(150)
     ((1.2, 0.9), (0.4, 0.4))
     """
     return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)

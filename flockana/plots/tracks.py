@@ -8,7 +8,17 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.predicates import ensure_run
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, frame_space, hairline, lines
+from flockana.plots.style import (
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    ensure_axes,
+    finish,
+    frame_space,
+    line_width_and_opacity,
+    lines,
+)
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -24,7 +34,7 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ensure_run(trajectory)
     axes = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
-    width, alpha = hairline(trajectory.n)
+    width, alpha = line_width_and_opacity(trajectory.n)
     axes.add_collection(lines(list(paths), colors=BLUE, linewidths=width, alpha=alpha))
     axes.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
     axes.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)

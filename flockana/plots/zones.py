@@ -34,9 +34,9 @@ from flockana.plots.style import (
     curves,
     ensure_axes,
     frame_space,
-    hairline,
     head,
     levels,
+    line_width_and_opacity,
     lines,
     over_time,
 )
@@ -237,6 +237,6 @@ def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, oth
 
 def _hairlines(ax: Any, t: FloatArray, values: FloatArray, label: str) -> None:
     """Draw a faint line for each column, and one entry of the legend."""
-    width, alpha = hairline(2 * max(1, values.shape[1]))
+    width, alpha = line_width_and_opacity(2 * max(1, values.shape[1]))
     ax.plot(t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label=label)

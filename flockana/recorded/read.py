@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError, FileError, told
+from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
 from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
 from flockana.recorded.reading.lammps import dimension, ensure_rising, places, snapshots, stacked, time_of
@@ -76,7 +76,7 @@ def read_recording(
         return Recording(**table_arrays(source, columns=columns, dt=dt, clock=clock), source="a frame", **accuracy)
     if not isinstance(source, str | os.PathLike):
         raise ArgumentError(
-            f"source = {told(type(source).__name__)}: expected a file, a pandas frame, or arrays by name"
+            f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, or arrays by name"
         )
     path = ensure_path(source)
     if not path.exists():

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
-from flockana.base.errors import ArgumentError, told
-from flockana.base.memory import Remembering
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.memory import ResultCache
 from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
@@ -33,7 +33,7 @@ _UNITS = {"t": (0, 1), "q": (1, 0), "p": (1, -1), "u": (1, -2)} | {
 
 
 @dataclass(frozen=True, eq=False)
-class Recording(Remembering):
+class Recording(ResultCache):
     """Samples of a flock that was recorded elsewhere, with gaps as NaN and the accuracy of its numbers.
 
     Parameters
@@ -339,7 +339,7 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
     except (ValueError, TypeError):
         raise ArgumentError(f"{name}: expected an array of numbers, got rows of different lengths") from None
     if array.dtype.kind not in "fiu":
-        raise ArgumentError(f"{name}: expected real numbers, got {told(array.dtype.name)}")
+        raise ArgumentError(f"{name}: expected real numbers, got {format_value(array.dtype.name)}")
     array = array.astype(np.float64)
     if np.isinf(array).any():
         where = ", ".join(str(int(k)) for k in np.argwhere(np.isinf(array))[0])

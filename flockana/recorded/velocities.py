@@ -51,7 +51,7 @@ def motions(rec: Recording) -> Motions:
     ArgumentError
         If an agent has fewer than four samples.
     """
-    return rec.remembered("motions", lambda: _motions(rec))
+    return rec.cached("motions", lambda: _motions(rec))
 
 
 def _motions(rec: Recording) -> Motions:

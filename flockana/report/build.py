@@ -21,7 +21,7 @@ from markupsafe import Markup
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import ensure_path, replacing
+from flockana.base.files import atomic_write, ensure_path
 from flockana.player.page import script, style
 from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
@@ -116,7 +116,7 @@ def write_report(
     run = _run_facts(seed, seconds, complete) | {"of": of}
     texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison, flocks)}
     with ExitStack() as both:  # neither takes its place before both are whole
-        partials = {name: both.enter_context(replacing(folder / name, remedy=_REMEDY)) for name in texts}
+        partials = {name: both.enter_context(atomic_write(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
             partials[name].write_text(text, encoding="utf-8")
     return folder / HTML

@@ -25,7 +25,7 @@ from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import zone_start
 from flockana.theorems.theorem import Status
@@ -170,7 +170,7 @@ _BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked)
 
 def apart(seed: int) -> tuple[FloatArray, FloatArray]:
     """Return the printed start, redrawn until all agents are over 2 m apart and the net within a is connected."""
-    return drawn_later((N, 2), lambda: _drawn_apart(seed))
+    return lazy_state((N, 2), lambda: _drawn_apart(seed))
 
 
 def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:

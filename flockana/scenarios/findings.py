@@ -51,14 +51,14 @@ def finding(
     )
 
 
-def in_the_end(
+def limit_report(
     name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
 ) -> Claim:
     """Return a report on a limit: verified by a certificate, else open, never refuted.
 
     Examples
     --------
-    >>> in_the_end("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
+    >>> limit_report("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
     'inconclusive'
     """
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
@@ -79,7 +79,7 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
     return tuple(replace(report, check=converted(report.check)) for report in reports)
 
 
-def as_tightly(run: Trajectory) -> dict[str, Any]:
+def same_accuracy(run: Trajectory) -> dict[str, Any]:
     """Return options of `simulate` that integrate a second run as accurately as the first."""
     return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.scenarios.findings import finding, in_the_end
+from flockana.scenarios.findings import finding, limit_report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.classics.averaging import permanently_connected, permanently_separated
@@ -47,13 +47,13 @@ def _apart_at_first(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     end = float(np.ptp(run.extra["heading"][-1]))
     text = f"headings differ by {end:.2g} at the end"
-    return in_the_end("one-flock", permanently_connected(*_last(run)), text, computed=end, stated="one heading")
+    return limit_report("one-flock", permanently_connected(*_last(run)), text, computed=end, stated="one heading")
 
 
 def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     heading = run.extra["heading"][-1]
     text = f"headings differ by {np.ptp(heading):.3g} radians at the end"
-    return in_the_end("two-flocks", permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
+    return limit_report("two-flocks", permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
 
 
 def _build(

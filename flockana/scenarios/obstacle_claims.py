@@ -12,7 +12,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
-from flockana.scenarios.findings import ROUNDING, component_counts, finding, in_the_end
+from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 
@@ -55,7 +55,7 @@ def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     if counts[-1] == 1 and apart.size:
         detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
     certificate = Certificate(-1.0, "the net at one instant of a motion that forgets its start is no limit")
-    return in_the_end("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
+    return limit_report("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
 
 
 def _passed_between(run: Trajectory) -> int:
@@ -114,7 +114,7 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
     )
     certificate = Certificate(1.0 if count else -1.0, "that is a count" if count else "none does, as yet")
-    return in_the_end("trapped", certificate, detail, computed=count, stated="more than 0")
+    return limit_report("trapped", certificate, detail, computed=count, stated="more than 0")
 
 
 def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -136,7 +136,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     none = Certificate(-1.0, "without damping by the γ-agent it may never")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
     certificate = damped if law.gains.c2_gamma > 0.0 else none
-    return in_the_end("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
+    return limit_report("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
@@ -162,4 +162,4 @@ def constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
     _, strain, detail = _measured(run)
     margin = (tolerances.quasi - strain) / tolerances.quasi
     certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")
-    return in_the_end("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")
+    return limit_report("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")

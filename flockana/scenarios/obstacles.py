@@ -29,7 +29,7 @@ from flockana.scenarios.obstacle_claims import (
     traps,
 )
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems.theorem import Status
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
@@ -58,15 +58,7 @@ _BALLS = [Sphere((60.0, 0.0, 0.0), 15.0), Sphere((70.0, 30.0, 10.0), 10.0), Sphe
 def free_start(
     seed: int, n: int, centre: Sequence[float], spread: float, obstacles: Sequence[Obstacle], *, room: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the paper's random start, with agents too near an obstacle drawn again.
-
-    Examples
-    --------
-    >>> wall = Sphere((0.0, 0.0), 3.0)
-    >>> q, p = free_start(0, 50, (0.0, 0.0), 5.0, [wall], room=1.0)
-    >>> bool(wall.clearance(q).min() >= 1.0), bool(-2.0 <= p.min() <= p.max() <= -1.0)
-    (True, True)
-    """
+    """Return the paper's random start, with agents too near an obstacle drawn again."""
     generator = np.random.default_rng(seed)
     m = len(centre)
     q, p = generator.normal(centre, spread, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
@@ -114,7 +106,7 @@ def _entry(
 
     def build(seed: int = 0) -> Scenario:
         room = BetaInteraction().d
-        start = drawn_later((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
+        start = lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
         in_units = in_source_units(lambda: law.scales, (_CLEAR, *reports))

@@ -16,7 +16,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
-from flockana.scenarios.start import given_later
+from flockana.scenarios.start import accepts_lazy
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_doubt
 from flockana.theorems.theorem import Status
@@ -35,7 +35,7 @@ class Report:
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
-@given_later("q0", "p0")
+@accepts_lazy("q0", "p0")
 @dataclass(frozen=True)
 class Scenario:
     """Published simulation, ready to run.
@@ -47,7 +47,7 @@ class Scenario:
     source : str
         Where it was published, and what is ours.
     q0, p0 : ndarray, shape (n, m)
-        Start; what takes long to draw may be given as `flockana.scenarios.start.later`.
+        Start; what takes long to draw may be given as `flockana.scenarios.start.lazy_array`.
     expected : mapping of str to str
         Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
     reports : tuple of Report

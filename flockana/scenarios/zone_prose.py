@@ -34,7 +34,7 @@ from flockana.scenarios.bearing_distance import (
 )
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import crowd_start, zone_start
 from flockana.theorems.theorem import Status
@@ -260,7 +260,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
         "the abstract calls the flocking scalable. Settings of zone-51; n agents, 500 if not given, as dense as the "
         "ten of section 5.1 and more than 2 m apart, velocities in (0, 1) (J18).",
         ZoneFlocking(FREE),
-        drawn_later((size, 2), lambda: crowd_start(seed, size)),
+        lazy_state((size, 2), lambda: crowd_start(seed, size)),
         20.0,
         seed,
         (*OPEN[1:], DISTANCES, _TOGETHER),

@@ -17,7 +17,7 @@ from flockana.base.checks import (
     ensure_state,
 )
 from flockana.base.errors import ArgumentError
-from flockana.equilibria.solve import Equilibrium, ensure_found
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame
@@ -125,7 +125,7 @@ def linearise(
     if not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(...), or a map such as TaylorStep(...)")
     if isinstance(equilibrium, Equilibrium):
-        ensure_found("equilibrium", equilibrium)
+        ensure_unedited_equilibrium("equilibrium", equilibrium)
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     t = ensure_finite_scalar("t", t)

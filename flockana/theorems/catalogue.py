@@ -225,13 +225,13 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
     if item.enclosed is None:
         able = ", ".join(name for name, one in catalogue().items() if one.enclosed is not None)
         raise ArgumentError(f"{item.id} is not decided from a tube: expected a Trajectory, or one of {able}")
-    tube.ensure_whole()
+    tube.ensure_unedited()
     if basin is not None:
         from flockana.certified.basin import Basin
 
         if not isinstance(basin, Basin):
             raise ArgumentError(f"basin = {format_value(basin)}: expected a basin, as certify(...) returns it, or None")
-        basin.ensure_whole()
+        basin.ensure_unedited()
     return Verdict(
         item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject, item.author
     )

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 
 AXES = "xyz"
 TIMES = ("t", "time", "times", "timestamp", "seconds", "tau")
@@ -129,14 +129,15 @@ def given_layout(columns: Mapping[str, Any], names: Sequence[Any], where: str) -
     """Return the layout that a user states: "t", "id", and lists of columns for "q", "p", "u"."""
     unknown = set(columns) - {"t", "frame", "id", "q", "p", "u"}
     if unknown:
-        raise ArgumentError(f"columns has {told(sorted(unknown))}: expected t, frame, id, q, p, u")
+        raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected t, frame, id, q, p, u")
     kinds = {k: [columns[k]] if isinstance(columns[k], str) else list(columns[k]) for k in "qpu" if k in columns}
     asked = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
     lacking = [x for x in asked if x not in list(names)]
     if lacking:
         raise ArgumentError(f"{where} has no column {lacking[0]!r}: expected one of {', '.join(map(str, names))}")
     if "q" not in kinds or any(len(v) != len(kinds["q"]) for v in kinds.values()) or not 1 <= len(kinds["q"]) <= 3:
-        raise ArgumentError(f"columns = {told(dict(columns))}: expected 1 to 3 columns for q, and as many for p and u")
+        got = format_value(dict(columns))
+        raise ArgumentError(f"columns = {got}: expected 1 to 3 columns for q, and as many for p and u")
     return Layout(columns.get("t"), columns.get("frame"), columns.get("id"), kinds, {})
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import CONTACT, natural_ratio, nudged, squeezed, threshold
+from flockana.equilibria.collapse import CONTACT, natural_ratio, perturbed, pulled_law, threshold
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
@@ -33,8 +33,8 @@ _HALVINGS = 3
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
     """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
-    pressed = squeezed(paper_pair(law), ratio)
-    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
+    pressed = pulled_law(paper_pair(law), ratio)
+    limit = gradient_flow(pressed, perturbed(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     return coincident_pairs(limit.q, CONTACT * law.alpha.length) > 0
@@ -96,7 +96,7 @@ def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Cla
 @lru_cache(maxsize=32)
 def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
     """Brackets of the ratio by number of agents; or why there are none."""
-    law = squeezed(alpha, natural_ratio(alpha))
+    law = pulled_law(alpha, natural_ratio(alpha))
     try:
         return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
     except SolverError as error:

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import nudged, squeezed
+from flockana.equilibria.collapse import perturbed, pulled_law
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
@@ -28,25 +28,25 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 @lru_cache(maxsize=1)
 def _pressed() -> FloatArray:
     """Return where a hexagonal patch of 61 agents rests at the project's coefficients."""
-    return _rest(nudged(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d), _RATIO)
+    return _rest(perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d), _RATIO)
 
 
 def _rest(q: FloatArray, ratio: float) -> FloatArray:
     """Return where a start rests downhill under the project's pair law."""
-    limit = gradient_flow(squeezed(_ALPHA, ratio), q)
+    limit = gradient_flow(pulled_law(_ALPHA, ratio), q)
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     return limit.q
 
 
 def _measured(q: FloatArray, ratio: float, contact: float) -> TerminalState:
-    return terminal_state(squeezed(_ALPHA, ratio), q, 0.0 * q, contact=contact)
+    return terminal_state(pulled_law(_ALPHA, ratio), q, 0.0 * q, contact=contact)
 
 
 def _least_strain(n: int, contact: float) -> Enclosure:
     """The least strain of n agents that rest at c1γ = c1α."""
     rng = np.random.default_rng(0)
-    starts = [nudged(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
+    starts = [perturbed(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
     starts += [rng.uniform(-_ALPHA.d, _ALPHA.d, (n, 2)) for _ in range(_STARTS - 1)]
     ends = [_measured(_rest(q, 1.0), 1.0, contact) for q in starts]
     # two agents move apart by √2 of the distance to the minimum at most
@@ -64,7 +64,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     strains = stacked([_least_strain(n, tolerances.contact) for n in _SIZES])
     q = _pressed()
     many = _measured(q, _RATIO, tolerances.contact)
-    basin, pairs = attraction(squeezed(_ALPHA, _RATIO), q, 0.0 * q).certificate, float(many.coincident)
+    basin, pairs = attraction(pulled_law(_ALPHA, _RATIO), q, 0.0 * q).certificate, float(many.coincident)
     return [
         judged(
             "necessary",
