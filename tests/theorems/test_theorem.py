@@ -158,7 +158,7 @@ def test_unknown_theorem():
     [
         ("os-1", {}, r"os-1 is checked on trajectory or law, p0, q0, t_span: got nothing"),
         ("E8", {"q": [[0.0]]}, r"E8 is checked on nothing: got q"),
-        ("os-1", {"law": Algorithm1(), "q0": [[0.0]]}, r"got law, q0"),
+        ("os-1", {"law": Algorithm1(), "p0": [[0.0]]}, r"got law, p0"),
         ("os-1", {"trajectory": 3}, r"trajectory = 3: expected a Trajectory"),
     ],
 )
