@@ -113,4 +113,5 @@ THEOREM = Theorem(
         "sampling-margins:notebook-2": "verified",
         "sampling-margins:minimal": "verified",
     },
+    author="flockana",
 )

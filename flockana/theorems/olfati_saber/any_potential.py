@@ -211,4 +211,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
     references=("olfati-saber-2006", "flockana"),
+    author="flockana",
 )
