@@ -22,6 +22,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("lattice",),
     ("laws",),
     ("dynamics",),
+    ("recorded",),
     ("lammps",),
     ("equilibria",),
     ("stability",),

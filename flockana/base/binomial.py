@@ -1,4 +1,4 @@
-"""What a count of successes says of a probability: the exact interval of Clopper and Pearson."""
+"""Exact confidence intervals of a probability from a count of successes (Clopper and Pearson)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def ensure_level(level: Any) -> float:
 
 
 def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
-    """Two-sided interval for a probability: each end is the one at which the count becomes a tail of (1 − level)/2.
+    """Return the exact two-sided confidence interval of a probability from a count of successes.
 
     It covers the true share with at least the stated probability for every n, unlike the interval of the normal
     approximation, which collapses to a point where all runs agree. Source: Clopper and Pearson (1934).

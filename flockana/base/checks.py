@@ -1,4 +1,4 @@
-"""Checks at the boundary: every public entry point validates its arguments here, before any work starts."""
+"""Validation of arguments at the public entry points, before any work starts."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def ensure_nonnegative(name: str, value: Any) -> float:
 
 
 def _real(value: Any) -> Any:
-    """The value itself, unless it only looks like a number: a text, a truth value, a time, a masked entry."""
+    """Return the value; raise on text, booleans, dates and masked entries, which numpy would convert."""
     if isinstance(value, str | bytes | bool | np.bool_ | np.datetime64 | np.timedelta64) or np.ma.is_masked(value):
         raise TypeError(f"{format_value(value)} is no number")
     return value
 
 
 def real_array(value: Any) -> FloatArray:
-    """A contiguous float64 array of real numbers; raises TypeError or ValueError on what merely converts to them.
+    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert.
 
     Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
 
@@ -140,7 +140,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
 
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
-    """Return a finite float64 series, of so many numbers if `length` is given.
+    """Return a finite float64 series, of the given length if there is one.
 
     Examples
     --------
@@ -256,7 +256,7 @@ def ensure_flag(name: str, value: Any) -> bool:
 
 
 def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
-    """Return `name` if it is one of those known.
+    """Return `name` if it is one of the known names.
 
     Examples
     --------
@@ -269,7 +269,7 @@ def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
 
 
 def ensure_choice(name: str, value: Any, choices: Collection[str]) -> str:
-    """Return `value` if it is one of a few texts.
+    """Return `value` if it is one of the choices.
 
     Examples
     --------
@@ -294,8 +294,8 @@ def ensure_dimension(m: int) -> int:
     return int(m)
 
 
-def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
-    """Raise unless what a law gives is an array of real numbers, of the flock's shape."""
+def ensure_returned_array(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
+    """Raise unless the array that a law returned is real and of the flock's shape."""
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
         kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
         raise ArgumentError(f"{what} as {kind} {at}: expected an array of real numbers of shape {shape}")

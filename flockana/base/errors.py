@@ -1,4 +1,4 @@
-"""The errors that flockana raises on purpose.
+"""Exceptions that flockana raises on purpose, and how messages write values.
 
 Every message names the value it got, what was expected, and the remedy. Anything else that escapes is a bug.
 """
@@ -14,7 +14,7 @@ DIGITS = 40  # of a whole number beyond which it is told by its size: Python its
 
 
 def format_value(value: Any) -> str:
-    """A value as a message writes it: on one line, and a whole number of very many digits by its size.
+    """Return a value as messages write it: on one line, very long whole numbers by their size.
 
     Parameters
     ----------
@@ -38,22 +38,20 @@ def format_value(value: Any) -> str:
 
 
 class FlockanaError(Exception):
-    """Base class of every error that flockana raises on purpose."""
+    """Base class of flockana's exceptions."""
 
 
 class ArgumentError(FlockanaError, ValueError):
-    """An argument has a wrong value, shape or type."""
+    """Exception for an argument of wrong value, shape or type."""
 
 
 class UnknownNameError(ArgumentError):
-    """A theorem, scenario, method or other name that does not exist.
+    """Exception for the name of a theorem, scenario, method or the like that does not exist.
 
     Parameters
     ----------
     kind : str
         What was looked for, such as ``"scenario"``.
-    name : str
-        The name that was given.
     known : iterable of str
         The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are told.
 
@@ -84,8 +82,8 @@ class UnknownNameError(ArgumentError):
 
 
 class FileError(FlockanaError, OSError):
-    """A file that cannot be read, is not one of ours, is damaged, or cannot be written."""
+    """Exception for a file that cannot be read or written, is damaged, or is of another program."""
 
 
 class SolverError(FlockanaError, RuntimeError):
-    """A numerical method gave up; the message says where and why."""
+    """Exception for a numerical method that did not converge; the message says where and why."""

@@ -1,4 +1,4 @@
-"""How often Python looks for garbage."""
+"""Frequency of Python's garbage collection."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ and again, as by default after hundreds, takes a tenth of a short command."""
 
 @contextmanager
 def relaxed_gc() -> Iterator[None]:
-    """Look for garbage after a hundred thousand new objects, not after hundreds.
+    """Collect garbage after a hundred thousand new objects instead of after hundreds.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def relaxed_gc() -> Iterator[None]:
 
 
 def freeze_gc() -> None:
-    """Take all that there is for no garbage, in a process that is about to end.
+    """Exclude all present objects from garbage collection, in a process that is about to end.
 
     Else Python would look through everything that was imported twice more: a tenth of a short command.
     """

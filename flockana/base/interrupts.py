@@ -1,4 +1,4 @@
-"""Ctrl-C: kept for later while something is under way that it must not tear, and recognised in any shape."""
+"""Ctrl-C: deferred during critical work, and restored where libraries convert it to other errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from multiprocessing import resource_tracker
 
 @contextmanager
 def defer_sigint() -> Iterator[list[int]]:
-    """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
+    """Defer Ctrl-C to the end of the block; yields a list that fills when it arrives.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def defer_sigint() -> Iterator[list[int]]:
 
 @contextmanager
 def block_sigint() -> Iterator[None]:
-    """Processes that this thread starts meanwhile never get Ctrl-C, not even before they can ignore it.
+    """Block Ctrl-C in processes that this thread starts inside the block.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def block_sigint() -> Iterator[None]:
 
 @contextmanager
 def restore_interrupts() -> Iterator[None]:
-    """Make Ctrl-C again what others made of it: a kernel's call fails where it comes, a lock is found in disorder.
+    """Raise KeyboardInterrupt again where compiled code or a lock turned it into another error.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Results that are computed once for an object and kept as long as it lives."""
+"""Cache of results on the object that they were computed from."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ _Value = TypeVar("_Value")
 
 
 class ResultCache:
-    """An object that keeps, beside its fields, what others computed from it."""
+    """Base class of objects that cache results computed from them."""
 
     def cached(self, name: str, compute: Callable[[], _Value]) -> _Value:
-        """What was computed from this object before, or is now.
+        """Return the result of that name, computed at the first call.
 
         Parameters
         ----------
-        name : str
-            What it is.
         compute : callable
             Gives it.
 

@@ -1,4 +1,4 @@
-"""The checker of basin certificates, to be read in one sitting beside `basin`, whose argument it follows.
+"""Independent checker of basin certificates, with the argument of `basin`.
 
 It and `check_net` share with the prover the scalar functions of `intervals` and nothing else. Everything is in balls or
 exact; "true" means certainly true.
@@ -23,7 +23,7 @@ STATED, OF_RATE = 4, 3  # significant digits
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """What is checked, by key (`forms`)."""
+    """Return the expected form of a certificate, by key (`forms`)."""
     numbers = ("box", "second_eigenvalue", "degree", "radius", "level", "curvature", "surplus", "rate", "overshoot")
     return dict.fromkeys((*numbers, "distance"), NUMBER) | {
         "law": PAIR_LAW,
@@ -35,7 +35,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a certificate and say what was verified, step by step."""
+    """Verify a basin certificate and return the verified steps."""
     with ctx.workdps(DIGITS):
         net = Net(data)
         x = net.equilibrium()
@@ -87,7 +87,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 def _conclusions(
     data: Mapping[str, Any], net: Net, x: Sequence[Sequence[arb]], lengths: Mapping[Pair, arb], k: Sequence[Fraction]
 ) -> Iterator[str]:
-    """What follows: level, curvature and surplus from the shells, damping from the net, and the rate from all."""
+    """Check level, curvature, surplus, damping and rate against the shells and the net."""
     radius = Fraction(data["radius"])
     step = radius / len(k)
     slopes = [step * sum(k[: i + 1], Fraction(0)) for i in range(len(k))]  # G' at the shells' ends
@@ -128,12 +128,12 @@ def _conclusions(
     share = ball(eps) / ball(curvature).sqrt()
     ensure(round_down_float(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
     yield "F = E + ε⟨w, v⟩ falls at twice the rate, and is E but for the overshoot"
-    ensure(net.projects(x, ball(radius)), "the nearest point of the orbit may not be unique")
+    ensure(net.unique_projection(x, ball(radius)), "the nearest point of the orbit may not be unique")
     yield "the nearest point of the orbit is unique, and not degenerate"
 
 
 def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
-    """Whether a stated number is the value rounded down to so many digits."""
+    """Return whether a stated number is the value rounded down to the given digits."""
     number = Fraction(stated)
     above = number + unit(number, digits)
     if number % unit(number, digits):
@@ -144,7 +144,7 @@ def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
 
 
 def positive(matrix: arb_mat, shift: Fraction) -> bool:
-    """Whether every symmetric matrix in the balls, less shift·1, is certainly positive definite: L D Lᵀ has D > 0."""
+    """Return whether every symmetric matrix in the balls, less shift·1, is certainly positive definite."""
     rows = [
         [entry - ball(shift) if i == j else entry for j, entry in enumerate(row)]
         for i, row in enumerate(matrix.tolist())

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_given
+from flockana.base.checks import FloatArray, ensure_returned_array
 from flockana.base.errors import ArgumentError, format_value
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
@@ -24,7 +24,7 @@ def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: Floa
     if not isinstance(given, tuple) or len(given) != 4 or not isinstance(given[3], Mapping):
         raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (q, p, u, memory)")
     for part, value in zip("qpu", given, strict=False):
-        ensure_given(f"{name} gives {part}", value, q0.shape, at)
+        ensure_returned_array(f"{name} gives {part}", value, q0.shape, at)
 
 
 def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray, p0: FloatArray, at: str) -> None:

@@ -1,4 +1,4 @@
-"""Dask clusters, by address or local: every wait has a limit, and failures close the client.
+"""Dask clusters, local or by address; every wait has a time limit, and failures close the client.
 
 A client that is left open closes itself when it is collected, and waits for ever if Dask holds its own lock just then.
 """
@@ -87,7 +87,7 @@ def _own_cluster(count: int) -> Any:
 
 
 def _client(target: Any, address: str) -> Any:
-    """A client of a cluster, or of the scheduler at an address, that has a worker."""
+    """Return a client of a cluster, or of the scheduler at an address, with at least one worker."""
     try:
         with restore_interrupts():
             return _opened(target)
@@ -132,7 +132,7 @@ def _threads(client: Any, limit: float) -> int:
 
 
 class _Width:
-    """Current number of runs that a cluster can make at once."""
+    """Number of runs that a cluster can make at once, at present."""
 
     def __init__(self, client: Any) -> None:
         self.client, self.seen = client, time.monotonic()
@@ -157,7 +157,7 @@ class _Width:
 
 
 def _end(closing: Any) -> None:
-    """Close a client or a cluster, also one whose constructor failed, and the thread that it started."""
+    """Close a client or a cluster, also after a failed constructor, with the thread that it started."""
     with defer_sigint():
         with suppress(Exception):  # there is nobody left to answer
             closing.close(timeout=_CLOSE)

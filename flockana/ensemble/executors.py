@@ -34,7 +34,7 @@ class Serial(Executor):
 
 @dataclass
 class WorkerPool:
-    """Executor with its width and its way of failing."""
+    """Executor with its number of workers and its behaviour when one dies."""
 
     executor: Executor  # who works
     width: Callable[[], int]  # how many batches it can work on at once, now
@@ -43,11 +43,11 @@ class WorkerPool:
 
 
 @contextmanager
-def crew(
+def worker_pool(
     executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None
 ) -> Iterator[WorkerPool]:
-    """Give workers: this process if there shall be one; processes that are started here end here."""
-    ensure_crew(executor, cluster, jobs)
+    """Provide workers: this process, a pool that ends with the block, a cluster, or a given executor."""
+    ensure_worker_options(executor, cluster, jobs)
     count = cores() if jobs is None else jobs
     if executor is not None:
         width = getattr(executor, "_max_workers", None) or cores()
@@ -64,8 +64,8 @@ def crew(
             yield pool
 
 
-def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
-    """Check the executor options before anything is started."""
+def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
+    """Raise on bad executor options before anything is started."""
     if executor is not None and not isinstance(executor, Executor):
         raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
     if executor is not None and (cluster is not None or jobs is not None):

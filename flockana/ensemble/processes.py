@@ -1,4 +1,4 @@
-"""Worker processes of our own: they never see Ctrl-C, use one thread each, and never outlive the program."""
+"""Worker processes that ignore Ctrl-C, use one thread each, and end with the program."""
 
 from __future__ import annotations
 
@@ -22,19 +22,13 @@ _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NU
 
 
 def cores() -> int:
-    """Number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 class ProcessPool(ProcessPoolExecutor):
-    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent.
-
-    Parameters
-    ----------
-    jobs : int
-        Processes at most.
-    """
+    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent."""
 
     def __init__(self, jobs: int) -> None:
         # spawned, not forked: a forked child inherits the locks of threads that it does not have
@@ -59,7 +53,7 @@ class ProcessPool(ProcessPoolExecutor):
 
 
 def _begin_worker() -> None:
-    """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
+    """Prepare a worker process: ignore Ctrl-C, and end with the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(SELDOM)
     atexit.register(freeze_gc)

@@ -67,7 +67,7 @@ class Motion:
 
 
 def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return f_r at one place or at several, calling a user's function one place at a time."""
+    """Return f_r at one position or at several, calling a user's function one position at a time."""
     if q.ndim == 1 or isinstance(force, Spring):
         return np.asarray(force(q, p), dtype=np.float64)
     return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""`pair_law`: a pair law from sympy expressions, text or numbers."""
+"""`pair_law`: pair law from sympy expressions, text or numbers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def pair_law(
     parameters: Mapping[str, float] | None = None,
     units: Mapping[str, Powers] | None = None,
 ) -> FormulaInteraction:
-    """A pair law from a formula, compiled as fast as a hand-written one, for every law that takes a pair interaction.
+    """Return a pair law from a formula, compiled as fast as a hand-written one, for every law that takes one.
 
     Formulas are sympy expressions, text or numbers, in the distance s, or in the σ-norm z with a parameter ``eps``;
     r and d mean range and length, r_z and d_z their σ-norms, and every other name is a parameter. Pieces are
@@ -76,7 +76,7 @@ def pair_law(
 
 
 def _as_text(name: str, formula: Any) -> str:
-    """A formula as text; sympy is imported only if it is none."""
+    """Return a formula as text; sympy is imported only when needed."""
     if formula is None:
         return ""
     if isinstance(formula, str):

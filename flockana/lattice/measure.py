@@ -1,4 +1,4 @@
-"""Classification of links against the lattice's scale: α-lattice, quasi-α-lattice, or neither."""
+"""Classification of configurations by link lengths: α-lattice, quasi-α-lattice, or neither."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     guard : float
         Relative difference from r up to which a distance counts as r; raise it for lattices far from the origin.
 
@@ -45,11 +44,7 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
 
 def edge_length_error(q: Any, d: float, r: float) -> float:
-    """δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
 
     Returns
     -------
@@ -67,11 +62,7 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
 
 
 def strain(q: Any, d: float, r: float) -> float:
-    """Largest relative error of a link δ/d; NaN without links.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return the largest relative error of a link, δ/d; NaN without links.
 
     Examples
     --------
@@ -86,7 +77,6 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     tol : float
         Largest |link − d|/d that counts as rounding.
 

@@ -27,7 +27,7 @@ from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
 from flockana.laws.gained import GainedLaw
-from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_part
+from flockana.laws.olfati_saber import PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_gains, ensure_part
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
@@ -109,7 +109,7 @@ class Composition(GainedLaw):
         for name, kind, example in optional:
             if getattr(self, name) is not None:
                 ensure_part(name, getattr(self, name), kind, example)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
         ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
         for name, ensure in (

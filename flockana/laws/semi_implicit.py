@@ -44,6 +44,7 @@ class SemiImplicitEuler(Scheme):
     True
     """
 
+    position_factor = 1.0
     steps_at_once = 2000  # of the dead-zone law, whose loop is compiled: 2 µs a step of 50 agents
 
     def step(  # noqa: D102

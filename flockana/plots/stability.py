@@ -1,4 +1,4 @@
-"""Linearised stability in pictures: poles, mode shapes on the flock, modes as films."""
+"""Linearised stability: poles, mode shapes on the flock, films of modes."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
 
 
 def _damping_rays(ax: Any) -> None:
-    """Rays of constant damping ratio into the left half-plane, named at the edge of the axes."""
+    """Draw rays of constant damping ratio in the left half-plane, labelled at the edge of the axes."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     if left >= 0.0:
         return
@@ -109,7 +109,7 @@ def _damping_rays(ax: Any) -> None:
 
 
 def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a mode on the flock: an arrow from each agent, and the ellipse that it runs through where it swings.
+    """Draw a mode on the flock: an arrow from each agent, and the ellipse of its oscillation.
 
     Parameters
     ----------

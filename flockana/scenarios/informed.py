@@ -1,4 +1,4 @@
-"""Su, Wang and Lin (2009): few informed agents, and a virtual leader of varying velocity. Numbers are ours."""
+"""Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArr
 
 
 def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the four agents out of everybody's reach keep their mean velocity."""
+    """Report that the four isolated agents keep their mean velocity."""
     mean = run.p[:, -4:].mean(axis=1)
     change = float(np.abs(mean[-1] - mean[0]).max()) / run.scales.speed
     text = f"the mean velocity of the four agents out of reach changes by {change:.2g} of the law's speed"
@@ -81,7 +81,7 @@ def _few(seed: int = 0) -> Scenario:
 
 
 def _through(seed: int = 0) -> Scenario:
-    """Erratum E13 with one informed agent, seen from a leader that moves as the centre of mass does at the start."""
+    """Return erratum E13 with one informed agent, in the frame of a leader that moves with the flock."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
     gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
@@ -174,7 +174,7 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
-    """n agents strewn over a square, of which some, the first, feel a leader of constant velocity.
+    """Return n agents in a square, of which the first few follow a leader of constant velocity.
 
     Examples
     --------

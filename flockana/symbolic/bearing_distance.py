@@ -1,4 +1,4 @@
-"""Zone-based flocking of one pair in sympy: both forms of the behaviours, bounds, distances of rest, common speed.
+"""Zone-based flocking of one pair in sympy: both forms of the behaviours, bounds, rest distances.
 
 Equation numbers are those of Jond's paper. A sum over a zone is a sum of these pairs, divided by the sum of the
 weights where the behaviour is a mean, so that a pair shows the equality of the two forms for every number of agents.
@@ -20,7 +20,7 @@ _X = sp.Symbol("x", nonnegative=True)
 
 
 def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
-    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and of one in its zones.
+    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and a neighbour.
 
     Examples
     --------

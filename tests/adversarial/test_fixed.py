@@ -24,10 +24,10 @@ TRUTHS = {
     "E9": {"r": "printed", "v": "corrected excess"},
     "E10": {"r": "printed", "v": "corrected"},
     "E14": {"r": "printed translation", "v": "corrected state"},
-    "E15": {"r": "printed-start printed-speed", "v": "predicted faster faster-as-run faster-true condition"},
-    "E16": {"r": "sufficient necessary", "v": "minima lattice"},
+    "E15": {"r": "printed-start printed-speed", "v": "predicted faster faster-as-run first-grows condition"},
+    "E16": {"v": "necessary insufficient"},
     "deviation-energy": {"v": "jump corner potential-continuous potential-smooth"},
-    "directed-nets": {"r": "momentum energy", "v": "undirected follower leader"},
+    "directed-nets": {"v": "undirected momentum-lost energy-rises follower leader"},
     "J1": {"r": "printed", "v": "corrected"},
     "J2": {"r": "hurwitz positive-definite", "v": "outside"},
     "J3": {"r": "printed hurwitz", "v": "trees"},
@@ -37,7 +37,7 @@ TRUTHS = {
     "J7": {"r": "reachable speed", "v": "step clip"},
     "J8": {"r": "equivalent holds-together", "v": "forms measured"},
     "J9": {"r": "printed flock", "v": "corrected"},
-    "J10": {"r": "distances order order-mended weights", "v": "recommended"},
+    "J10": {"r": "distances order weights", "v": "unordered-still recommended"},
     "J11": {"r": "aligned-2d aligned-3d cohesive-2d", "v": "recommended-2d recommended-3d"},
     "J12": {"r": "printed contact", "v": "corrected stand-off"},
     "J13": {"r": "letter clamped", "v": "reaching stand-off"},
@@ -56,16 +56,17 @@ TRUTHS = {
     "L8": {"r": "printed balance-distance", "v": "contact"},
     "L9": {"r": "printed fraction", "v": "energy one-leader different-leaders acceleration acceleration-needed"},
     "L10": {"r": "printed-sufficient printed-necessary", "v": "sufficient not-necessary"},
-    "tanner-minimum": {"r": "printed", "v": "corrected"},
+    "tanner-minimum": {"r": "printed", "v": "corrected second-order"},
     "delay-margin": {"v": " ".join([*(f"algorithm-{k}-{late}" for k in (1, 2) for late in DELAYED), "pair"])},
+    "sampling-margins": {"r": "msn", "v": "msn-few msn-few-in-place notebook-1 notebook-2 minimal"},
     "linearised-decay": {"v": "decay random range"},
     "zone-separation": {"r": "close-encounters", "v": "alone energy chain"},
     "delayed-consensus": {"v": "margin below above root-below root-above average"},
-    "jlm-cut": {"r": "frame-free", "v": "clear-of-cut vectors"},
+    "jlm-cut": {"v": "frame-bound clear-of-cut vectors"},
     "heterogeneous-gains": {"v": "printed simplified", "maybe": "apart"},
 }
 THEOREMS = tuple(TRUTHS)
-SLOW = ("E3", "J11", "delay-margin", "linearised-decay", "heterogeneous-gains")
+SLOW = ("E3", "J11", "delay-margin", "sampling-margins", "linearised-decay", "heterogeneous-gains")
 
 
 def cases():

@@ -103,7 +103,7 @@ def test_a_pair_out_of_range_that_may_come_into_it_is_missed(data, monkeypatch, 
 
 def test_the_nearest_point_is_asked_to_be_unique_in_all_of_the_radius(data, monkeypatch):
     asked = []
-    monkeypatch.setattr(Net, "projects", lambda self, x, radius: asked.append(radius) or True)
+    monkeypatch.setattr(Net, "unique_projection", lambda self, x, radius: asked.append(radius) or True)
     checked(data)
     (radius,) = asked
     assert radius.overlaps(arb(data["radius"]))

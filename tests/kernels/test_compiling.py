@@ -111,11 +111,11 @@ def test_processes_that_compile_at_once_compute_what_they_should(tmp_path):
     """Twelve functions of one name and one index, compiled by three processes in two orders, then loaded."""
     (tmp_path / "many.py").write_text(MODULE)
     for _ in range(2):
-        crew = [
+        worker_pool = [
             subprocess.Popen([sys.executable, "-c", PROGRAM, way], cwd=tmp_path, stderr=subprocess.PIPE, text=True)
             for way in ("up", "down", "up")
         ]
-        for process in crew:
+        for process in worker_pool:
             _, told = process.communicate(timeout=300)
             assert process.returncode == 0, told
 

@@ -64,15 +64,15 @@ def holder(tmp_path):
 
 def test_of_three_processes_one_compiles_and_the_others_load(tmp_path):
     (tmp_path / "slow.py").write_text(MODULE)
-    crew = [
+    worker_pool = [
         subprocess.Popen([sys.executable, "-c", PROGRAM, str(k)], cwd=tmp_path, stdout=subprocess.PIPE, text=True)
         for k in range(3)
     ]
     while not all((tmp_path / f"ready{k}").exists() for k in range(3)):
-        assert all(process.poll() is None for process in crew)
+        assert all(process.poll() is None for process in worker_pool)
         time.sleep(0.01)
     (tmp_path / "go").touch()
-    assert sorted(process.communicate(timeout=300)[0].strip() for process in crew) == ["0", "0", "1"]
+    assert sorted(process.communicate(timeout=300)[0].strip() for process in worker_pool) == ["0", "0", "1"]
 
 
 def test_one_that_ends_in_its_turn_gives_it(tmp_path, holder):

@@ -14,6 +14,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.terms.leaders import known_path
 from flockana.symbolic.led_dead_zone import led_energy_identity
 
 LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))
@@ -136,8 +137,7 @@ def test_what_it_measures():
         ({"c1": -1.0}, "c1 = -1: expected a gain >= 0"),
         ({"leaders": ()}, r"leaders = \(\): expected one or more"),
         ({"leaders": LEADERS[0]}, "expected one or more"),
-        ({"leaders": (RescaledVelocity(LEADERS[0], 0.5), LEADERS[1])}, "with its true velocity"),
-        ({"leaders": (StaticTarget((0.0, 0.0), (1.0, 0.0)), LEADERS[1])}, "with its true velocity"),
+        ({"leaders": (RescaledVelocity(LEADERS[0], 0.5), LEADERS[1])}, "with its true"),
         ({"group": (0, 2, 0, 1, 0, 1)}, "group has 2: expected the number of a leader, 0 to 1"),
         ({"pinned": (6,)}, "pinned has 6: expected an agent, 0 to 5"),
         ({"leaders": 3}, "leaders = 3: expected one or more"),
@@ -150,6 +150,12 @@ def test_what_it_measures():
 def test_what_it_refuses(change, words):
     with pytest.raises(ArgumentError, match=words):
         replace(LAW, **change)
+
+
+@pytest.mark.parametrize("leader", [RescaledVelocity(LEADERS[0], 0.5), StaticTarget((0.0, 0.0), (1.0, 0.0)), None])
+def test_a_leader_tells_its_true_velocity(leader):
+    with pytest.raises(ArgumentError, match="with its true velocity"):
+        known_path(leader)
 
 
 def test_flocks_it_is_not_for():

@@ -25,7 +25,7 @@ class Everything(Basin):
         for name, value in {"law": law, "answer": answer, "rest": NEAR}.items():
             object.__setattr__(self, name, value)
 
-    def ensure_whole(self):
+    def ensure_unedited(self):
         pass
 
     @property

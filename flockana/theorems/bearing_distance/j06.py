@@ -56,4 +56,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected=dict.fromkeys(("directed-2", "directed-3", "undirected-2", "undirected-3"), "verified"),
+    author="corrected",
 )

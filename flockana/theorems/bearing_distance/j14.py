@@ -88,8 +88,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         mostly(
             "none-of-ten",
             [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
-            f"with none informed the mean speed is not v^d ({np.median(none):.2f} in the median)",
-            "a flock of which nobody is informed keeps a speed of its own",
+            f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
+            "a flock of which nobody is informed does not fly at the desired speed",
             witness={"mean speed by seed": none},
         ),
     ]
@@ -97,7 +97,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J14",
-    title="The new global speed is that of the informed",
     statement=(
         "When some agents alter their speeds their neighbours follow, and a new global speed results; w^ga = 0 for "
         "agents that are not informed of v^d. True: whom alignment reaches takes over v^d from a single informed "
@@ -112,4 +111,5 @@ THEOREM = erratum(
         "two-of-ten": "verified",
         "none-of-ten": "verified",
     },
+    ours=("none-informed", "none-of-ten"),
 )

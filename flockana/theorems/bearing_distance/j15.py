@@ -106,7 +106,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J15",
-    title="Separation ensures no minimum distance c_i",
     statement=(
         "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
         "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion, as long as "
@@ -117,4 +116,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "rest": "verified", "sliding": "verified", "alone": "verified", "flock": "refuted"},
+    corrected=("rest", "sliding"),
+    ours=("alone",),
 )

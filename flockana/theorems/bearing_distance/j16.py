@@ -126,7 +126,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J16",
-    title="In a box fragments need not reunite",
     statement=(
         "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
         "attraction may grow until a flockmate is found. Two that head for opposite walls at v^d come to rest there "

@@ -95,4 +95,5 @@ THEOREM = Theorem(
     law=law_is("link-keeping", LinkKeeping),
     claims=("rate", "balance", "links", "connected", "velocities"),
     references=("zavlanos-2007", "ji-egerstedt-2007"),
+    author="flockana",
 )

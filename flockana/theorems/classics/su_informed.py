@@ -74,4 +74,5 @@ THEOREM = Theorem(
     claims=CLAIMS,
     leads={"pairs": pairs_apart, "one-instant": pairs_apart},
     references=("su-2009", "olfati-saber-2006"),
+    corrected=("one-instant",),
 )

@@ -152,7 +152,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L9",
-    title="Leaders and pinned agents appear in the text, not in (9)",
     statement=(
         "Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders "
         "whose acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these "
@@ -171,4 +170,5 @@ THEOREM = erratum(
         "acceleration": "verified",
         "acceleration-needed": "verified",
     },
+    ours=("energy",),
 )
