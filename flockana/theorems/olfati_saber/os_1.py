@@ -17,6 +17,7 @@ from flockana.theorems.olfati_saber.any_potential import (
     is_paper,
     never_meets,
     potential_needs,
+    said_by,
     stays_together,
     weight_inside,
 )
@@ -51,12 +52,13 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         below_the_barrier(seen, energy_at_start(seen)),
     )
     bounded, excluded = bounded_at_contact(seen, low), proved(seen, "collisions") if is_paper(seen) else PROOF
-    return [*needs, *bounded, low, barrier], [
+    claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]
+    return [*needs, *bounded, low, barrier], said_by(seen, claims)
 
 
 THEOREM = Theorem(
