@@ -91,7 +91,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         super().check_start(q, p)
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
-        """Control input u(q, p).
+        """Return the control input u(q, p).
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
-        """The energy of neighbours only: it jumps by ψ(r) whenever a pair comes into range (erratum L5).
+        """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5).
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
 
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
-        """Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
+        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Semi-implicit Euler steps in one compiled loop: q, p after each step kept and u before, shape (S, n, m).
+        """Return q, p after each step kept and u before, by semi-implicit Euler in one compiled loop.
 
         Parameters
         ----------
@@ -178,11 +178,11 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @property
     def located(self) -> bool:
-        """Whether the force jumps at the dead zone, so that every switch is located: there is no ramp."""
+        """Whether the force jumps at the dead zone (no ramp), so that switches are located."""
         return self.interaction.ramp == 0.0
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range.
+        """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range.
 
         Parameters
         ----------
@@ -193,7 +193,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `flow`, every pair held in its zone.
+        """Return `flow` with every pair held in its zone.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
 
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """How far each pair is inside its zone.
+        """Return how far each pair is inside its zone.
 
         Parameters
         ----------
@@ -220,7 +220,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return Margins(*zone_margins(q, pieces, self.interaction.par))
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """The zones after every pair with a negative margin has gone to the next.
+        """Return the zones after every pair with a negative margin has moved to the next one.
 
         Parameters
         ----------
@@ -236,7 +236,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return after.astype(np.int8)
 
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """The pairs that both sides of the edge just crossed drive back, if they swing by less than 1e-6 d₁.
+        """Return the pairs that slide along the edge just crossed, driven back from both sides.
 
         Parameters
         ----------
@@ -269,7 +269,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
 
 def contact_scales(interaction: DeadZoneInteraction) -> Scales:
-    """d₁, and the time in which the force of a contact moves an agent by it."""
+    """Return d₁, and the time in which the force of a contact moves an agent by d₁."""
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 

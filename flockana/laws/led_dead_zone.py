@@ -113,7 +113,7 @@ class LedDeadZoneFlocking(SumOfTerms):
 
     @property
     def scales(self) -> Scales:
-        """As those of `DeadZoneFlocking`."""
+        """Length and time scales of `DeadZoneFlocking`."""
         return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:

@@ -79,7 +79,7 @@ class LinkKeeping(SumOfTerms):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """The links alone."""
+        """The term of the links."""
         return (LinkTerm(self.tension, self.links, 1.0, self.c),)
 
     @property
@@ -89,17 +89,17 @@ class LinkKeeping(SumOfTerms):
 
     @property
     def pair(self) -> None:  # type: ignore[override]
-        """None: who interacts is the net's matter, not the distance's."""
+        """None, as the net and not the distance decides which agents interact."""
         return
 
     @property
     def lattice(self) -> None:
-        """None: links hold at no length."""
+        """None, as links have no preferred length."""
         return
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """None: no force begins or ends."""
+        """Empty, as no force begins or ends at a distance."""
         return ()
 
     def check_agents(self, n: int) -> None:
@@ -128,7 +128,7 @@ class LinkKeeping(SumOfTerms):
                 raise ArgumentError(f"link ({i}, {j}) is {length:g} long: expected links shorter than r = {self.r:g}")
 
     def lengths(self, q: FloatArray) -> FloatArray:
-        """Length of each link.
+        """Return the length of each link.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class LinkKeeping(SumOfTerms):
         return lengths
 
     def longest(self, energy: float) -> float:
-        """The length s < r at which one link alone has an energy: k s²/(r − s) = H.
+        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
 
         Parameters
         ----------

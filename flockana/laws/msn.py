@@ -90,7 +90,7 @@ class MSNDiscretisation(DiscreteLaw):
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One iteration, unchecked; it needs no memory, since the previous net is that of the q it is given."""
+        """Return the state after one iteration, unchecked; no memory, as the net follows from q."""
         later, h = t + self.dt, self.dt
         if not self.in_place:
             u, _ = self.law.flow(later, q, p)

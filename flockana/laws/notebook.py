@@ -25,7 +25,7 @@ MIN_DISTANCE, FACTOR = 0.05, 10.0
 
 
 def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
-    """What the push adds to Σ_j φ_α n_ij: φ_α (σ_ε(factor Δ) − σ_ε(Δ)) for each pair with ‖Δ‖ < min_distance.
+    """Return the push's part of Σ_j φ_α n_ij, for each pair closer than min_distance.
 
     Returns ndarray, shape (n, m) It sums to zero over the agents.
 
@@ -51,7 +51,7 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 
 @dataclass(frozen=True)
 class PushTerm(Term):
-    """What the push adds to the gradient of the pairs: no gradient itself, as energy is not counted of it.
+    """Term of the push near contact, which is not a gradient and has no energy.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class PushTerm(Term):
         return float(np.sum(f * p))  # the same in the moving frame, for the pushes cancel
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Zero where it does not act; raise where it does."""
+        """Return zero where the push does not act; raise where it does."""
         if any(i.size for i, _ in pair_blocks(q, self.min_distance)):
             raise ArgumentError(
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
@@ -117,12 +117,12 @@ class _Push:
 
     @property
     def surfaces(self) -> tuple[Any, ...]:
-        """Those of the law without the push, and where the push begins."""
+        """Switching distances of the law without the push, and where the push begins."""
         return (self.min_distance, *super().surfaces)  # type: ignore[misc]
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Those of the law without the push, and the push."""
+        """Terms of the law without the push, and the push."""
         push = PushTerm(self.alpha, self.gains.c1_alpha, self.min_distance, self.factor)
         return (*super().terms, push)  # type: ignore[misc]
 

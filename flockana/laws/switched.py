@@ -15,7 +15,7 @@ Pieces = npt.NDArray[np.int8]
 
 
 class Margins(NamedTuple):
-    """Per pair: how far inside its piece it is, negative beyond, and whether the nearer edge is the upper one."""
+    """Distances of pairs to the edges of their pieces, negative beyond, and the side of the nearer edge."""
 
     inside: FloatArray
     upper: npt.NDArray[np.bool_]
@@ -36,7 +36,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def pieces(self, q: FloatArray) -> Pieces:
-        """Which piece each pair is in.
+        """Return the piece of every pair.
 
         Parameters
         ----------
@@ -46,7 +46,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `flow`, with every pair's piece continued smoothly beyond its edges.
+        """Return `flow` with every pair's piece continued smoothly beyond its edges.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """How far each pair is from leaving its piece.
+        """Return how far each pair is from leaving its piece.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """The pieces after every pair with a negative margin has gone over its edge.
+        """Return the pieces after every pair with a negative margin has crossed its edge.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """What holds at the surface that was just crossed, in words; None if nothing does.
+        """Return a description of what slides along the surface just crossed; None if nothing does.
 
         Parameters
         ----------

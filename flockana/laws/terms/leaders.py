@@ -1,4 +1,4 @@
-"""What ties agents to leaders: velocities match among those of one leader, and a fraction of them is pinned to it."""
+"""Coupling to leaders: velocity matching within each leader's group, and pinned agents."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Leaders(Term):
 
     @cached_property
     def _pins(self) -> FloatArray:
-        """h_i, a column."""
+        """Column h_i with 1 for pinned agents."""
         pins = np.zeros((len(self.group), 1))
         pins[list(self.pinned)] = 1.0
         return pins
@@ -75,7 +75,7 @@ class Leaders(Term):
         return tuple(known_path(leader) for leader in self.leaders)
 
     def led(self, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Position, velocity and acceleration of each agent's own leader, three arrays of shape (n, m).
+        """Return position, velocity and acceleration of each agent's leader, three arrays of shape (n, m).
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class Leaders(Term):
         return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Second derivative of `energy`.
+        """Return the second derivative of `energy`.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class Leaders(Term):
 
 
 def known_path(leader: Any) -> Harmonic:
-    """The path of a leader, whose acceleration is known and who says its true velocity.
+    """Return the harmonic path of a leader; raise unless it reports its true velocity.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def known_path(leader: Any) -> Harmonic:
 
 
 def _motion(leader: Target, path: Harmonic, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Position, velocity and acceleration of a leader."""
+    """Return position, velocity and acceleration of a leader."""
     c, s = path.terms[2:4]
     bend: FloatArray = -(path.omega**2) * (c * cos(path.omega * t) + s * sin(path.omega * t))
     return leader.position(t), leader.rate(t), bend

@@ -1,4 +1,4 @@
-"""What is certain of averaged headings: nets that never change again, groups that never meet again, contraction."""
+"""Certificates for averaged headings: permanent nets, permanent separation, contraction."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TERMS = 4.0  # roundings of a difference, a length and a quotient
 
 
 def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
-    """Row-stochastic matrix of one step, θ' = M θ: each agent weighs itself and its neighbours alike.
+    """Return the row-stochastic matrix M of one step θ' = M θ, equal weights over neighbours and itself.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def contraction(matrix: FloatArray) -> float:
-    """Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|: no spread is multiplied by more.
+    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def contraction(matrix: FloatArray) -> float:
 
 @dataclass(frozen=True)
 class Block:
-    """As many jointly connected windows as there are agents, but one: enough to contract the headings.
+    """Sequence of n − 1 jointly connected windows, enough to contract the headings.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Block:
 
 
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
-    """Consecutive blocks of n − 1 windows, each with what its nets guarantee.
+    """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
 
 
 def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Certificate that a connected net never changes again, so that all headings tend to one.
+    """Return a certificate that a connected net never changes again, so that all headings tend to one.
 
     With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
     of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
@@ -149,7 +149,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
-    """How many agents each averages over, itself included.
+    """Return the number of agents that each averages over, itself included.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
-    """The mean heading by weights: what a connected net that stays keeps, and tends to.
+    """Return the weighted mean heading that a constant connected net preserves and tends to.
 
     Parameters
     ----------
@@ -185,13 +185,13 @@ def final_heading(heading: FloatArray, weights: FloatArray) -> float:
 
 
 def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray, IndexArray]:
-    """How far the distance of each pair is from r, and the pairs (i, j)."""
+    """Return the distance of each pair to r, and the pairs (i, j)."""
     i, j = np.triu_indices(len(q), 1)
     return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
 
 
 def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Certificate that a component of the net never meets the other agents again.
+    """Return a certificate that a component of the net never meets the other agents again.
 
     There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings
     advances faster than each of theirs. No heading leaves the span of those of its own side while the sides do not
@@ -225,7 +225,7 @@ def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Least and greatest cos(θ − φ) over all θ between the least and the greatest heading, for each φ."""
+    """Return the least and greatest cos(θ − φ) over the range of headings θ, for each φ."""
     low, high = float(heading.min()), float(heading.max())
     ends = np.cos(low - angles), np.cos(high - angles)
     turn = 2.0 * np.pi

@@ -1,4 +1,4 @@
-"""Whether two agents of a run come into range of each other, between the samples too, as far as it can be decided."""
+"""Decision whether two agents of a run come into range of each other, also between the samples."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Entry:
 
 
 def thinned(run: Trajectory) -> bool:
-    """Whether a map had states between those that were kept."""
+    """Return whether a map took steps between the stored samples."""
     return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 
