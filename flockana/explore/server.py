@@ -37,13 +37,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'
 
 
 class Process:
-    """A worker process, whose messages reach the server's own thread.
-
-    Parameters
-    ----------
-    limit : float
-        Seconds that a run may take.
-    """
+    """A worker process, whose messages reach the server's own thread."""
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")

@@ -233,11 +233,6 @@ class ZoneFlocking(DiscreteLaw):
         """Return the initial memory: headings along velocities, exact velocity estimates, aliens at their starts.
 
         With `growth` the radii of attraction as given, with `noise` step 0.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
         """
         speed = np.linalg.norm(p, axis=1, keepdims=True)
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
@@ -281,8 +276,6 @@ class ZoneFlocking(DiscreteLaw):
 
         Parameters
         ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
         memory : mapping of str to array_like, optional
             As `step` takes it; by default that of a start.
 
@@ -341,11 +334,6 @@ class ZoneFlocking(DiscreteLaw):
 
     def altitudes(self, p: Any) -> FloatArray:
         """Return the length of each agent's obstacle zone along its heading, shape (n,).
-
-        Parameters
-        ----------
-        p : array_like, shape (n, m)
-            Velocities.
 
         Examples
         --------

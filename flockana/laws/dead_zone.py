@@ -80,13 +80,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if two agents coincide: their force has no direction and their potential is infinite.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Raise if two agents coincide: their force has no direction and their potential is infinite."""
         ensure_apart(q)
         super().check_start(q, p)
 
@@ -97,8 +91,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
 
         Raises
         ------
@@ -120,13 +112,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
-        """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5).
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
-        """
+        """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""
         q, p = ensure_state(q, p)
         n = len(q)
         apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
@@ -137,8 +123,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
         Parameters
         ----------
-        q : array_like, shape (n, m)
-            Positions.
         t : float
             Time (it does not depend on it).
         """
@@ -161,8 +145,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         dt : float
             Step.
         steps : int
@@ -182,13 +164,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return self.interaction.ramp == 0.0
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range."""
         pieces: Pieces = zones(q, self.interaction.par)
         return pieces
 
@@ -201,8 +177,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             Zones.
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros_like(q)
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
@@ -214,8 +188,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Zones.
-        q : ndarray, shape (n, m)
-            Positions.
         """
         return Margins(*zone_margins(q, pieces, self.interaction.par))
 
@@ -242,8 +214,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ----------
         before, after : ndarray of int8
             Zones on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """

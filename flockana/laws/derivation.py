@@ -22,18 +22,6 @@ def law_derivation(law: Any, m: int = 2) -> EnergyIdentity:
     The sums are over n agents, whatever n is: the identity is derived from one generic pair and one generic agent, in
     the σ-norm z_ij, of which every function of a pair's distance is one.
 
-    Parameters
-    ----------
-    law : Law
-        A sum of a pair term and, if any, the linear pull of a γ-agent with gains common to all.
-    m : int
-        Dimension, 1, 2 or 3.
-
-    Raises
-    ------
-    ArgumentError
-        If the law has other terms, or a pair law without a formula.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

@@ -157,15 +157,7 @@ class DirectedNet(Law):
         return float((_SLOW * self.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the input, and NaN as no energy is known.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """Return the input, and NaN as no energy is known."""
         u, reach = np.zeros(q.shape), self._reach(len(q))
         for term in self.law.terms:
             if isinstance(term, PairTerm):
@@ -178,11 +170,6 @@ class DirectedNet(Law):
 
     def perceived(self, q: Any, p: Any) -> Edges:
         """Return the directed edges (j, i) of a state, where i sees j.
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
 
         Examples
         --------

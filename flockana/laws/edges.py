@@ -15,15 +15,7 @@ PerPair = float | tuple[tuple[float, ...], ...]
 
 
 class EdgeData(NamedTuple):
-    """Weights and spacings of the directed edges, arrays of shape (M,).
-
-    Parameters
-    ----------
-    head, tail : int64 arrays
-        The agent i that perceives and the agent j that it perceives.
-    mu, rho, align : ndarray
-        Weight μ_ij of the spring, its length ρ_i = α_i r_i, and the weight of v_j − v_i.
-    """
+    """Weights and spacings of the directed edges, arrays of shape (M,)."""
 
     head: npt.NDArray[np.int64]
     tail: npt.NDArray[np.int64]

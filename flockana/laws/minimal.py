@@ -179,24 +179,13 @@ class MinimalFlocking(Law):
         return weighed_edges(self, pairs[:, 1].copy(), pairs[:, 0].copy())
 
     def edge_data(self, q: FloatArray) -> EdgeData:
-        """Return directed edges of a state with their weights and spacings, unchecked.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return directed edges of a state with their weights and spacings, unchecked."""
         if self.edges is not None:
             return self._frozen
         return weighed_edges(self, *perceived_edges(q, np.full(len(q), self.radius)))
 
     def perceived(self, q: Any) -> Edges:
         """Return the directed edges (j, i) of a state, where i perceives j.
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-            Positions.
 
         Examples
         --------
@@ -233,13 +222,7 @@ class MinimalFlocking(Law):
         return radius, lengths, self.spacing is None, self.mu, self.sigma, self.normalised
 
     def steps_many(self, n: int) -> bool:
-        """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+        """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`."""
         return self._one_weight and n <= AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
 
     def semi_implicit(
@@ -251,8 +234,6 @@ class MinimalFlocking(Law):
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         dt : float
             Step.
         steps : int
@@ -267,8 +248,6 @@ class MinimalFlocking(Law):
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros_like(q)
         if self._one_weight:
@@ -284,8 +263,6 @@ class MinimalFlocking(Law):
         ----------
         t : float
             Time (H does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         if not self.reciprocal:
             return float("nan")
@@ -324,8 +301,6 @@ class MinimalFlocking(Law):
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
 
         Raises
         ------
@@ -382,8 +357,6 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
 
     Parameters
     ----------
-    law : MinimalFlocking
-        What gives u.
     dt : float
         Step δ; 0.1 in the paper.
 

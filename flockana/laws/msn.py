@@ -30,22 +30,6 @@ class MSNDiscretisation(DiscreteLaw):
     the end of the previous iteration, and the γ-agent has already moved on to the end of this one. The project sums
     in single precision, which is not imitated.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law whose input u is applied.
-    dt : float
-        Step, in time units.
-    in_place : bool
-        True as written; False evaluates every u before any agent moves.
-    position_factor : float
-        f: 3/2 as written, 1/2 for what a constant u does.
-
-    Raises
-    ------
-    ArgumentError
-        On another law (a variant's extra terms would be left out unnoticed), or a step that is not positive.
-
     Examples
     --------
     >>> from flockana.environment.targets import StaticTarget

@@ -53,17 +53,6 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 class PushTerm(Term):
     """Term of the push near contact, which is not a gradient and has no energy.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    stiffness : float
-        c1α.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there.
-
     Examples
     --------
     >>> u, q = np.zeros((2, 1)), np.array([[0.0], [0.04]])
@@ -134,17 +123,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
     wherever no pair is closer than `min_distance`.
 
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    gains : Gains
-        Only c1_alpha and c2_alpha are used.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there, at least 1.
-
     Examples
     --------
     >>> q, p = [[0.0, 0.0], [0.04, 0.0]], [[0.0, 0.0], [0.0, 0.0]]
@@ -168,19 +146,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Push, Algorithm2):
     """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    gains : Gains
-        c1 and c2 of α and γ are used.
-    target : Target
-        The γ-agent.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there, at least 1.
 
     Examples
     --------

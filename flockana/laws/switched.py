@@ -36,13 +36,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def pieces(self, q: FloatArray) -> Pieces:
-        """Return the piece of every pair.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the piece of every pair."""
 
     @abstractmethod
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -52,10 +46,6 @@ class SwitchedLaw(Law):
         ----------
         pieces : ndarray of int8
             From `pieces`.
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
 
     @abstractmethod
@@ -66,8 +56,6 @@ class SwitchedLaw(Law):
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        q : ndarray, shape (n, m)
-            Positions.
         """
 
     @abstractmethod
@@ -90,8 +78,6 @@ class SwitchedLaw(Law):
         ----------
         before, after : ndarray of int8
             Pieces on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """

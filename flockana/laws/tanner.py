@@ -169,13 +169,7 @@ class ProximityFlocking(SwitchedLaw):
         ensure_apart(q, "the force of the logarithmic potential")
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Return 0 for every pair within R and 1 beyond.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return 0 for every pair within R and 1 beyond."""
         pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
         return pieces
 
@@ -188,8 +182,6 @@ class ProximityFlocking(SwitchedLaw):
             Where each pair is held.
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)
@@ -204,8 +196,6 @@ class ProximityFlocking(SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        q : ndarray, shape (n, m)
-            Positions.
         """
         inside = self.r - _distances(q)
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
@@ -230,8 +220,6 @@ class ProximityFlocking(SwitchedLaw):
         ----------
         before, after : ndarray of int8
             Pieces on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """

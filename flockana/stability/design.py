@@ -172,8 +172,6 @@ def gain_problem(
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
-        A quasi-lattice.
     gains : Gains
         c1α and c2α are used.
     form : {"full", "simplified"}

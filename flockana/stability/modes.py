@@ -143,15 +143,6 @@ class Invariant(NamedTuple):
 class SecondOrder:
     """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    stiffness, damping : sparse array, shape (n m, n m)
-        K and D, symmetric or not.
-    zero : float
-        What counts as zero, relative to the largest row sum of K (of D, for damping).
-
     Examples
     --------
     >>> from scipy.sparse import csr_array

@@ -53,8 +53,6 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
         The law; its other gains stay.
     q : array_like, shape (n, m)
         Equilibrium at the first value, or near it.
-    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
     follow : bool
@@ -99,8 +97,6 @@ def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferF
     ----------
     gains : Gains
         The other gain of the two is used.
-    name : {"c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
 
@@ -166,8 +162,6 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
         The law; its other gains stay.
     q : array_like, shape (n, m)
         Equilibrium at the first value, or near it.
-    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
     delayed : {"all", "pairs", "neighbours"}

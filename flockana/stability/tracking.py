@@ -154,13 +154,7 @@ class Tracking:
     quantities: tuple[Quantity, ...]
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity whose name begins with `name`.
-
-        Parameters
-        ----------
-        name : str
-            Beginning of a name.
-        """
+        """Return the quantity whose name begins with `name`."""
         return next(item for item in self.quantities if item.name.startswith(name))
 
     def __str__(self) -> str:

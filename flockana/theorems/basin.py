@@ -144,17 +144,6 @@ def barrier(
     A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
     with L = 0 they were no better.
 
-    Parameters
-    ----------
-    curvature, distance : float
-        λ and δ.
-    windows : iterable of float
-        Choices of w.
-    lipschitz_within : callable
-        L within a distance of x.
-    off : float
-        Δ, how far from x the state may be.
-
     Examples
     --------
     >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
@@ -178,23 +167,7 @@ def barrier(
 def excess(
     p: FloatArray, p_off: float, force: float, curvature: float, off: float, stiffest: float, lipschitz: float
 ) -> float:
-    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`.
-
-    Parameters
-    ----------
-    p : ndarray, shape (n, m)
-        Velocities.
-    p_off : float
-        How far these may be off, over all coordinates.
-    force, curvature : float
-        |g| and λ.
-    off : float
-        Δ.
-    stiffest : float
-        Λ.
-    lipschitz : float
-        L within Δ of x.
-    """
+    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`."""
     height = kinetic(p, p_off) + force**2 / curvature
     return height if off == 0.0 else height + force * off + 0.5 * (stiffest + lipschitz * off) * off**2
 

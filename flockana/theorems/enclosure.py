@@ -24,16 +24,6 @@ class Enclosure:
     All operations round outwards, so that a formula on enclosures encloses the formula. An end that is NaN, such as
     ∞ − ∞, becomes infinite. Sums and differences that are exactly 0 stay 0.
 
-    Parameters
-    ----------
-    lo, mid, hi : array_like
-        Least, best and greatest value, of one shape.
-
-    Raises
-    ------
-    ArgumentError
-        If a lower end lies above an upper one.
-
     Examples
     --------
     >>> x = Enclosure.around(2.0, 0.5)

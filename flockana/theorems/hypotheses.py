@@ -26,8 +26,6 @@ def condition(
 
     Parameters
     ----------
-    name : str
-        The condition.
     holds : bool
         Whether it is met.
     margin : float, optional
@@ -151,8 +149,6 @@ def by_fact(name: str, fact: Fact) -> Hypothesis:
 
     Parameters
     ----------
-    name : str
-        Of the hypothesis.
     fact : Fact
         What is decided.
 
@@ -251,8 +247,6 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
 
     Parameters
     ----------
-    name : str
-        The condition.
     room : Enclosure
         The number, such as a bound less what lies below it.
     detail : str

@@ -152,13 +152,6 @@ def _with_bound(at_ends: Enclosure, bound: FloatArray) -> Enclosure:
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
     """Return the least distance of some pairs over the run: reached at a sample, bounded by control points between.
 
-    Parameters
-    ----------
-    seen : Observed
-        The run.
-    i, j : int array
-        The pairs, one at least.
-
     Examples
     --------
     Two agents that approach each other from afar:

@@ -24,21 +24,7 @@ from flockana.theorems.theorem import Hypothesis
 
 @dataclass(frozen=True)
 class TreeCase:
-    """A minimal law on a frozen tree, by its edges.
-
-    Parameters
-    ----------
-    law : MinimalFlocking
-        The law.
-    n : int
-        Number of agents.
-    links : tuple of (int, int)
-        Its n − 1 edges; of an undirected tree, each link in one direction.
-    rho, mu, align : ndarray, shape (n - 1,)
-        Desired length, weight of the spring, weight of the velocity difference, of each.
-    root : int or None
-        The root of a directed tree.
-    """
+    """A minimal law on a frozen tree, by its edges."""
 
     law: MinimalFlocking
     n: int

@@ -24,13 +24,6 @@ _TERMS = 4.0  # roundings of a difference, a length and a quotient
 def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
     """Return the row-stochastic matrix M of one step θ' = M θ, equal weights over neighbours and itself.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
-
     Examples
     --------
     >>> averaging_matrix(2, np.array([[0, 1]])).tolist()
@@ -45,11 +38,6 @@ def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
 def contraction(matrix: FloatArray) -> float:
     """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (n, n)
-        Row-stochastic.
-
     Examples
     --------
     >>> contraction(np.array([[0.75, 0.25], [0.25, 0.75]]))
@@ -60,19 +48,7 @@ def contraction(matrix: FloatArray) -> float:
 
 @dataclass(frozen=True)
 class Block:
-    """Sequence of n − 1 jointly connected windows, enough to contract the headings.
-
-    Parameters
-    ----------
-    start, stop : int
-        First step and the first after it.
-    factor : float
-        By how much the nets contract every spread at least.
-    error : float
-        Rounding of the spread at its end.
-    mixes : bool
-        Whether all agents take something from one, so that the factor is below 1, however little: it may round to 1.
-    """
+    """Sequence of n − 1 jointly connected windows, enough to contract the headings."""
 
     start: int
     stop: int
@@ -82,17 +58,7 @@ class Block:
 
 
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
-    """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction.
-
-    Parameters
-    ----------
-    nets : sequence of int array
-        Links at each step.
-    headings : ndarray, shape (T, n)
-        One more than there are steps.
-    windows : sequence of (int, int)
-        Jointly connected windows of steps.
-    """
+    """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction."""
     n, found = headings.shape[1], []
     size = max(1, n - 1)
     for k in range(0, len(windows) - size + 1, size):
@@ -114,15 +80,6 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
     steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
     less than what each distance is away from r, the net stays; by induction for ever.
-
-    Parameters
-    ----------
-    law : HeadingAveraging
-        The law, with the mean of headings and no noise.
-    q : ndarray, shape (n, 2)
-        Positions.
-    heading : ndarray, shape (n,)
-        Headings.
     """
     n, pairs = len(q), law.links(q)
     if components(n, pairs).max() > 0:
@@ -151,13 +108,6 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
     """Return the number of agents that each averages over, itself included.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
-
     Examples
     --------
     >>> neighbourhoods(3, np.array([[0, 1]])).tolist()
@@ -168,13 +118,6 @@ def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
     """Return the weighted mean heading that a constant connected net preserves and tends to.
-
-    Parameters
-    ----------
-    heading : ndarray, shape (n,)
-        Headings.
-    weights : ndarray, shape (n,)
-        1 and the number of neighbours of each agent.
 
     Examples
     --------
@@ -196,15 +139,6 @@ def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings
     advances faster than each of theirs. No heading leaves the span of those of its own side while the sides do not
     meet, so that they never do, and the spans stay apart.
-
-    Parameters
-    ----------
-    law : HeadingAveraging
-        The law, with the mean of headings and no noise.
-    q : ndarray, shape (n, 2)
-        Positions.
-    heading : ndarray, shape (n,)
-        Headings.
     """
     labels = components(len(q), law.links(q))
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS

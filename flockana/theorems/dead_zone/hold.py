@@ -52,17 +52,6 @@ def hold(
 ) -> Basin:
     """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given.
 
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps.
-    off, p_off : float
-        How far positions and velocities may be from the true ones, over all coordinates.
-
     Examples
     --------
     Two agents at their contact, and two that have more energy than it takes to leave it:

@@ -39,19 +39,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A component of the net at one instant, and what is certain of it while it meets no other.
-
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities of its agents.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps; by default the flow.
-    off, p_off, energy_off : float
-        How far positions and velocities, over all coordinates, and the energy may be from the true ones.
-    """
+    """A component of the net at one instant, and what is certain of it while it meets no other."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -114,15 +102,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """The components of a flock at one instant.
-
-    Parameters
-    ----------
-    members : tuple of Component
-        The components, in the order of their first agents.
-    r : float
-        Interaction range.
-    """
+    """The components of a flock at one instant."""
 
     members: tuple[Component, ...]
     r: float
@@ -216,19 +196,6 @@ def components_of(
     energy_off: Callable[[npt.NDArray[np.intp]], float] = lambda agents: 0.0,
 ) -> Components:
     """Return the components of the net at r.
-
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    law : DeadZoneFlocking
-        The law.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps.
-    off, p_off : float
-        How far the state may be from the true one, over all coordinates.
-    energy_off : callable
-        How far the energy of some agents, an index array, may be off.
 
     Examples
     --------

@@ -17,17 +17,7 @@ _NEXT = 1.5  # steps: samples of a map that are farther apart have states betwee
 
 @dataclass(frozen=True)
 class Entry:
-    """The first pair that comes into range, and whether there may be others.
-
-    Parameters
-    ----------
-    pair : tuple of int, optional
-        Two agents that were out of range for certain, and then in it.
-    time : float, optional
-        The end of the first interval between steps in which some do.
-    unsure : bool
-        Whether there are others of which it cannot be told, at r but for rounding or between samples too sparse.
-    """
+    """The first pair that comes into range, and whether there may be others."""
 
     pair: tuple[int, int] | None
     time: float | None

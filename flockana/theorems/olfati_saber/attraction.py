@@ -41,15 +41,6 @@ def attraction(
     Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
     of a flock with more coordinates than a dense Hessian is made for.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    off, p_off : float
-        How far each may be from the true ones, over all coordinates.
-
     Examples
     --------
     >>> q = np.array([[0.0, 0.0], [7.001, 0.0]])
