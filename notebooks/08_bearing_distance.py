@@ -24,19 +24,20 @@
 #   p_i \leftarrow p_i + \Delta t\, u_i, \qquad q_i \leftarrow q_i + \Delta t\, p_i ,$$
 #
 # with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
-# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le z_c\}$, $A_i = \{j :
-# z_r < d_{ij} \le z_a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le z_s\}$, and weights $w$ whose sum over the set is
+# \|q_j-q_i\|$, the bearing $\hat b_{ij} = (q_j-q_i)/d_{ij}$, the sets $\mathcal R_i = \{j \ne i : d_{ij} \le
+# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the aliens $\mathcal S_i = \{k : 0 < d_{ik} \le
+# z_s\}$, and weights $w$ whose sum over the set is
 # $\bar w$:
 #
 # $$\begin{gathered}
-#   u_i^{lc} = \frac1{\bar w^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
-#   u_i^{la} = \frac1{\bar w^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
-#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-z_c)\,b_{ij},
+#   u_i^{lc} = \frac1{\bar w^{lc}}\sum_{\mathcal A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{\bar w^{la}}\sum_{\mathcal A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
+#   u_i^{ls} = \sum_{\mathcal R_i} w_{ij}^{ls}\,(d_{ij}-z_c)\,\hat b_{ij},
 # \end{gathered}$$
 #
 # $$\begin{gathered}
-#   u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-z_s)\,b_{ik}, \quad
-#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-z_c)\,b_{ie}, \\[1ex]
+#   u_i^{ss} = \sum_{\mathcal S_i} w_{ik}^{ss}\,(d_{ik}-z_s)\,\hat b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-z_c)\,\hat b_{ie}, \\[1ex]
 #   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),
 # \end{gathered}$$
 #
@@ -60,8 +61,8 @@ hunted = fl.scenario("zone-52").run()
 hunted.window(0.0, 32.0).animate(seconds=4, fps=8)
 
 # %% [markdown]
-# Triangles are the zones in which an agent heeds obstacles, the cross is an alien that hunts within the tinted area.
-# The directed zones let a flock through a gap that the conventional method, a buffer around the whole obstacle,
+# Triangles are the zones in which an agent reacts to obstacles, the cross is an alien that hunts within the tinted
+# area. The directed zones let a flock through a gap that the conventional method, a buffer around the whole obstacle,
 # closes:
 
 # %%
@@ -72,8 +73,9 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
 # %% [markdown]
 # ## Two forms, and where they part
 #
-# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}b_{ij}$, and from their rates
-# $p_j - p_i = d_{ij}\dot b_{ij} + \dot d_{ij}b_{ij}$ (13). So each behaviour has a form without positions:
+# From a bearing $\hat b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}\hat b_{ij}$, and from their
+# rates $p_j - p_i = d_{ij}\tfrac{d}{dt}\hat b_{ij} + \dot d_{ij}\hat b_{ij}$ (13). So each behaviour has a form
+# without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -84,9 +86,9 @@ for name in by_position:
     print(f"{name:>10}: {np.abs(by_position[name] - by_bearing[name]).max():.1e}")
 
 # %% [markdown]
-# They agree as long as the global speed term is told the agent's own velocity. No bearing tells that; the paper
-# estimates it by (17), which adds up the inputs but forgets the global term itself. After one step the estimate is off
-# by
+# They agree as long as the agent knows its own velocity, which the global speed term needs. No bearing contains it;
+# the paper estimates it by (17), which adds up the inputs but forgets the global term itself. After one step the
+# estimate is off by
 
 # %%
 bearing_distance.estimate_gap()
@@ -122,7 +124,7 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
 # (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
-# $\rho$:
+# $d$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
 # > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
@@ -150,13 +152,13 @@ print(f"edges {lengths.min():.3f} to {lengths.max():.3f} long, largest force {np
 
 # %% [markdown]
 # $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge of length
-# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - \rho/\|x\|)$ to the characteristic polynomial of $A_{cl}$
+# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - d/\|x\|)$ to the characteristic polynomial of $A_{cl}$
 # (erratum J2):
 
 # %%
 for ratio in (2.0, 1.0, 0.5):
     first, second = (complex(root) for root in spanning_trees.frozen_eigenvalues(ratio))
-    print(f"|x| = {ratio:g} ρ: eigenvalues {first:.3f} and {second:.3f}")
+    print(f"|x| = {ratio:g} d: eigenvalues {first:.3f} and {second:.3f}")
 
 # %% [markdown]
 # Hurwitz where edges are too long, singular where they are right, unstable where they are too short. And $A_{cl}$
@@ -164,7 +166,7 @@ for ratio in (2.0, 1.0, 0.5):
 #
 # ## What is true
 #
-# > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = \rho_e$, $\dot x = 0$: a product of
+# > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = d$, $\dot x = 0$: a product of
 # > spheres of dimension $(n-1)(m-1)$. At each of them that many eigenvalues vanish, because bearings are free; the
 # > others lie in the open left half-plane, so length and velocity errors near the spheres decay exponentially.
 
@@ -173,8 +175,9 @@ print(fl.verify("zone-1-corrected", tree))
 spanning_trees.spacing_spectrum(2).result
 
 # %% [markdown]
-# Linearised in the coordinates of the agents the law has two more zero modes, the translations; and nobody damps the
-# velocity of the root, which all take over:
+# (The output writes `μ` for the strength $w_0$ of the spring.) Linearised in the coordinates of the agents the law
+# has two more zero modes, the translations. The root feels no force at all: its velocity is undamped, and the other
+# agents adopt it.
 
 # %%
 found = linearise(tree.law, rest)
@@ -208,18 +211,19 @@ fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
 grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as much as the bound takes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point, derivation) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the
-# acceleration of agent 1 along the line from 0 to 1 ($w_0 = 1$)? (Exactly.)
+# **2.** ★★ (2 points, derivation) Two agents on a line: 1 perceives 0 and wants to be 1 away, both at rest, $w_0 = 1$.
+# What is the acceleration of agent 1 along the line from 0 to 1 if they are (a) 0.5, (b) 1, (c) 2 apart? Give the
+# list, exactly.
 
 # %% tags=["answer"]
 push = ...
 
 # %% tags=["solution"]
 pair = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
-push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
+push = [float(pair.acceleration(0.0, [[0.0], [far]], [[0.0], [0.0]])[1, 0]) for far in (0.5, 1.0, 2.0)]
 
 # %% tags=["check"]
-grade(push, 0.5, hint="a spring that is too short pushes: mind the sign")
+grade(push, [0.5, 0.0, -1.0], hint="a spring that is too short pushes: mind the sign")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★★ (2 points, experiment) How many zero modes, translations included, has the same law on a tree of 5 agents in
@@ -251,35 +255,68 @@ grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distan
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, derivation) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 -
-# \rho/\|x\|$. Above which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant
+# d/\|x\|$. Above which ratio $\|x\|/d$ are they complex, so that the edge's length swings? (Four significant
 # digits.)
 
 # %% tags=["answer"]
-ratio = ...
+threshold = ...
 
 # %% tags=["solution"]
-ratio = 1.0 / (1.0 - 0.25)  # w > 1/4
+threshold = 1.0 / (1.0 - 0.25)  # w > 1/4
 
 # %% tags=["check"]
-grade(ratio, 1.33333333, digits=4, hint="the sign of the discriminant")
+grade(threshold, 1.33333333, digits=4, hint="the sign of the discriminant")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) The matrix $A_{cl}$ is Hurwitz at every state along some trajectory. Does the trajectory
 # therefore converge? Say why eigenvalues of a matrix that depends on the state do not decide that, and what the
-# corrected theorem relies on instead. In your own words, at least 30 of them. (The check counts words, and your
-# lecturer reads the text.)
+# corrected theorem relies on instead. Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Not therefore. Eigenvalues decide the behaviour of a linear system with a constant matrix; with a matrix that
+# changes along the trajectory, solutions can grow though every frozen matrix is Hurwitz, and here the matrix is not
+# even the derivative of the right-hand side. The corrected theorem linearises at an equilibrium, where the derivative
+# is constant, and claims convergence only near the set of equilibria.
+#
+# **Rubric, a point each:** frozen eigenvalues do not decide systems that vary; linearisation at an equilibrium holds
+# in a neighbourhood only.
+
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Show `tree.player()` and watch the end. Do the agents come to rest? Answer `True` or
+# `False`, and look at the root for the reason.
 
 # %% tags=["answer"]
-frozen = ...
+at_rest = ...
 
 # %% tags=["solution"]
-frozen = """Not therefore. Eigenvalues decide the behaviour of a linear system with a constant matrix; with a matrix
-that changes along the trajectory, solutions can grow though every frozen matrix is Hurwitz, and here the matrix is
-not even the derivative of the right-hand side. The corrected theorem linearises at an equilibrium, where the
-derivative is constant, and claims convergence only near the set of equilibria."""
-# Rubric, a point each:
-# frozen eigenvalues do not decide systems that vary; linearisation at an equilibrium holds in
-# a neighbourhood only.
+tree.player()
+print(np.linalg.norm(tree.p[-1], axis=1).round(3))  # all have the velocity of the root, which feels no force
+at_rest = bool(np.linalg.norm(tree.p[-1], axis=1).max() < 0.01)
 
 # %% tags=["check"]
-grade(frozen, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(at_rest, False, hint="tree.p[-1] holds the velocities at the end")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★★ (3 points, proof) One edge whose parent moves uniformly: $\ddot x = -w_0(1 - d/\|x\|)\,x - \dot x$ in
+# $\mathbb R^m$. Linearise at a state with $\|x\| = d$, $\dot x = 0$, and prove the corrected theorem for it: along
+# $x$ the eigenvalues are the roots of $s^2 + s + w_0$, across it 0 and $-1$, each $m - 1$ times. Why does that prove
+# nothing about $x = 0$?
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Let $e = x/\|x\|$ and $\tilde x$ be a small displacement. To first order
+# $\|x + \tilde x\| = d + \langle e, \tilde x\rangle$, so $1 - d/\|x+\tilde x\| = \langle e,\tilde x\rangle/d$, and
+# the force is $-w_0\langle e,\tilde x\rangle e$, as the factor vanishes at $x$ itself. So
+# $\ddot{\tilde x} = -w_0ee^\top\tilde x - \dot{\tilde x}$. Along $e$: $s^2 + s + w_0 = 0$. Across it: $s^2 + s = 0$,
+# that is 0 and $-1$, in each of $m - 1$ directions. For $w_0 > 0$ the roots along $e$ have negative real part, and
+# the zeros belong to turning the edge, along the sphere of equilibria. At $x = 0$ the force is not even defined, and
+# the linearisation at $\|x\| = d$ says nothing about states far from it.
+#
+# **Rubric, a point each:** the linearised force is computed; both pairs of eigenvalues with their multiplicities; a
+# linearisation is local, and the law is undefined at 0.

@@ -76,7 +76,7 @@ _ = plots.energy_residual(run, ax=axes[1])
 # %% [markdown]
 # ## What a jump does to an integrator
 #
-# An adaptive solver believes that the solution is smooth within a step. At a jump its error estimate means nothing: it
+# An adaptive solver assumes that the solution is smooth within a step. At a jump its error estimate means nothing: it
 # fails, halves, fails again, and steps over the jump in the end. `fl.simulate` holds every pair in its zone, finds the
 # first pair that leaves, stops there, and starts anew. Two agents fly at each other, turn, and part: six switches.
 
@@ -196,7 +196,7 @@ print(fl.verify("dead-zone-1-printed", wide))
 # $$d_{\min} = \frac{1}{\sqrt\eta\,\sinh\bigl(\bar H(0)/(2k_r)
 #   + \operatorname{arsinh}(1/(\sqrt\eta\, d_1))\bigr)} .$$
 #
-# A third, that velocities match *within* components, is seen in this run and not proved:
+# That velocities match *within* components is seen in this run and not proved:
 
 # %%
 print(fl.verify("dead-zone-1-corrected", wide))
@@ -229,8 +229,9 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # ## Exercises
 #
 # **1.** ★ (1 point, derivation) Two agents out of range approach each other head-on at relative speed 2 on a line. By
-# how much does the printed energy, of neighbours, rise at the instant at which they come into range? (Default
-# parameters, without a ramp; four significant digits.)
+# how much does the printed energy, of neighbours, rise at the instant at which they come into range? The potential of a
+# pair is $\psi = \tfrac12k_1d_{ij}^2$ plus the integral of $f$, counted from the dead zone, where it is 0.
+# (Default parameters, without a ramp, `hard` of the lecture; four significant digits.)
 
 # %% tags=["answer"]
 rise = ...
@@ -289,34 +290,66 @@ share = contact.above / (contact.above - contact.below)
 grade(share, 0.001072077, digits=3, hint="share × one force + (1 − share) × the other = 0")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★ (2 points, derivation) What least distance does the corrected theorem guarantee for $\bar H(0) = 100$,
-# without a ramp and with $\eta = 1$? (Four significant digits.)
+# **5.** ★★ (2 points, derivation) What least distance does the corrected theorem guarantee (a) for $\bar H(0) = 100$,
+# (b) for $\bar H(0) = 200$, without a ramp and with $\eta = 1$? Give the list, each to four significant digits.
 
 # %% tags=["answer"]
 nearest = ...
 
 # %% tags=["solution"]
-nearest = 1.0 / np.sinh(100.0 / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1))
+nearest = [1.0 / np.sinh(H / (2.0 * hard.k_r) + np.arcsinh(1.0 / hard.d1)) for H in (100.0, 200.0)]
 
 # %% tags=["check"]
-grade(nearest, 1.79401084, digits=4, hint="the formula is above; k_r is hard.k_r")
+grade(nearest, [1.79401084, 1.15723845], digits=4, hint="the formula is above; k_r is hard.k_r")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) A fixed-step simulation of a pair at $d_1$ shows a small vibration that never ends. How
-# would you find out whether the vibration belongs to the law or to the integrator, and which is it here? In your own
-# words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+# would you find out whether the vibration belongs to the law or to the integrator, and which is it here? Answer in
+# your own words.
 
-# %% tags=["answer"]
-chattering = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-chattering = """Halve the step: the amplitude of what the integrator makes shrinks with the step and its frequency
-grows, while a motion of the law stays. Locating the switches, or a ramp in the place of the jump, shows the same.
-Here the vibration is the integrator's: in Filippov's sense the pair is held at the jump, and with the ramp it comes
-to rest."""
-# Rubric, a point each:
-# a test that separates the two: the step, located switches, or a ramp; it is the
+# %% [markdown] tags=["solution"]
+# Halve the step: the amplitude of what the integrator makes shrinks with the step and its frequency grows, while a
+# motion of the law stays. Locating the switches, or a ramp in the place of the jump, shows the same. Here the
+# vibration is the integrator's: in Filippov's sense the pair is held at the jump, and with the ramp it comes to rest.
+#
+# **Rubric, a point each:** a test that separates the two: the step, located switches, or a ramp; it is the
 # integrator's, as the law holds the pair at the jump.
 
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Play the film of the pair at the jump to its end. Which of the three curves comes to
+# rest? Answer with one word of its name, `jump` or `ramp`.
+
+# %% tags=["answer"]
+rests = ...
+
+# %% tags=["solution"]
+rests = "ramp"
+
 # %% tags=["check"]
-grade(chattering, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(rests, "ramp", hint="look at the last quarter of the film")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★★ (3 points, proof) Prove the bound $d_{\min}$ of the corrected theorem: let $\bar H$ not rise, and let a
+# pair inside $d_1$ cost at least $2k_r\bigl(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
+# \operatorname{arsinh}(1/(\sqrt\eta\,d_1))\bigr)$. Derive that cost from the force $-2k_r/d_{ij}^2$ along
+# $(q_j-q_i)/\sqrt{1+\eta d_{ij}^2}$.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# The force along the line has the size $\tfrac{2k_r}{x^2}\cdot\tfrac{x}{\sqrt{1+\eta x^2}} =
+# \tfrac{2k_r}{x\sqrt{1+\eta x^2}}$ at the distance $x$, besides $k_\delta$, which only adds to the cost. The
+# derivative of $\operatorname{arsinh}(1/(\sqrt\eta x))$ is $-1/(x\sqrt{1+\eta x^2})$: differentiate, with
+# $\operatorname{arsinh}'(z) = 1/\sqrt{1+z^2}$. So the work from $d_1$ down to $d_{ij}$ is the stated difference. All
+# other terms of $\bar H$ are non-negative and $\bar H \le \bar H(0)$, so at every time
+# $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) - \operatorname{arsinh}(1/(\sqrt\eta\,d_1))) \le \bar H(0)$.
+# Solve for $d_{ij}$: $1/(\sqrt\eta\,d_{ij}) \le \sinh(\bar H(0)/(2k_r) +
+# \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, which is $d_{ij} \ge d_{\min}$.
+#
+# **Rubric, a point each:** the integrand with its primitive; the single pair's cost is at most $\bar H(0)$; solving
+# for the distance.

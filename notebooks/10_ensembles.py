@@ -23,12 +23,48 @@
 # %%
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import figures, grade
 from flockana.ensemble import phases
 
 for N in (10, 60, 200):
     low, high = fl.clopper_pearson(N, N)
     print(f"{N} of {N}: between {low:.3f} and {high:.3f}")
+
+# %% [markdown]
+# ## Where the interval comes from
+#
+# Let a run succeed with the probability $p$, which we do not know, independently of the others, and let $k$ of $N$
+# runs have succeeded. Which $p$ are compatible with that? Rule out those under which so many successes, or so few,
+# would be a rare accident, of 2.5 % at most.
+#
+# > **Theorem** (Clopper and Pearson 1934). Let the lower end of the interval be the $p$ at which $k$ *or more*
+# > successes have the probability 2.5 %, and the upper end the $p$ at which $k$ *or fewer* have it (0 and 1 if there is
+# > none). Whatever the true $p$ is, the interval contains it with a probability of at least 95 %.
+#
+# *Proof.*
+#
+# 1. The probability of $k$ or more successes grows with $p$. (Draw a number between 0 and 1 for each run, and call it a
+#    success if it is below $p$: a larger $p$ never turns a success into a failure.) So the ends are well defined.
+# 2. The true $p$ lies below the lower end only if, at this $p$, the number of successes that came out has a tail "so
+#    many or more" of less than 2.5 %.
+# 3. The numbers $k$ with such a tail are those from some $k'$ on, the tails fall with $k$; and the probability that
+#    the number is $k'$ or more is that tail, below 2.5 %. So step 2 happens with a probability of at most 2.5 %.
+# 4. The same holds of the upper end. Together the interval misses the true $p$ with a probability of at most 5 %.
+#    $\square$
+
+# %%
+figure, ax = plots.subplots(size=(7, 3.4))
+_ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60))), ax=ax)
+
+# %% [markdown]
+# **Figure 10.1.** 57 successes in 60 runs (dotted line). At the lower end, 0.861, so many or more have the probability
+# 2.5 % (hatched, right tail); at the upper end, 0.990, so few or fewer have it (dotted, left tail).
+#
+# If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
+
+# %% tags=["facts"]
+assert [f"{float(end):.3f}" for end in fl.clopper_pearson(57, 60)] == ["0.861", "0.990"]
+assert abs(float(fl.clopper_pearson(60, 60)[0]) - 0.025 ** (1 / 60)) < 1e-9
 
 # %% [markdown]
 # ## What a source reports, seed by seed
@@ -114,19 +150,20 @@ print(fl.replay(path))
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★★ (2 points, derivation) If all of $N$ runs succeed, the lower end $p$ of the 95 % interval of Clopper and
-# Pearson is the probability of success at which $N$ successes still happen with probability 2.5 %. Write that as an
-# equation and solve it for $N = 100$. (Four significant digits.)
+# **1.** ★★ (2 points, derivation) All of $N$ runs succeed. Compute the lower end of the 95 % interval of Clopper and
+# Pearson (a) for $N = 50$, (b) for $N = 100$. Give the list, each to four significant digits.
 
 # %% tags=["answer"]
 lower = ...
 
 # %% tags=["solution"]
-lower = 0.025 ** (1 / 100)  # p^N = 0.025
+lower = [0.025 ** (1 / 50), 0.025 ** (1 / 100)]  # p^N = 0.025
 print(fl.clopper_pearson(100, 100))
 
 # %% tags=["check"]
-grade(lower, 0.963783, digits=4, hint="the runs are independent: what is the probability that all succeed?")
+grade(
+    lower, [0.928878264, 0.963783], digits=4, hint="the runs are independent: what is the probability that all succeed?"
+)
 
 # %% [markdown] tags=["exercise"]
 # **2.** ★★ (2 points, design) How many successes without a failure does it take until the lower end exceeds 0.99? (A
@@ -183,21 +220,69 @@ runs_for_one = math.ceil(math.log(0.05) / math.log(0.99))
 grade(runs_for_one, 299, hint="ask for the probability of none")
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★★ (2 points, words) A search of $10^5$ runs for a counterexample found none, and a report says that the claim
-# is verified. What may the report say instead, and what does the number $10^5$ not tell, compared with $10^5$ random
-# runs? In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+# **6.** ★★ (2 points, words) A search of $10^5$ runs for a counterexample found none, and a report says that the
+# claim is verified. What may the report say instead, and what does the number $10^5$ not tell, compared with $10^5$
+# random runs? Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# It may say that this search, with this budget, seed, region and scenario, found no counterexample. The runs of a
+# search are not independent draws: each start is chosen after the ones before, so no interval for a probability
+# follows from their number. For random runs an interval would follow, for that distribution of starts only. Neither
+# is a proof.
+#
+# **Rubric, a point each:** nothing was found in a stated region with a stated budget, which verifies nothing;
+# adaptive runs are no independent sample, so no interval follows.
+
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Show `found.run().player()`, the counterexample of the search. At how many places do the
+# five agents stand at the end? (A whole number.)
 
 # %% tags=["answer"]
-honest = ...
+places = ...
 
 # %% tags=["solution"]
-honest = """It may say that this search, with this budget, seed, region and scenario, found no counterexample. The
-runs of a search are not independent draws: each start is chosen after the ones before, so no interval for a
-probability follows from their number. For random runs an interval would follow, for that distribution of starts
-only. Neither is a proof."""
-# Rubric, a point each:
-# nothing was found in a stated region with a stated budget, which verifies nothing; adaptive runs
-# are no independent sample, so no interval follows.
+ended = found.run()
+ended.player()
+places = len({tuple(x) for x in ended.q[-1].round(2)})
 
 # %% tags=["check"]
-grade(honest, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(places, 4, hint="two agents share a place: zoom in, or round the positions")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★ (2 points, proof) A claim is tested by $N$ independent random starts and never fails. Prove that one may
+# say with 95 % confidence that it fails with a probability of at most $3/N$ ("the rule of three"), for the one-sided
+# interval. Say what "with 95 % confidence" means here.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# If the claim fails with the probability $p$, no failure in $N$ runs has the probability $(1-p)^N$. Since
+# $1 - p \le e^{-p}$, this is at most $e^{-pN}$, which is below 0.05 as soon as $pN > \ln 20 = 2.9957$, in particular
+# for $p > 3/N$. So for every $p > 3/N$ the statement "$p \le 3/N$" would have been made wrongly in less than 5 % of
+# the repetitions of the whole experiment; that is what 95 % confidence means. It is not the probability that $p$
+# lies below $3/N$: $p$ is a fixed number.
+#
+# **Rubric, a point each:** the inequality with $e^{-pN}$ and $\ln 20 < 3$; confidence speaks of repetitions of the
+# experiment, not of $p$.
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, project) Open project, about two weeks: choose a claim about a scenario of the library that
+# you believe and no theorem proves. Estimate its probability by an ensemble with an interval, then search for a
+# counterexample with `falsify`. Report what each method found at equal cost, draw the best counterexample or the
+# closest miss, and say what you would need in order to prove the claim.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# A good answer states the claim with all parameters and the distribution of starts, gives $k$ of $N$ with the
+# interval, states budget, region and seed of the search, compares the number of runs, shows the worst run found, and
+# separates what was measured, what was searched, and what would have to be proved.
+#
+# **Rubric, a point each:** a claim and a distribution stated in full, with the interval; a search with its budget
+# and the worst run shown; an honest comparison and the missing proof named.

@@ -12,13 +12,7 @@ _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 
 @dataclass(frozen=True)
 class Fact:
-    """One property of a function.
-
-    Examples
-    --------
-    >>> Fact("unmet", "the force jumps at s = 1", (1.0, 1.0)).status
-    'unmet'
-    """
+    """One property of a function."""
 
     status: FactStatus
     detail: str = ""

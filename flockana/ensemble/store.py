@@ -44,17 +44,7 @@ _INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UP
 
 
 class Store:
-    """File of runs by key; a context manager.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from flockana.ensemble.work import Job
-    >>> with tempfile.TemporaryDirectory() as folder, Store(Path(folder) / "runs.sqlite") as store:
-    ...     store.add("pair", {"k1": Record(Job(1), "complete"), "k2": Record(Job(2), "error", "why")})
-    ...     sorted(store.read(["k1", "k2", "k3"])), len(store)
-    (['k1', 'k2'], 2)
-    """
+    """File of runs by key; a context manager."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = ensure_path(path, action="write")

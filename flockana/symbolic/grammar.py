@@ -49,17 +49,7 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
-    """Return the sympy expression of a text, in the given names.
-
-    Examples
-    --------
-    >>> s, k = sp.symbols("s k")
-    >>> read_formula("k*(s - 2)**2/2", {"s": s, "k": k})
-    k*(s - 2)**2/2
-    >>> read_formula("().__class__", {"s": s})
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: the formula: '().__class__' is no formula; expected names, numbers, ...
-    """
+    """Return the sympy expression of a text, in the given names."""
     if not isinstance(text, str):
         raise ArgumentError(f"{where} = {text!r}: expected a sympy expression, or text")
     if len(text) > LENGTH:
@@ -117,14 +107,7 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 
 def write_formula(expression: sp.Expr) -> str:
-    """Return a text that `read_formula` reads as the same expression, every number to the last bit.
-
-    Examples
-    --------
-    >>> s = sp.Symbol("s")
-    >>> write_formula(sp.Piecewise((0.1 * s, s < 1), (sp.Abs(s), True)))
-    'Piecewise((0.1*s, s < 1), (Abs(s), True))'
-    """
+    """Return a text that `read_formula` reads as the same expression, every number to the last bit."""
     return str(_Printer().doprint(expression))
 
 

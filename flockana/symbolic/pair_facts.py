@@ -36,17 +36,7 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
 
 
 def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFacts:
-    """Return the facts proved of a formula with its numbers.
-
-    Examples
-    --------
-    >>> from flockana.symbolic.pair_formula import read_pair
-    >>> r, d = (sp.Symbol(name, positive=True) for name in "rd")
-    >>> cut = Cut(read_pair("s**2*(s - r)**2", "", "1 - s/r", []), {r: 3.0, d: 1.0}, 3.0)
-    >>> facts = pair_facts(cut, 0.0, 1.0, 1.0)
-    >>> facts.smooth.status, facts.inside.status, facts.least, facts.contact
-    ('met', 'met', (0.0, 0.0), (0.0, 0.0))
-    """
+    """Return the facts proved of a formula with its numbers."""
     return _Decided(cut, eps, strength, tallest).facts
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeGuard, overload
+from typing import TYPE_CHECKING, Any, TypedDict, TypeGuard, Unpack, overload
 
 import numpy as np
 
@@ -14,12 +14,12 @@ from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, with_doubt
-from flockana.theorems.theorem import Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
-    from flockana.certified.tube import Tube
     from flockana.recorded.recording import Recording
     from flockana.theorems.together import Verdicts
 
@@ -98,13 +98,28 @@ def _printed(source: str) -> str:
     return re.split(r";| \(", source)[0]
 
 
+class _Case(TypedDict, total=False):
+    """Keyword arguments of `verify`."""
+
+    basin: Any
+    law: Any
+    q0: Any
+    p0: Any
+    t_span: Any
+    q: Any
+    d: float | None
+    r: float | None
+    tolerances: Tolerances | None
+    subject: str
+
+
 @overload
-def verify(name: None = None, trajectory: Any = None, **case: Any) -> Verdicts: ...
+def verify(name: None = None, trajectory: Any = None, **case: Unpack[_Case]) -> Verdicts: ...
 @overload
-def verify(name: str | Theorem, trajectory: Any = None, **case: Any) -> Verdict: ...
+def verify(name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]) -> Verdict: ...
 def verify(
     name: str | Theorem | None = None,
-    trajectory: Trajectory | Tube | Recording | None = None,
+    trajectory: Any = None,
     *,
     basin: Any = None,
     law: Any = None,
@@ -219,6 +234,15 @@ def _is_recording(run: Any) -> TypeGuard[Recording]:
     return isinstance(run, Recording)
 
 
+def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
+    """The vacuous verdict on a run of a wrapped law: a theorem about the law says nothing of it."""
+    around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
+    detail = f"the run is of the law within {around}; the theorem is about the law itself"
+    missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
+    claims = tuple(Claim(name, "vacuous", detail=detail) for name in item.claims)
+    return Verdict(item.id, (missed,), claims, tolerances, subject)
+
+
 def _is_tube(run: Any) -> bool:
     """Whether it is a tube, told without loading Arb for what is none."""
     if run is None or isinstance(run, Trajectory):
@@ -246,6 +270,8 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     ensure_sealed("trajectory", run, _RUN, _REMEDY)
+    if wrappers_of(run.law) and not item.wrapped:
+        return _of_another_law(item, run, tolerances, subject)
     ensure_fits(run)
     seen = Observed.of(run)
     hypotheses, claims = item.examine(seen, tolerances)

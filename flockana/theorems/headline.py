@@ -54,6 +54,23 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
     return f": {name if re.search('[<>=≤≥]', name) else repr(name)} does not hold"
 
 
+def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
+    """Return claims with their names; neighbours that are vacuous for one reason as one, with all their names.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+        In the order in which they are shown.
+    """
+
+    def reason(claim: Claim) -> tuple[str, str]:
+        silent = claim.status == "vacuous" and claim.computed is None
+        return claim.by, claim.detail if silent else claim.name
+
+    groups = (list(group) for _, group in groupby(claims, reason))
+    return [(", ".join(claim.name for claim in group), group[0]) for group in groups]
+
+
 def _listed(claims: Iterable[Claim]) -> str:
     """Each claim in short with its status; vacuous ones only where all are."""
     given = tuple(claims)

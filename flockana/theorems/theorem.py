@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import BYLINES, headline
+from flockana.theorems.headline import BYLINES, headline, merged
 from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
@@ -219,8 +219,9 @@ class Verdict:
         lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
         lines += [f"  {self.summary}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
-        lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.main_claims]
-        lines += [f"  {c.name:>14} {c.status:12} [{BYLINES[c.by]}] {c.detail}{c.cited}" for c in self.further_claims]
+        for name, c in merged((*self.main_claims, *self.further_claims)):
+            whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
+            lines.append(f"  {name:>14} {c.status:12} {whose}{c.detail}{c.cited}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
@@ -273,6 +274,8 @@ class Theorem:
         Whose theorem it is; the claims are the author's unless named below.
     corrected, ours : tuple of str
         Names of the claims that correct the source, and of the library's own.
+    wrapped : bool
+        Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
 
     id: str
@@ -291,6 +294,7 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+    wrapped: bool = False
 
     @property
     def erratum(self) -> Erratum | None:

@@ -116,7 +116,8 @@ def verify_together(
     >>> "cucker-smale" in [verdict.theorem for verdict in verify_together(run)]
     True
     """
-    names, made = theorems_about(run.law, run.q[0], run.p[0], float(run.t[0])), []
+    names = theorems_about(run.law, run.q[0], run.p[0], float(run.t[0]))
+    made: list[Verdict] = []
     with progress_bar(len(names), enabled=progress) as advance:
         for name in names:
             advance(len(made), name)

@@ -17,7 +17,7 @@ _GREEK = (
 )
 _NO_SYMBOL = r"\\(?:text|mathrm|operatorname|mathbf|mathbb|begin|end)(?:\{[^{}]*\}|\s*\w)"
 _INDEX = r"(?:\{[^{}]*\}|\\[a-zA-Z]+|[\w*])"
-_DUMMY = set("efgijkpqstuvwxyz")  # sums, functions and their arguments; and what has the same letter in every lecture
+_DUMMY = set("efgijkpqtuvxyz")  # sums, functions and their arguments; and what has the same letter in every lecture
 
 
 def letters(formula):

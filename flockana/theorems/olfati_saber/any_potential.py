@@ -148,7 +148,7 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
         proof=proof,
-        detail=f"cohesive: R <= {largest:.4g}, and {'r' if text.endswith('r') else 'H_λ(0)'} allows {bound.mid:.4g}",
+        detail=f"cohesive: R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
 
