@@ -3,8 +3,6 @@
 Needs Chromium, playwright (`pip install flockana[browser]`) and tornado (`flockana[explore]`); skipped where one lacks.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import socket

@@ -74,7 +74,7 @@ def _spans_decades(values: Any) -> bool:
 
 
 def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
-    """Shade what lies below the error that one step of the solver may carry, where the curve reaches that far down."""
+    """Shade the band below the error that one step of the solver may carry."""
     place, speed, _ = trajectory.floors
     d = trajectory.scales.length
     floor = {
