@@ -333,10 +333,10 @@ assert outcome[2] > 1
 #
 # ## What surprised, and what the theorem does not say
 #
-# Theorem 1 has a short, correct proof (of (ii) and (iii)) and almost no use as it stands: one cannot check its
-# hypothesis before the run. It does not say that a flock that starts connected stays so (exercise 6). It does not
-# say how fast velocities match. And (iii) says nothing of a start with much energy, in which collisions may well
-# never happen.
+# Theorem 1 has a short, correct proof (of (ii) and (iii)), and its hypothesis can be checked before the run only for
+# small, slow flocks; for others one can but hope. It does not say that a flock that starts connected stays so
+# (exercise 6). It does not say how fast velocities match. And (iii) says nothing of a start with much energy, in
+# which collisions may well never happen.
 #
 # ## Summary
 #

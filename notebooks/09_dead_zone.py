@@ -16,6 +16,23 @@
 # **Aims.** Read a force law that jumps, find its potential and the energy that belongs to it, see what a jump does to
 # an integrator, and sort a printed theorem into what is true, what is false and what can be mended.
 #
+# ## A scene
+#
+# A convoy of robots is told: closer than 3.5 metres, back off; farther than 12.5, catch up; in between, mind your
+# own business. It is how people drive. The rule is simple to write into a controller, three cases and an `if`.
+# **What does such an `if` do to the motion, to the energy, and to the program that integrates it?** More than its
+# author thought: the force jumps, the printed energy jumps too, and a pair of robots can be caught *at* the jump,
+# where the law has no value.
+#
+# ## Two robots at the edge
+#
+# Let two robots stand just inside 3.5, where they repel. They move apart, cross 3.5, and enter the dead zone, in
+# which only a weak pull is left. It brings them back to 3.5, slowly, and there the full repulsion throws them out
+# again, in no time. Friction makes each throw shorter. In the end they sit at 3.5, pushed from one side and pulled
+# from the other, and the motion consists of infinitely many switches in a finite time. Filippov (1960) gave this a
+# meaning: at a jump the force may be any mean of its two one-sided values, and the robots take the one that keeps
+# them there. A computer that steps in time cannot take a mean; it rattles.
+#
 # Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
 # above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $d_{ij} =
 # \|q_j-q_i\|$,
@@ -219,6 +236,14 @@ figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
 # %% [markdown]
+# ## What surprised, and what the corrected theorem does not say
+#
+# The energy that the source wrote down rises, and the one that it meant falls; they differ by a constant for each
+# pair, that is switched on and off. Filippov's idea, a convex combination at the jump, is the definition that makes
+# sliding a solution and not an artefact; the ramp is its smooth neighbour. The corrected theorem does not promise
+# one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match in the
+# limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
+#
 # ## Summary
 #
 # - The potential that is continuous across switches holds each pair's cost constant beyond the range; its sum falls.

@@ -16,6 +16,21 @@
 # **Aims.** Turn "in our simulations it always worked" into a share with an interval, run campaigns that survive a
 # crash, and search for the start that breaks a claim instead of waiting for it.
 #
+# ## A scene
+#
+# "We ran our drones two hundred times, and two hundred times they flocked." The insurer asks: what is the
+# probability that they do not? "Zero", says the start-up. "Somewhere below 1.8 %", says the statistician, "if your
+# starts are those of the show". "I found a start at which they do not", says the engineer who had *looked* for one.
+# **Who is right, and what does each of them know?** All three used the same simulator. They asked different
+# questions: how often, among random starts? is there any? This lecture teaches both, and the honest sentence that
+# goes with each.
+#
+# ## Two coins
+#
+# Toss a coin ten times and see ten heads. Is it a coin that always shows heads? A coin with a probability of heads
+# of 0.9 does that in $0.9^{10} = 35\,\%$ of all experiments, one with 0.7 still in $2.8\,\%$. So ten successes
+# exclude 0.6, and do not exclude 0.75. The interval of this lecture says the same for any $k$ of $N$.
+#
 # "Almost every solution converges" is a statement about all initial states. One run verifies nothing; $k$ successes
 # in $N$ runs say that the probability of success lies, with 95 % confidence, in the interval of Clopper and Pearson
 # (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
@@ -141,6 +156,14 @@ found.save(path)
 print(fl.replay(path))
 
 # %% [markdown]
+# ## What surprised, and what the numbers do not say
+#
+# An interval is about a *distribution of starts*. Change the box from which starts are drawn, and the share changes;
+# 60 of 60 in a small box say nothing about a large one. A search is about *existence*. It finds in a hundred runs
+# what random starts would show once in a million, and says nothing about how often it would happen to a user.
+# Neither is a proof, and a proof says nothing about frequencies. A good report has all three columns, and leaves
+# none of them empty in silence.
+#
 # ## Summary
 #
 # - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.

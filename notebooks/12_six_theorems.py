@@ -16,6 +16,21 @@
 # **Aims.** Put the field's classics side by side: one start, many laws. What does each theorem promise from there,
 # which hypothesis does the work, and what happens where it fails?
 #
+# ## A scene
+#
+# At a conference six speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
+# and a theorem. In the coffee break somebody asks: "If I give all of you the *same* ten drones, at the same places,
+# with the same velocities, what does each of you promise me?" Silence; then six different answers, two of which are
+# "nothing". **What do the classics promise about one and the same start, and which hypothesis decides?**
+#
+# ## Two ideas, and two agents
+#
+# For two agents that see each other all laws do nearly the same: velocities tend to each other. There are two
+# reasons why. *Energy*: friction takes kinetic energy out of the relative motion, and what remains must be at rest
+# relative to each other, if the agents stay in touch. *Averaging*: each new velocity is a mean of the old ones, so
+# the larger falls and the smaller rises, if they keep hearing each other. The words after "if" are the theorem. For
+# $n$ agents everything depends on how they are kept in touch.
+#
 # Ten agents near a patch of a lattice, all at one speed, with headings about one direction:
 
 # %%
@@ -166,6 +181,14 @@ shares = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.05, 1.1)
 slider(late, shares, name="τ/τ*", title="consensus of four agents that hear late", start=3)
 
 # %% [markdown]
+# ## What surprised, and what the theorems do not say
+#
+# The theorems do not differ in what flocking *is*; they differ in what keeps agents in touch: a pull, a potential
+# without bound at the range, weights that fall slowly, an assumption on the whole run. A vacuous verdict beside a
+# beautiful flock is the normal case, not the exception. And of the corrected dead-zone theorem above, that
+# velocities match within components is measured and not proved (lecture 09): a statement in a list is only as good
+# as its weakest clause.
+#
 # ## Summary
 #
 # - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.
