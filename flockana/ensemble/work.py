@@ -46,7 +46,7 @@ class Request:
     flock: Flock | None = None  # instead of a scenario's name
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
-        """Plain data, for the key of a run; a flock without a written form raises if `strict`."""
+        """Return plain data, for the key of a run; raise on a flock without a written form if `strict`."""
         flock = None if self.flock is None else _plain(self.flock, strict=strict)
         return {**asdict(replace(self, flock=None)), "flock": flock}
 

@@ -20,10 +20,11 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.interrupts import block_sigint
 from flockana.ensemble.processes import single_threaded_children
 from flockana.explore.page import page
+from flockana.explore.saving import run_file
 from flockana.explore.worker import work
 
 HOST = "127.0.0.1"
@@ -106,6 +107,12 @@ class Server:
             if process is not None:
                 process.end()
 
+    def admitted(self, case: Any) -> Any:
+        """Return a case; raise on a file other than the one that the explorer was started with."""
+        if case.get("kind") == "file" and case != {**case, "kind": self.first["kind"], "name": self.first["name"]}:
+            raise ArgumentError("expected the file that the explorer was started with")
+        return case
+
     def admits(self, handler: RequestHandler) -> bool:
         """Return whether a request has the token and addresses this machine by its own name."""
         host = handler.request.host.rpartition(":")[0]
@@ -129,6 +136,23 @@ class _Page(RequestHandler):
         """Write the error in one line."""
         wrong = "wrong or missing token: open the address that flockana explore printed"
         self.finish(wrong if status_code == 403 else f"{status_code}")
+
+
+class _Run(RequestHandler):
+    async def get(self) -> None:
+        """Simulate a case once more and send the run as netCDF."""
+        server: Server = self.application.settings["explorer"]
+        if not server.admits(self):
+            raise HTTPError(403)
+        try:
+            case = server.admitted(json.loads(self.get_query_argument("case")))
+            data = await asyncio.to_thread(run_file, case)
+        except (ValueError, AttributeError, FlockanaError) as error:
+            self.set_status(400)
+            self.finish(f"the run cannot be written: {error}")
+            return
+        self.set_header("Content-Type", "application/x-netcdf")
+        self.finish(data)
 
 
 class _Tab(WebSocketHandler):
@@ -164,14 +188,13 @@ class _Tab(WebSocketHandler):
         try:
             asked = json.loads(message)
             number, case = int(asked["number"]), asked["case"]
-            if case.get("kind") == "file" and case != {
-                **case,
-                "kind": self.server.first["kind"],
-                "name": self.server.first["name"],
-            }:
-                raise ArgumentError("expected the file that the explorer was started with")
+            self.server.admitted(case)
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             self._say({"number": -1, "kind": "error", "text": f"no question: {error}"})
+            return
+        if asked.get("cancel"):
+            self._take()
+            self._say({"number": number, "kind": "cancelled"})
             return
         self.number, self.asked = number, case
         self._ask()
@@ -249,7 +272,7 @@ def kept_token() -> str:
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
     """Serve until cancelled."""
-    routes = [("/", _Page), ("/socket", _Tab)]
+    routes = [("/", _Page), ("/socket", _Tab), ("/run", _Run)]
     application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)
     try:

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.plots.snapshot import configuration, draw_sample, in_view
 from flockana.plots.style import (
@@ -86,6 +87,7 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
     ArgumentError
         If the law measures no energy of neighbours.
     """
+    ensure_run(trajectory)
     metrics = trajectory.metrics()
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.dynamics.predicates import ensure_run
 from flockana.measures.windows import windows_of
 from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, head
 
@@ -25,6 +26,7 @@ def diameters(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax : matplotlib.axes.Axes, optional
         Where to draw; its scale becomes logarithmic.
     """
+    ensure_run(trajectory)
     axes: Any = ensure_axes(ax)
     series = (("position_diameter", "positions", VERMILLION, "--"), ("velocity_diameter", "velocities", BLUE, "-"))
     for name, label, colour, dash in series:
@@ -50,6 +52,7 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ArgumentError
         If the law has no net.
     """
+    ensure_run(trajectory)
     windows = windows_of(trajectory)
     axes: Any = ensure_axes(ax)
     t = trajectory.t

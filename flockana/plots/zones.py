@@ -13,6 +13,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
+from flockana.dynamics.predicates import ensure_run
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_world import ZoneWorld
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -72,6 +73,7 @@ def zones(
     ArgumentError
         If it is a run of another law, or of agents on a line, or on a time that is not of the run.
     """
+    ensure_run(trajectory)
     law, m = _law(trajectory), trajectory.m
     if m == 1:
         raise ArgumentError("the agents live on a line: expected m = 2 or 3")

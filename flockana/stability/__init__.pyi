@@ -11,8 +11,6 @@ from .delay import delay_margin as delay_margin
 from .delay import delay_system as delay_system
 from .delay import rightmost_roots as rightmost_roots
 from .delay import scalar_margin as scalar_margin
-from .delayed_run import DelayedRun as DelayedRun
-from .delayed_run import simulate_delayed as simulate_delayed
 from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
 from .design import gain_problem as gain_problem

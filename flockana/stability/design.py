@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_nonnegative, ensure_points
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
@@ -246,6 +246,7 @@ def design_gains(
     >>> round(designs.rate_homogeneous**2, 3), designs.homogeneous.round(2).tolist()
     (5.0, [5.0, 4.47])
     """
+    ensure_kind("problem", problem, GainProblem, "what gain_problem(...) gives")
     low, high = _bounds(bounds)
     n, rng = problem.agents, np.random.default_rng(seed)
     alike = _homogeneous(problem, low, high)

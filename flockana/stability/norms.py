@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_positive
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
@@ -50,6 +50,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
     >>> disturbance_system(flock, output="deviations") is None
     True
     """
+    ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     import control
 
     ensure_known("output", output, OUTPUTS)
@@ -92,6 +93,7 @@ def h2_norm(system: StateSpace) -> float:
     >>> round(h2_norm(control.ss([[0, 1], [-8, -1]], [[0], [1]], [[1, 0]], 0)), 12)
     0.25
     """
+    ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     from scipy.linalg import solve_continuous_lyapunov
 
     if system.nstates == 0 or system.noutputs == 0:
@@ -115,6 +117,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     >>> bool(abs(high / low - 1.0) < 1e-12)
     True
     """
+    ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))
     rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)
     seen = positions.T @ shapes
@@ -156,6 +159,7 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     >>> round(norm * 24, 9), round(peak**2, 5)
     (1.0, 7.0)
     """
+    ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     if system.nstates == 0 or system.noutputs == 0:
         return 0.0, 0.0
     tol, a, b, c = ensure_positive("tol", tol), system.A, system.B, system.C

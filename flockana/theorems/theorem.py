@@ -14,13 +14,13 @@ from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
-Rigour = Literal["symbolic", "smt", "interval", "numeric"]
+Rigour = Literal["symbolic", "smt", "interval", "numeric", "statistical"]
 HypothesisStatus = Literal["met", "unmet", "assumed"]
 About = Literal["run", "limit", "all"]
 Kind = Literal["trajectory", "configuration", "fixed"]
 By = Literal["source", "corrected", "flockana"]  # whose statement it is
 
-_RIGOURS: tuple[Rigour, ...] = ("numeric", "interval", "smt", "symbolic")  # weakest first
+_RIGOURS: tuple[Rigour, ...] = ("statistical", "numeric", "interval", "smt", "symbolic")  # weakest first
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Claim:
         Short name, such as ``"iii"``.
     status : {"verified", "refuted", "vacuous", "inconclusive"}
         Whether it holds.
-    rigour : {"symbolic", "smt", "interval", "numeric"}
-        How it is known.
+    rigour : {"symbolic", "smt", "interval", "numeric", "statistical"}
+        How it is known; "statistical" of a recording whose noise is stated.
     computed, stated : object
         What was computed here, and what the theorem states.
     margin : float, optional
@@ -274,6 +274,8 @@ class Theorem:
         Whose theorem it is; the claims are the author's unless named below.
     corrected, ours : tuple of str
         Names of the claims that correct the source, and of the library's own.
+    wrapped : bool
+        Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
 
     id: str
@@ -292,6 +294,7 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+    wrapped: bool = False
 
     @property
     def erratum(self) -> Erratum | None:

@@ -1,7 +1,5 @@
 """What once went wrong, one case each, as it was reported: a verdict that was false, a run that should not count."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache
 

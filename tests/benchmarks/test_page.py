@@ -1,7 +1,5 @@
 """The page of a record."""
 
-from __future__ import annotations
-
 import json
 
 from benchmarks.page import write

@@ -3,8 +3,6 @@
 A basin's certificate holds only lengths near to rest, where half of each formula is about 0.
 """
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """The structural energy in balls against the laws' own numbers: its value, gradient, Hessian and invariance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, ctx

@@ -1,7 +1,5 @@
 """Obstacle zones, polygons, balls and boxes against shapely, and what each reading of the paper does."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

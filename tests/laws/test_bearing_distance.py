@@ -1,7 +1,5 @@
 """The bearing-distance law: its two forms, its readings of the paper, its measures, and what it refuses."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import tanh
 

@@ -1,7 +1,5 @@
 """The minimal bearing-distance model against a transcription of (23)-(25) in plain loops, and exact two-agent facts."""
 
-from __future__ import annotations
-
 from math import cos, exp, sin, sqrt
 
 import numpy as np

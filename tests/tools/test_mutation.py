@@ -1,7 +1,5 @@
 """Mutation testing: which mutants there are, which tests are asked first, and what is made of what they say."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 
