@@ -60,6 +60,10 @@ largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
 print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
+# **Figure 7.1.** What the best lattice of $n$ agents costs (circles), and what every state costs at least, by the
+# theorem below (squares). Where the circles pass $c^*$, no lattice meets the hypothesis; where the squares do, no
+# state.
+#
 # The floor is a theorem of its own (erratum E4).
 #
 # > **Theorem.** For $m = 2$ and these parameters every state has
@@ -116,6 +120,9 @@ ax.plot(early.t, early.q[:, :, 0])
 _ = ax.set(xlabel="t (time)", ylabel="x (length)")
 
 # %% [markdown]
+# **Figure 7.2.** Three agents on a line. The fast one passes the second and then the third: two collisions of
+# distinct pairs, one after the other.
+#
 # Two crossings within 0.03 time units can hide between samples. The library therefore looks along the interpolated
 # paths, and bounds what it cannot see.
 #

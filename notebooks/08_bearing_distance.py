@@ -88,6 +88,9 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
+# **Figure 8.1.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
+# circle) the same agents do not get through (right).
+#
 # ## Two forms, and where they part
 #
 # From a bearing $\hat b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}\hat b_{ij}$, and from their
@@ -137,6 +140,9 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
 # %% [markdown]
+# **Figure 8.2.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
+# plain clip they end at 3.
+#
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
@@ -153,6 +159,10 @@ tree = fl.scenario("zone-tree").run()
 figure, axes = plots.subplots(1, 2, size=(11, 4))
 plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
 _ = plots.snapshot(tree, ax=axes[1], velocities=False)
+
+# %% [markdown]
+# **Figure 8.3.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
+# colour shows how far an edge is from its desired length. At the end every edge is right, and none is 0.
 
 # %%
 verdict = fl.verify("zone-1-printed", tree)
@@ -205,6 +215,9 @@ figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
 # %% [markdown]
+# **Figure 8.4.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
+# and eleven zeros.
+#
 # ## What surprised, and what the corrected theorem does not say
 #
 # The printed proof contains a true computation: the eigenvalues are right. What is false is the step from

@@ -57,6 +57,10 @@ figure, axes = plots.subplots(1, 2, size=(11, 3.4))
 plots.dead_zone_force(hard, ax=axes[0])
 _ = plots.dead_zone_force(ramped, ax=axes[1])
 
+# %% [markdown]
+# **Figure 9.1.** The force of a pair over its distance, below 0 where it repels. Open circles are values beside a
+# jump.
+
 # %%
 for jump in hard.jumps():
     print(f"at {jump.where:>2} = {jump.distance:4.1f} the force jumps from {jump.below:8.4f} to {jump.above:.4f}")
@@ -91,6 +95,9 @@ plots.dead_zone_energies(run.window(0.5, 20.0), ax=axes[0])
 _ = plots.energy_residual(run, ax=axes[1])
 
 # %% [markdown]
+# **Figure 9.2.** Sixteen agents. Left: the energy over all pairs falls, the printed one over neighbours jumps up
+# whenever a pair comes into range. Right: the balance closes to seven digits.
+#
 # ## What a jump does to an integrator
 #
 # An adaptive solver assumes that the solution is smooth within a step. At a jump its error estimate means nothing: it
@@ -138,6 +145,9 @@ axes[0].legend()
 _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 
 # %% [markdown]
+# **Figure 9.3.** A pair that is drawn to $d_1 = 3.5$; right, enlarged. With jumps it bounces ever lower and the run
+# ends where it is held; with a ramp it comes to rest.
+#
 # With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
 # jump nor sliding; it goes on, and chatters (erratum L7):
 
@@ -236,6 +246,8 @@ figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
 # %% [markdown]
+# **Figure 9.4.** The middle of the flock is squeezed (dark), its rim is not.
+#
 # ## What surprised, and what the corrected theorem does not say
 #
 # The energy that the source wrote down rises, and the one that it meant falls; they differ by a constant for each

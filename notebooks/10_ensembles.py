@@ -95,6 +95,9 @@ plots.share_bars(fl.shares(printed), ax=axes[0], title="as printed")
 _ = plots.share_bars(fl.shares(mended), ax=axes[1], title="as recommended")
 
 # %% [markdown]
+# **Figure 10.2.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
+# intervals. As printed one of five holds; with the recommended gains nearly all.
+#
 # The result is an `xarray.Dataset`, so everything else is a question to it: how close did they come?
 
 # %%
@@ -114,6 +117,9 @@ runs = fl.ensemble("phase", range(3), parameters=grid, theorems=())
 _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 
 # %% [markdown]
+# **Figure 10.3.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is
+# divided in their shares.
+#
 # Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
 # arrives. Kill it at any moment and call it again: only what is missing is computed. `executor=` takes any
 # `concurrent.futures.Executor`, `cluster=` a Dask scheduler's address; the numbers are the same to the bit.
@@ -131,6 +137,8 @@ print(safe)
 _ = plots.falsification(broken)
 
 # %% [markdown]
+# **Figure 10.4.** The margin of the claim in each run of the search, and the least so far. Below 0 the claim fails.
+#
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
 # converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the
 # scenario. A run refutes a limit only by what is certain at all later times: it must end in the basin of a strict
@@ -144,6 +152,9 @@ ax = plots.snapshot(found.run(), velocities=False)
 _ = ax.set_title("four places for five agents")
 
 # %% [markdown]
+# **Figure 10.5.** The counterexample: five agents at rest in four places, one of which two share (×2). Every link
+# looks like a lattice's.
+#
 # A counterexample is a file that anyone can replay: `found.save("e3.json")`, then `fl.replay("e3.json")`, or in a shell
 # `flockana falsify --replay e3.json`.
 

@@ -80,6 +80,9 @@ ax.set(xlabel="distance (length)", ylabel="length/time², length²/time²")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.1.** Force and potential of the law. The force repels below 2, attracts up to 3, and ends there without
+# a jump or a corner.
+#
 # ## Its verdicts in three
 
 # %%
@@ -157,6 +160,9 @@ ax.set(xlabel="t (time)", ylabel="K (length²/time²)")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.2.** The mismatch of thirty agents and the bound of the theorem, which is true and not sharp: it takes
+# the weight at the largest distance for all pairs.
+#
 # A verdict on a run is `numeric`: it says what this run did. For all runs there is the proof.
 #
 # ## The proof

@@ -46,6 +46,8 @@ ax = plots.configuration(q, p, r=8.4, title="the start of them all")
 print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diameter {fl.diameter(p):.3g}")
 
 # %% [markdown]
+# **Figure 12.1.** The start: ten agents, links of nearly equal length, headings about one direction.
+#
 # ## What is promised
 #
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
@@ -74,6 +76,9 @@ for entry in ENTRIES:
 outcomes = compare()
 axes = plots.side_by_side(outcomes)
 
+# %% [markdown]
+# **Figure 12.2.** The same start (grey) under ten laws, and the end, with the verdict of the theorem above each.
+
 # %%
 for outcome in outcomes:
     happened = f"velocity diameter x {outcome.velocity_share:.1e}, {outcome.groups} group(s)"
@@ -81,6 +86,9 @@ for outcome in outcomes:
 ax = plots.velocity_diameters(outcomes)
 
 # %% [markdown]
+# **Figure 12.3.** The largest difference of two velocities over that at the start. The dead-zone flock has not
+# settled at 60.
+#
 # A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing about this start. Which
 # hypothesis failed stands in the verdict:
 
@@ -129,6 +137,9 @@ plots.diameters(meet, ax=axes[1])
 print(fl.verify("jlm-headings", meet))
 
 # %% [markdown]
+# **Figure 12.4.** Left: relative connectivity, below 1 until the two groups meet at 35, and the windows across which
+# the agents are linked together. Right: the spread of velocities falls from then on.
+#
 # The argument: once headings nearly agree, all that distances can still change adds up to less than what each of them
 # is away from $r$. So no link is ever made or lost again, and a net that stays connected averages its headings to one.
 #
