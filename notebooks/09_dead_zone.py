@@ -148,6 +148,30 @@ _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 # **Figure 9.3.** A pair that is drawn to $d_1 = 3.5$; right, enlarged. With jumps it bounces ever lower and the run
 # ends where it is held; with a ramp it comes to rest.
 #
+# What does it mean to be held where the law has no value? Let $y$ be the distance and $\ddot y = F(y) - 2k_2\dot y$
+# its equation near $d_1$, with $F > 0$ just below $d_1$ (repulsion) and $F < 0$ just above (the pull of $k_1$).
+# *Filippov's* definition: at $y = d_1$ the acceleration may be any number between the two one-sided limits
+# $F(d_1-) > 0$ and $F(d_1+) < 0$.
+#
+# > **Theorem (held at the jump).** Let $F \ge f_1 > 0$ for $y$ just below $d_1$ and $F \le -f_2 < 0$ just above, and
+# > $k_2 > 0$. Then $y = d_1$, $\dot y = 0$ is an equilibrium in Filippov's sense, and every solution that starts
+# > near it converges to it.
+#
+# *Proof.*
+#
+# 1. 0 lies between $F(d_1-)$ and $F(d_1+)$, so the constant function $y = d_1$ has an admissible acceleration,
+#    namely 0: it is a solution. The share $z$ of the repelling force is fixed by $z\,F(d_1-) + (1-z)\,F(d_1+) = 0$.
+# 2. Let $W = \tfrac12\dot y^2 - \int_{d_1}^yF$. Below $d_1$ the second term is at least $f_1\,(d_1 - y)$, above at
+#    least $f_2\,(y - d_1)$. So $W > 0$ near the equilibrium except at it, though it has a corner there.
+# 3. Where $F$ is continuous, $\dot W = \dot y\,\ddot y - F\dot y = -2k_2\dot y^2 \le 0$. A solution is at $y = d_1$
+#    either for single instants, through which $W$ is continuous, or for an interval of time, on which $\dot y = 0$
+#    and $W$ is constant. So $W$ never rises, and by Lyapunov's argument (lecture 00a) solutions from near stay near.
+# 4. By LaSalle's principle, which holds for Filippov's solutions too, the solution approaches a set on which
+#    $\dot y = 0$ for ever. There $y$ is constant and 0 is an admissible acceleration, which it is near $d_1$ at
+#    $d_1$ only. $\square$
+#
+# So the vibration of a program with fixed steps is no motion of the law: the law's motion comes to rest.
+#
 # With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
 # jump nor sliding; it goes on, and chatters (erratum L7):
 
