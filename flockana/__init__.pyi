@@ -32,6 +32,7 @@ from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
 from .environment.spring import Spring as Spring
 from .environment.system import SystemTarget as SystemTarget
+from .environment.table_target import TableTarget as TableTarget
 from .environment.target import Target as Target
 from .environment.targets import CallableTarget as CallableTarget
 from .environment.targets import CircleTarget as CircleTarget

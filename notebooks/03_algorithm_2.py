@@ -163,6 +163,43 @@ print({claim.name: claim.status for claim in fl.verify("os-3", flock).claims})
 # far above, because most of $H_\lambda$ is $c_1^\alpha V$, to which every pair out of range contributes. Right: the
 # energy.
 #
+# ## An experiment: the shape does not see the target
+#
+# The split is exact, so here is a test that would fail if anything were wrong with it. Let the same nineteen agents
+# follow a target at rest, one on a straight line, and one on a circle. Their shapes $x(t)$ must be the same, to the
+# accuracy of the integrator, although the flocks fly along quite different paths.
+
+# %%
+generator = np.random.default_rng(3)
+begin = fl.lattice.hexagonal_patch(2, 7.0) + generator.normal(0.0, 1.0, (19, 2))
+moving = generator.normal(0.0, 1.0, (19, 2))
+targets = {
+    "at rest": fl.StaticTarget((0.0, 0.0)),
+    "on a line": fl.LinearTarget((10.0, 0.0), (5.0, 1.0)),
+    "on a circle": fl.CircleTarget((0.0, 0.0), 20.0, 0.2),
+}
+paths = {
+    name: fl.simulate(fl.Algorithm2(target=target), begin, moving, (0.0, 5.0), t_eval=np.linspace(0.0, 5.0, 101))
+    for name, target in targets.items()
+}
+shape = {name: path.q - path.q.mean(axis=1, keepdims=True) for name, path in paths.items()}
+for name, path in paths.items():
+    drift = np.linalg.norm(path.q[-1].mean(axis=0) - path.q[0].mean(axis=0))
+    off = abs(shape[name] - shape["at rest"]).max()
+    print(f"target {name:>11}: the centre has moved {drift:6.2f}, the shape differs by {off:.0e}")
+
+# %% tags=["facts"]
+assert max(abs(shape[name] - shape["at rest"]).max() for name in shape) < 1e-5
+assert np.linalg.norm(paths["on a line"].q[-1].mean(axis=0)) > 20.0
+
+# %% [markdown]
+# The shapes agree to many digits. For a designer this is good news: cohesion, matching and the pattern can be tuned
+# with a target at rest, once, and the path of the target is a matter of the filter alone. It also says what a target
+# can *not* do: no path, however clever, shakes a flock into a better pattern, because the shape does not feel it.
+# Obstacles can, and so can a target that only some agents know: then the sum in step 3 of the proof no longer
+# closes, the shape has explicit time in it, LaSalle's theorem does not apply, and one needs Barbalat's lemma
+# (lecture 00a). Lecture 12 has such a law.
+#
 # ## The centre: a filter of second order
 #
 # The centre obeys $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly and whatever the

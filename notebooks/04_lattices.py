@@ -133,7 +133,7 @@ ax.plot(
     "-",
     label="hexagonal spiral",
 )
-ax.plot(sizes, [lattice.harborth(n) for n in sizes.tolist()], ":", label="Harborth")
+ax.plot(sizes[::3], [lattice.harborth(n) for n in sizes[::3].tolist()], "o", markersize=3, label="Harborth")
 ax.set(xlabel="n, agents", ylabel="links")
 _ = ax.legend()
 
@@ -155,8 +155,34 @@ plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / 
 print(f"links {length.min():.2f} to {length.max():.2f} long, crossings {len(lattice.crossings(end, net))}")
 
 # %% [markdown]
-# **Figure 4.3.** The end of the flock of lecture 00. Agents with five or seven neighbours come in pairs; these are
-# *dislocations*, as in a crystal.
+# **Figure 4.3.** The end of the flock of lecture 00. Most inner agents have six. Near the lower edge a few have
+# five, beside one stretched link: a *defect*, as in a crystal.
+#
+# How far is it from a lattice? Two measures are in use. A configuration is a *quasi-lattice* with the uncertainty
+# $\delta$ if all its links have lengths between $d - \delta$ and $d + \delta$: the worst link counts. The *deviation
+# energy* is a mean,
+#
+# $$E(q) = \frac{1}{e+1}\sum_{\text{links}}\bigl(\|q_j - q_i\| - d\bigr)^2,$$
+#
+# with $e$ the number of terms, each link counted in both orders. If every term is at most $\delta^2$, the mean is,
+# so $E \le \delta^2$ for a quasi-lattice. The converse fails: one bad link among hundreds hardly shows in $E$.
+# Whoever reports $E$ alone hides the worst link, and whoever reports $\delta$ alone lets one link speak for all.
+# Look at both.
+
+# %%
+worst = abs(length - d).max()
+mean = np.sum((length - d) ** 2) * 2 / (2 * len(net) + 1)
+print(f"worst link: off by {worst:.2f}, δ/d = {worst / d:.3f};  deviation energy: √E/d = {np.sqrt(mean) / d:.3f}")
+
+# %% [markdown]
+# The typical link is off by some hundredths of $d$ and the worst one by sixteen: it spans the defect. This flock is
+# a good lattice with a flaw, which neither number alone would say.
+#
+# **Why triangles?** In lecture 01's potential a link at $d$ costs 0 and a pair out of range 0.74. So among lattices
+# of $n$ agents the energy is $V = \psi_\alpha(r_\alpha)\bigl(\tfrac12n(n-1) - e\bigr)$ with $e$ links: the more
+# links, the better. A square lattice has about $2n$ links, a honeycomb $\tfrac32n$, a triangular one nearly $3n$. A
+# flock that descends $V$ has every reason to form triangles, and squares that arise by chance shear into rhombi,
+# which costs nothing, until a fifth pair comes into range.
 #
 # Theorem 5 is about lattices, and this state is not one: its claims are vacuous here. Does the flock's net cross
 # itself nevertheless? Go back to the proof: step 3 needs no lattice.
@@ -183,12 +209,15 @@ assert [said.claim(name).status for name in ("i", "extension", "extension-length
     "vacuous",
     "verified",
 ]
+assert 0.1 < worst / d < 0.2
+assert np.sqrt(mean) / d < 0.05
+assert abs(mean - 2 * np.sum((length - d) ** 2) / (2 * len(net) + 1)) < 1e-12
 assert length.max() / np.sqrt(2) < fl.min_distance(end) < r / np.sqrt(2)
 assert all(len(lattice.links(lattice.hexagonal_spiral(n, d), r)) == lattice.harborth(n) for n in range(3, 61))
 assert lattice.max_ratio("bcc") < 1.2
 assert lattice.rigidity(lattice.square(2, 2, d), lattice.links(lattice.square(2, 2, d), r)).flexes == 1
 assert lattice.rigidity(q, pairs).self_stresses == 19
-assert {5, 7} <= set(lattice.coordination(len(end), net).tolist())
+assert lattice.coordination(len(end), net).max() == 6
 
 # %% [markdown]
 # (The library's headline for all claims together would read *verified*, because one claim is verified, none is
@@ -232,6 +261,21 @@ for name, places in (("square", lattice.square(2, 2, d)), ("patch of 37", q)):
 # %% [markdown]
 # Links beyond $2n - 3$ are redundant and carry *self-stress*: some may pull while others push, and the whole is at
 # rest. The patch of 37 has $90 - 71 = 19$ such states, which is why a flock can come to rest strained.
+#
+# ## How many links does a flock need?
+#
+# A flock in the plane has three interesting numbers of links. With $n - 1$ it can just be connected: a tree, in
+# which every lost link cuts the flock in two. With $2n - 3$ it can just be rigid: the shape holds, and no link can
+# be spared. With Harborth's $\lfloor3n - \sqrt{12n-3}\rfloor$ it is as full as a lattice can be. For the 37 robots
+# of the scene these are 36, 71 and 90. The surplus of 19 is redundancy: so many links may fail, if they are the
+# right ones, before the shape goes soft.
+#
+# Now the practical side. Each link is a radio channel that has to be kept alive, so a designer would like few; each
+# missing link makes the shape softer and the agreement slower ($\lambda_2$ of lecture 00a), so the same designer
+# would like many. An α-lattice does not ask: its links are all the pairs in range. Whoever wants fewer must choose
+# them, and then the law is no longer one of *all neighbours*, but of a graph that somebody has planned (formation
+# control; the directed trees of lecture 08 are an example). What this lecture says about crossings matters there
+# too: a planar net can be drawn on a map for the operator, and messages can be routed along its faces.
 #
 # ## What surprised, and what the theorem does not say
 #
@@ -374,7 +418,7 @@ grade(too_far, 1.75, digits=3, hint="the title says whether it is a lattice")
 # $i$ is at least 60°. The angles between successive neighbours add up to 360°, so there are at most six, and if six,
 # each angle is exactly 60°: a regular hexagon. For the second question: neighbours may now be up to $1.2\,d$ away.
 # Two neighbours at $1.2\,d$ that are $d$ apart subtend the angle $2\arcsin(1/2.4) = 49.2°$, and seven such angles
-# are 344.6°, less than 360°. So seven neighbours are possible, as the flock of Figure 4.3 shows.
+# are 344.6°, less than 360°. So seven neighbours are possible.
 #
 # **Rubric, a point each:** the angle between two neighbours is at least 60°; six of them fill the circle and are
 # equal; for the wider net seven fit, with a computation.

@@ -83,6 +83,43 @@ _ = figures.projections(axes=axes)
 # of a distant γ-agent is bounded by $c_1^\gamma$; and because $\sigma_1$ is not linear, the split of lecture 03 does
 # not hold here.
 #
+# ## How strong must the wall be?
+#
+# Before a flock, one agent. It is pushed against a wall by a distant γ-agent, with the force $c_1^\gamma$ at most.
+# Where does it stop, and can it break through? Both are energy and balance on a line.
+#
+# **Where it rests.** At rest the repulsion balances the pull:
+# $c_1^\beta|\phi_\beta(\|y\|_\sigma)|\,y/\sqrt{1+\varepsilon y^2} = c_1^\gamma$, if the target is far. The left side
+# is 0 at $d'$, rises as $y$ falls, has a maximum, and falls to 0 at the wall, because $\hat n_{ik}$ vanishes there
+# like $n_{ij}$. So for a weak pull there are two solutions, the outer one stable, and for a pull above the maximum
+# there is none: the agent is driven through.
+#
+# **Whether it gets through on the way.** With the energy $\tfrac12p^2$ at the distance $d'$ and a constant pull
+# $c_1^\gamma$, an agent reaches the wall only if $\tfrac12p^2 + c_1^\gamma d' \ge c_1^\beta\psi_\beta(0)$: kinetic
+# energy and the work of the pull must pay for the whole wall. Friction only helps.
+
+# %%
+beta = fl.BetaInteraction(d=4.2, r=5.04, eps=0.1, h=0.9)
+y = np.linspace(0.0, 4.2, 421)
+wall_force = 1500.0 * -beta.phi_beta((np.sqrt(1.0 + 0.1 * y**2) - 1.0) / 0.1) * y / np.sqrt(1.0 + 0.1 * y**2)
+figure, ax = plots.subplots(size=(6, 3.4))
+ax.plot(y, wall_force, label="repulsion")
+ax.axhline(12.0, color="black", linestyle=":", label="pull of 12")
+ax.set(xlabel="distance from the wall (length)", ylabel="force (length/time²)", yscale="log", ylim=(1.0, 1e4))
+_ = ax.legend()
+outer = y[np.flatnonzero(wall_force >= 12.0)[-1]]
+through = np.sqrt(2.0 * (1500.0 * float(beta.psi_beta(0.0)) - 12.0 * 4.2))
+print(f"strongest repulsion {wall_force.max():.0f}, rests at {outer:.2f}, breaks through from speed {through:.0f} on")
+
+# %% [markdown]
+# **Figure 5.2.** The repulsion of a wall over the distance, with the gains of this lecture, and a pull of 12. They
+# balance near 4.2 and once more close to the wall, where the balance is unstable.
+#
+# With $c_1^\beta = 1500$ the wall is stronger than the pull by a factor of hundreds, and an agent would need a speed
+# of about a hundred to break through. That is the reason for the large gain, and its price is a stiff equation: the
+# integrator must take small steps while an agent touches a wall. In the flocks below nobody comes near such a speed.
+# For 37 agents the energies add up, and the same bound, applied to the whole flock, says nothing any more.
+#
 # ## A flock around a pillar
 
 # %%
@@ -99,7 +136,7 @@ for ax, t in zip(axes, (8.0, 20.3, 50.0), strict=True):
 run.player(height=520)
 
 # %% [markdown]
-# **Figure 5.2.** Thirty-seven agents pass a sphere beside a wall; the γ-agent flies through the sphere. The flock
+# **Figure 5.3.** Thirty-seven agents pass a sphere beside a wall; the γ-agent flies through the sphere. The flock
 # splits, into three components about $t = 20$, and rejoins.
 #
 # How close did anyone come to an obstacle? Samples alone could miss the moment. The library bounds the distance
@@ -114,7 +151,7 @@ plots.clearances(run, ax=axes[0])
 _ = plots.components(run, ax=axes[1])
 
 # %% [markdown]
-# **Figure 5.3.** Least distance from each obstacle, and the number of components, over time.
+# **Figure 5.4.** Least distance from each obstacle, and the number of components, over time.
 #
 # ## Theorem 6
 #
@@ -181,7 +218,7 @@ plots.energy(trapped, ax=axes[1])
 _ = plots.energy_residual(trapped, ax=axes[2])
 
 # %% [markdown]
-# **Figure 5.4.** Forty agents and a target at rest behind a U. Two arrive; 38 stay in the U for good. The energy
+# **Figure 5.5.** Forty agents and a target at rest behind a U. Two arrive; 38 stay in the U for good. The energy
 # falls, as the theorem says, and then it is constant, as the theorem allows.
 #
 # Theorem 6 is verified, and the mission has failed. There is no contradiction. $\dot H \le 0$ says where the energy
@@ -219,11 +256,17 @@ past = fl.simulate(pillar, [[30.0, 0.1]], [[0.0, 0.0]], (0.0, 400.0))
 print(f"an agent that starts 0.1 off the axis passes the sphere at t = {past.t[np.argmax(past.q[:, 0, 0] < 0.0)]:.0f}")
 
 # %% tags=["facts"]
+assert wall_force.max() > 100.0 * 12.0
+assert 3.9 < outer < 4.2
+assert 50.0 < through < 200.0
 assert np.allclose(curvatures(pillar, [behind, 0.0]), [-0.057, 742.0], rtol=0.01)
 assert curvatures(cup, inside)[0] > 0.1
 assert np.linalg.norm(past.q[-1, 0] - [-60.0, 0.0]) < 1e-6
 assert np.linalg.norm(trapped.p[-1], axis=1).max() < 1e-4
 assert int(np.sum(trapped.q[-1, :, 0] > 100.0)) == 2
+for lucky in np.flatnonzero(trapped.q[-1, :, 0] > 100.0):  # they arrive without the flock, too
+    single = fl.simulate(cup, trapped.q[0, [lucky]], trapped.p[0, [lucky]], (0.0, 100.0))
+    assert np.linalg.norm(single.q[-1, 0] - [120.0, 0.0]) < 1e-3
 assert fl.verify("os-6", trapped).status == "verified"
 pieces = [len(set(fl.components(run.n, fl.links(q, 8.4)))) for q in run.q]
 assert max(pieces) == 3
@@ -237,6 +280,20 @@ assert pieces[-1] == 1
 # Khatib's potential fields of 1986 have the same disease, and it is a theorem that every smooth potential with
 # obstacles has saddles: one for each obstacle at least, if it is a disc in the plane.
 #
+# What can be done about traps? Three answers are in use, and each gives something up.
+#
+# - *Plan.* Compute a way around with a map, and let the γ-agent follow it. Then the law only has to keep the flock
+#   together, and Theorem 6 is vacuous, because the target moves. Somebody must have the map.
+# - *Choose another potential.* Rimon and Koditschek (1992) construct *navigation functions*, whose only minimum is
+#   the target, for obstacles that are balls. One then has saddles, which almost no start meets. The construction
+#   needs all obstacles in advance, and its gradients are very small in places and very large in others.
+# - *Disturb.* Noise frees an agent from a saddle at once and from a shallow minimum sooner or later. From the
+#   minimum in the U, with curvatures 0.18 and 2600, it would take very long.
+#
+# For a flock there is a fourth possibility: *neighbours push*. An agent that would be trapped alone can be shoved
+# out by those behind it. It did not happen here: the two that arrived started beside the U, and they arrive alone,
+# too. Do not credit the flock with what a single agent does.
+#
 # ## A moving target
 
 # %%
@@ -245,7 +302,7 @@ figure, ax = plots.subplots(size=(6, 3))
 _ = plots.energy(run, ax=ax)
 
 # %% [markdown]
-# **Figure 5.5.** The energy of the flock that follows a *moving* γ-agent. It rises and falls: the γ-agent does work
+# **Figure 5.6.** The energy of the flock that follows a *moving* γ-agent. It rises and falls: the γ-agent does work
 # on the flock, and Theorem 6, which supposes a static one, is vacuous.
 #
 # ## What surprised, and what the theorem does not say

@@ -101,6 +101,20 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
     return q, p
 
 
+def ensure_kind(name: str, value: Any, kind: type | str, example: str) -> None:
+    """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library.
+
+    Examples
+    --------
+    >>> ensure_kind("system", None, "StateSpace", "a control.StateSpace")
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: system = None: expected a control.StateSpace
+    """
+    names = {each.__name__ for each in type(value).__mro__}
+    if not (kind in names if isinstance(kind, str) else isinstance(value, kind)):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
+
+
 def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     """Return a finite float64 vector, of m components if `m` is given."""
     try:

@@ -36,7 +36,7 @@ class CollapseDiagram:
     kinds: tuple[tuple[str, ...], ...]  # kind of each equilibrium, ``"failed"`` where there is none
 
     def onset(self) -> FloatArray:
-        """Least ratio of the diagram at which agents coincide, for each size; NaN where they never do."""
+        """Return the least ratio of the diagram at which agents coincide, for each size; NaN if they never do."""
         return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
 
 

@@ -81,7 +81,7 @@ class Landscape:
         return vectors
 
     def curvatures(self) -> Curvatures:
-        """Eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
+        """Return eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
         sizes = np.abs(self.values)
         decided = np.zeros(sizes.size, dtype=bool)
         left = np.flatnonzero(sizes > self.rounding)

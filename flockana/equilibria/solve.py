@@ -120,7 +120,7 @@ class Equilibrium:
         return facts_html("Equilibrium", self.facts())
 
     def strain(self) -> float:
-        """Largest |link − d|/d to twelve digits; NaN without links.
+        """Return the largest |link − d|/d to twelve digits; NaN without links.
 
         Under dead-zone flocking of contacts only, the pairs that repel, with d₁ for d; NaN if no pair does.
         """

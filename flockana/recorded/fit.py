@@ -148,7 +148,7 @@ def _stepped(rec: Recording, parameters: Free) -> Fit:
 
     def residual(z: FloatArray) -> FloatArray:
         try:
-            q_next, p_next = predicted(parameters.with_values(z * unit), rec.t, rec.q, p)
+            q_next, p_next = predicted(parameters.with_values(z * unit), rec.t, rec.q, p, refine=2)
         except FlockanaError:
             return np.full(2 * (len(rec.t) - 1) * rec.n * rec.m, _FAR)
         return np.concatenate([((rec.q[1:] - q_next) / h).ravel(), (p[1:] - p_next).ravel()])

@@ -17,6 +17,7 @@ from flockana.recorded.velocities import motions
 
 _ROUNDS = 40  # of Gauss and Newton, damped
 _SETTLED = 0.01  # standard errors by which a round moves every parameter, below which the search ends
+_GAIN = 1e-2  # of squared deviations, that a round must gain for a start to be sought further
 _NUDGE = 1e-5  # relative change of a parameter for slopes
 _STEP = 0.1  # of the law's time, which a step of the integration is at most
 _LEAST = 1e-6  # of its first value, below which no positive parameter goes
@@ -99,9 +100,12 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
     message = f"no end after {_ROUNDS} rounds"
     for _ in range(_ROUNDS):
-        normal, gradient, back = _normal_equations(now, len(theta))
+        normal, gradient, back, open_ = _normal_equations(now, len(theta))
         covariance = np.linalg.pinv(normal)
         moved = np.linalg.pinv(normal + damping * np.diag(np.diag(normal))) @ gradient
+        if open_ + float(gradient @ moved) <= _GAIN:
+            message = "settled"
+            break
         share = _share(theta, moved, first)
         tried_theta = theta + share * moved
         tried_starts = [x + share * step(moved) for x, step in zip(starts, back, strict=True)]
@@ -122,11 +126,37 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
         if settled and gained <= 1e-3 * max(_squares(now), 1e-300):
             message = "settled"
             break
-    normal, _, _ = _normal_equations(now, len(theta))
+    normal, _, _, _ = _normal_equations(now, len(theta))
     size = sum(len(each.residual) for each in now)
     freedom = max(size - sum(x.size for x in starts) - len(theta), 1)
     told = np.diag(normal) * theta**2 > _FELT
     return Matched(theta, np.linalg.pinv(normal), told, _squares(now), freedom, message)
+
+
+def match_start(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
+    """Return the start from which a law's solution matches a window best, and the residuals over their deviations.
+
+    Parameters
+    ----------
+    law : Law
+        The law.
+    part : Window
+        The samples.
+    """
+    start, now = part.start, part.residual(law, part.start, [])
+    for _ in range(_ROUNDS):
+        moved = np.linalg.lstsq(now.by_start, now.residual, rcond=None)[0]
+        for share in (1.0, 0.3, 0.1, 0.03):
+            tried = part.residual(law, start + share * moved, [])
+            if float(tried.residual @ tried.residual) < float(now.residual @ now.residual):
+                break
+        else:
+            break
+        gained = float(now.residual @ now.residual) - float(tried.residual @ tried.residual)
+        start, now = start + share * moved, tried
+        if gained <= _GAIN:
+            break
+    return start, now.residual
 
 
 def _evaluated(parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray]) -> Any:
@@ -150,17 +180,18 @@ def _share(theta: FloatArray, moved: FloatArray, first: FloatArray) -> float:
     return float(min(1.0, np.maximum(room, 1e-3).min(initial=1.0)))
 
 
-def _normal_equations(found: list[_Slopes], count: int) -> tuple[FloatArray, FloatArray, list[Any]]:
-    """Normal equations of the parameters with all starts eliminated, and how each start follows a step."""
-    normal, gradient, back = np.zeros((count, count)), np.zeros(count), []
+def _normal_equations(found: list[_Slopes], count: int) -> tuple[FloatArray, FloatArray, list[Any], float]:
+    """Normal equations of the parameters with all starts eliminated, how starts follow a step, and what they gain."""
+    normal, gradient, back, gain = np.zeros((count, count)), np.zeros(count), list[Any](), 0.0
     for each in found:
         basis, corner = np.linalg.qr(each.by_start)
         across = basis.T @ each.by_parameter
         slopes, along_basis = each.by_parameter - basis @ across, basis.T @ each.residual
         normal += slopes.T @ slopes
         gradient += slopes.T @ each.residual
+        gain += float(along_basis @ along_basis)
         back.append(_follower(corner, along_basis, across))
-    return normal, gradient, back
+    return normal, gradient, back, gain
 
 
 def _follower(corner: FloatArray, along_basis: FloatArray, across: FloatArray) -> Any:

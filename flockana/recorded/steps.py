@@ -11,7 +11,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import DiscreteLaw
 
-SHARE = 0.02  # of the law's time, which a step of the integration is at most
+SHARE = 0.05  # of the law's time, which a step of the integration is at most
 _MOST = 2000  # steps between two samples
 _WHOLE = 1e-6  # of a step by which an interval between samples may miss a whole number of them
 
