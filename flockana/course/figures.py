@@ -170,7 +170,7 @@ def _agent_and_image(ax: Any, q: Any, p: Any, image: Any, image_p: Any) -> None:
     ax.annotate("$q_i$", q, (6, 3), textcoords="offset points", color=BLUE)
     ax.annotate("$p_i$", q + p, (-4, 6), textcoords="offset points", color=BLUE)
     ax.annotate("$\\hat q_{ik}$", image, (-4, -16), textcoords="offset points", color=VERMILLION)
-    ax.annotate("$\\hat p_{ik}$", image + image_p, (-16, -2), textcoords="offset points", color=VERMILLION)
+    ax.annotate("$\\hat p_{ik}$", image + image_p, (4, 4), textcoords="offset points", color=VERMILLION)
 
 
 def zones(radii: Mapping[str, float], *, ax: Any = None) -> Any:
