@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -154,7 +155,8 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
     law: Any = linear.law
     if delay:
         for kind in DELAYED:
-            margin = delay_margin(delay_system(law, linear.q, delayed=kind, strict=strict))
+            system = delay_system(law, linear.q, delayed=kind, strict=strict)
+            margin = delay_margin(system, progress=sys.stderr.isatty())
             numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
             facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
     if norms:
