@@ -146,8 +146,10 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
-# (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
-# $d$:
+# (`MinimalFlocking`). A graph is a *spanning tree*, more precisely a rooted out-tree, if every agent but one, the
+# root, perceives exactly one other, and following who is perceived leads from everybody to the root. A matrix is
+# *Hurwitz* if all its eigenvalues have negative real part. With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$
+# perceives $j$, and a desired length $d$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
 # > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
