@@ -28,6 +28,7 @@ from flockana.cli.falsify import falsify_command
 from flockana.cli.groups import Groups, example
 from flockana.cli.home import prepare_home
 from flockana.cli.lattice import lattice_command
+from flockana.cli.observe import observe_command
 from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
 from flockana.cli.stability import stability_command
@@ -55,6 +56,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "export": export_command,
     "course": course_command,
     "explore": explore_command,
+    "observe": observe_command,
 }
 
 

@@ -82,7 +82,7 @@ def stability_command(
 
 
 def _tell_time(n: int, *, as_given: bool) -> None:
-    """Print how long a large flock takes, on the error stream; raise if that is too long to wait for."""
+    """Print the expected time for a large flock on the error stream; raise if it is too long."""
     from flockana.base.errors import ArgumentError
 
     seconds = _SECONDS[as_given] * (n / 1000.0) ** 2
@@ -167,7 +167,7 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
 
 
 def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
-    """Pole map, the slowest modes of the shape, and the centre's Bode plot where there is one."""
+    """Draw the pole map, the slowest modes, and the centre's Bode plot where there is one."""
     import numpy as np
 
     from flockana import plots
@@ -205,7 +205,7 @@ def _title(facts: dict[str, Any]) -> str:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """Facts in words."""
+    """Return the linearisation's facts as table rows."""
     drifts = f"; drifting: {', '.join(facts['drifting'])}" if facts["drifting"] else ""
     abscissa = facts["spectral abscissa"]
     rows = [

@@ -1,4 +1,4 @@
-"""Which of several laws a recording follows: a ranked table of comparisons."""
+"""Recognition of a recording's law among several: a ranked table of comparisons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FITS = 0.99  # share explained, the gains as the recording has them, from which
 
 @dataclass(frozen=True, eq=False)
 class Recognition:
-    """Laws by how much they explain of a recording, the best first; and those that are not for such a flock.
+    """Laws ranked by how much of a recording they explain, and those that do not apply to it.
 
     Attributes
     ----------

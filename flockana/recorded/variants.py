@@ -17,7 +17,7 @@ from flockana.recorded.contributions import Part
 
 @dataclass(frozen=True)
 class Variant:
-    """Another form of the part of a gain, and the finding that it is."""
+    """Alternative form of a part of a law, and the finding that it stands for."""
 
     gain: str
     finding: str

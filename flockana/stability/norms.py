@@ -66,7 +66,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
 
 
 def _dimension(flock: Blocks) -> int:
-    """m, from the translations, which are the rigid motions that move all agents alike."""
+    """Return m, from the translations among the rigid motions."""
     for m in (3, 2, 1):
         n, rest = divmod(len(flock.stiffness), m)
         moves = np.tile(np.eye(m), (n, 1))
@@ -76,7 +76,7 @@ def _dimension(flock: Blocks) -> int:
 
 
 def h2_norm(system: StateSpace) -> float:
-    """Square root of the power of the output under white noise of unit intensity in every input.
+    """Return the H₂ norm, from white noise of unit intensity in every input to the output.
 
     The controllability Gramian by Bartels and Stewart's method (scipy); infinite unless the system is stable.
 
@@ -105,7 +105,7 @@ def h2_norm(system: StateSpace) -> float:
 
 
 def h2_bounds(flock: Blocks) -> tuple[float, float]:
-    """Closed-form bounds of the H₂ norm to the shape: √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)), K⁺ on shapes.
+    """Return closed-form bounds √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)) of the H₂ norm to the shape.
 
     With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
     d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
@@ -131,7 +131,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
 
 
 def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
-    """(H∞ norm, frequency of the peak): the largest gain over all harmonic disturbances.
+    """Return (H∞ norm, frequency of the peak), the largest gain over all harmonic disturbances.
 
     Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
     between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
@@ -214,7 +214,7 @@ class NormTable:
 
 
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
-    """H₂ and H∞ of the equilibria that hexagonal spirals of these sizes relax to (in the plane).
+    """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 
     Parameters
     ----------

@@ -1,7 +1,5 @@
 """Lectures as notebooks: which cells a version keeps, what a student's copy gives away, and every check by answers."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re
