@@ -114,5 +114,4 @@ THEOREM = Theorem(
         "sampling-margins:notebook-2": "verified",
         "sampling-margins:minimal": "verified",
     },
-    author="flockana",
 )
