@@ -160,10 +160,10 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
             numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
             facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
     if norms:
-        system = disturbance_system(law_blocks(law, linear.q, strict=strict))
-        assert system is not None  # shapes are always bounded
-        peak = hinf_norm(system)
-        facts["H2"], facts["Hinf"] = finite(h2_norm(system)), finite(peak[0])
+        disturbed = disturbance_system(law_blocks(law, linear.q, strict=strict))
+        assert disturbed is not None  # shapes are always bounded
+        peak = hinf_norm(disturbed)
+        facts["H2"], facts["Hinf"] = finite(h2_norm(disturbed)), finite(peak[0])
         facts["Hinf at"] = finite(peak[1])
     return facts
 
