@@ -13,6 +13,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
+from flockana.jit import thawed
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.scalars import sigma_norm
@@ -142,17 +143,18 @@ class PairInteraction(ABC):
             pᵀL̂p = ½ Σ over ordered pairs of a_ij ‖p_j − p_i‖².
         """
         u = np.zeros_like(q) if out is None else out
-        forces, forces_of = self.kernels.sweeps[q.shape[1] - 1]
-        summed, dissipation = forces(q, p, self.range, self._constants, stiffness, damping, u, np.empty((3, *q.shape)))
+        par = self._constants
+        sums = self.kernels.sums(q.shape[1], par.size)
+        summed, dissipation = sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
         if not summed:  # too sparse for a grid of cells
             for i, j in pair_blocks(q, self.range):
-                dissipation += forces_of(q, p, i, j, self._constants, stiffness, damping, u)
+                dissipation += sums.forces_of(q, p, i, j, par, stiffness, damping, u)
         return u, dissipation
 
     @cached_property
-    def _constants(self) -> tuple[float, ...]:
-        """`par` as the force kernels read it: constants in registers, which no array can alias."""
-        return tuple(self.par.tolist())
+    def _constants(self) -> FloatArray:
+        """`par` as kernels take it in the inner loop."""
+        return thawed(self.par)  # type: ignore[no-any-return]
 
     def potential_energy(self, q: FloatArray) -> float:
         """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included.
