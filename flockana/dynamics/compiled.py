@@ -14,12 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.encounters import Encounters
+from flockana.dynamics.encounters import Encounters, at_a_pole
 from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floors
 from flockana.jit import thawed
-from flockana.kernels.advance import CROWDED, RUNNING, Around, Kept, Method, advance
+from flockana.kernels.advance import CROWDED, RUNNING, SINGULAR, Around, Kept, Method, advance
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.runge_kutta import System
 from flockana.kernels.tableaus import Tableau, tableau
@@ -88,12 +88,13 @@ class Engine:
     def _system(self) -> tuple[System, Around, Method]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
         frame, (n, m), met = self.frame, self.frame.shape, self.encounters
-        view = (frame.t0, frame.origin[: n * m].copy(), frame.drift[: n * m].copy())
+        view = (frame.t0, frame.origin[:m].copy(), frame.drift[:m].copy())
         own, reach = np.arange(n, dtype=np.uint64), (self.form.reach, SKIN * self.form.reach)
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         numbers = self.form.numbers
         system = System(*self.form.functions, numbers, view, self.form.moving, reach, own, *room)
-        around = Around(thawed(met.radii), float(met.far), met.bodies is not None, (float(met.shell), float(met.skirt)))
+        shell = float(met.shell), float(met.skirt)
+        around = Around(thawed(met.radii), float(met.far), met.bodies is not None, shell, thawed(met.poles))
         tableau_arrays = (thawed(each) if isinstance(each, np.ndarray) else each for each in self.method)
         floor, balance = (tuple(float(x) for x in each) for each in (self.allowed.floor, self.allowed.balance))
         return system, around, Method(*tableau_arrays, float(self.allowed.rtol), floor, balance)
@@ -168,6 +169,8 @@ def stepped(
             yield Samples(made, states[:, 0], states[:, 1], states[:, 2], {"work": work})
         if status == CROWDED:
             tally.fail(f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'")
+        elif status == SINGULAR:
+            tally.fail(at_a_pole(t))
         elif status != RUNNING:
             tally.fail(reason(status, t + h))
         if status != RUNNING:

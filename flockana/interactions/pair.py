@@ -97,6 +97,12 @@ class PairInteraction(ABC):
         return True
 
     @property
+    def poles(self) -> tuple[float, ...]:
+        """Distances at which the potential is infinite or the force has no limit."""
+        edge = (self.range,) if self.far_potential == inf else ()
+        return edge if self.coincidence else (0.0, *edge)
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """The unit of forces: about the strongest between two agents, that of a contact where it is unbounded."""

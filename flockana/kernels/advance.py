@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.jit import njit
-from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed
+from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest
 from flockana.kernels.paths import bernstein
+from flockana.kernels.poles import crossing_listed
 from flockana.kernels.runge_kutta import (
     System,
     energy_of,
@@ -61,12 +62,15 @@ class Around(NamedTuple):
         Whether there are obstacles.
     shell : (float, float)
         Distance at which their force begins, and how far an agent may go within it.
+    poles : ndarray
+        Distances between agents that no step crosses.
     """
 
     radii: Any
     far: Any
     bodies: Any
     shell: Any
+    poles: Any
 
 
 class Kept(NamedTuple):
@@ -79,7 +83,7 @@ class Kept(NamedTuple):
     ledger: Any
 
 
-RUNNING, TOO_SMALL, NOT_FINITE, CROWDED = range(4)
+RUNNING, TOO_SMALL, NOT_FINITE, CROWDED, SINGULAR = range(5)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
 ROUNDINGS = 64.0  # of the time: a step of so few is not made again
 HALVINGS, FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
@@ -109,9 +113,9 @@ def _at_rest(t, h, points, view, frame):
 def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     """How much of a step may be taken so that no encounter is leapt over, and room for a list.
 
-    NaN where there are too many pairs to look at.
+    NaN where there are too many pairs to look at; negative where a pair crosses a pole.
     """
-    (radii, far, bodies, shell), n, m = encounters, system.order.size, system.frame.shape[1]
+    (radii, far, bodies, shell, poles), n, m = encounters, system.order.size, system.frame.shape[1]
     size, share, law = n * m, 1.0, system.law
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
@@ -131,6 +135,9 @@ def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
         if count < 0:
             return np.nan, scratch
     first, second = first[:count], second[:count]
+    ends, ways = (q0, p0, u0, q1, p1, u1), farthest_ways(h, q0, p0, u0, q1, p1, u1, common)
+    if poles.size and crossing_listed(h, ends, (steepest(common[1]), ways[0] + ways[1]), poles, first, second):
+        return -0.5, scratch
     return share_of_listed(h, q0, p0, u0, q1, p1, u1, common[0], between, radii, far, first, second, share), scratch
 
 
@@ -140,6 +147,8 @@ def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     if ledger[0] != t:
         ledger[0], ledger[1] = t, energy_of(t, y, system, pairs)
     first, last = ledger[1], energy_of(at, reached, system, pairs)
+    if np.isfinite(first) and not np.isfinite(last):  # the step ends where the potential is infinite
+        return -0.5, halved
     residual, largest = abs(last - first - (reached[-1] - y[-1])), max(ledger[2], abs(first), abs(last))
     worst = 0.0
     for k in range(halved + 1 - HALVINGS):
@@ -237,7 +246,7 @@ def advance(system, around, method, kept, stops, due, most):
     )  # fmt: skip
     fixed, end, exact = exponent == 0.0, rows[stages], (method.a, method.c, rows, stages)
     radii, bodies = around.radii, around.bodies
-    encounters = (np.empty_like(radii), around.far, bodies, around.shell)
+    encounters = (np.empty_like(radii), around.far, bodies, around.shell, around.poles)
     for i in range(n):
         put(radii[np.int64(order[i])], encounters[0][i])
     kept = np.int64(0)
@@ -291,8 +300,11 @@ def advance(system, around, method, kept, stops, due, most):
                 break
             if share == 1.0 and balance[0] > 0.0 and ledger[3] < PATIENCE:
                 share, halved = _balanced(t, at, now, reached, balance, ledger, tried, halved, system, pairs)
+            singular, share = share < 0.0, abs(share)
             least = 0.0 if fixed else ROUNDINGS * _spacing(max(abs(t), abs(at)))
             stands = share == 1.0 or (t + share * h == t if fixed else share * h <= least)
+            if stands and singular:
+                status = SINGULAR
             if not stands:
                 h, rejected, redone = h * (max(share, 1.0 / GROWTH) if fixed else share), False, redone + 1
         if status != RUNNING:
