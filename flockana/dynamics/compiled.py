@@ -88,7 +88,7 @@ class Engine:
     def _system(self) -> tuple[System, Around, Method]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
         frame, (n, m), met = self.frame, self.frame.shape, self.encounters
-        view = (frame.t0, frame.origin[: n * m].copy(), frame.drift[: n * m].copy())
+        view = (frame.t0, frame.origin[:m].copy(), frame.drift[:m].copy())
         own, reach = np.arange(n, dtype=np.uint64), (self.form.reach, SKIN * self.form.reach)
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         numbers = self.form.numbers
