@@ -19,13 +19,14 @@ test-all: .venv/.dev  ## the whole test suite, with what kills processes, waits,
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test
 	$(BIN)/python -m pytest tests/adversarial --attack=$(or $(ATTACK),2000) -n 2
 
-check: .venv/.dev  ## format, lint, types, import direction, names in compiled code, the coverage page
+check: .venv/.dev  ## format, lint, types, import direction, names in compiled code, coverage and errata
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python tools/import_lint.py
 	$(BIN)/python tools/rebinding_lint.py
 	$(BIN)/python -m tools.coverage_page --check
+	$(BIN)/python -m tools.errata_page --check
 
 bench: .venv/.dev  ## measure everything, write report/performance; OPTIONS="--quick" or "--out docs"
 	$(BIN)/python -m benchmarks $(OPTIONS)
@@ -40,8 +41,9 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb, unle
 	$(BIN)/flockana course course/student
 	$(BIN)/flockana course course/solutions --solutions
 
-coverage: .venv/.dev  ## write docs/coverage.md: what holds each item of each source
+coverage: .venv/.dev  ## write docs/coverage.md, docs/errata.md and the errata of README.md from their tables
 	$(BIN)/python -m tools.coverage_page
+	$(BIN)/python -m tools.errata_page
 
 docs: .venv/.docs  ## build the site, site/html/index.html; OPTIONS="--draft" executes nothing, "--external" checks outer links
 	$(BIN)/python -m tools.site $(OPTIONS)

@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.garbage import garbage_seldom_sought
+from flockana.base.garbage import relaxed_gc
 
 try:
     import fcntl
@@ -244,7 +244,7 @@ def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..
 @contextmanager
 def compiling() -> Iterator[None]:
     """Compile alone: one thread of one process of this user, for others to load what it made."""
-    with _ONE, garbage_seldom_sought():
+    with _ONE, relaxed_gc():
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         with nullcontext() if folder is None or fcntl is None else (folder / "lock").open("w") as file:
             while file is not None and time.monotonic() < until:  # a process that was stopped keeps nobody for ever

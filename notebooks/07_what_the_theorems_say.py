@@ -28,7 +28,7 @@ import numpy as np
 import flockana as fl
 from flockana import lattice, plots
 from flockana.course import grade
-from flockana.equilibria.barrier import energy_floor, lattice_reach, none_from
+from flockana.equilibria.barrier import energy_floor, lattice_reach, least_infeasible_size
 
 alpha = fl.AlphaInteraction()
 sizes = np.arange(2, 31)
@@ -40,7 +40,8 @@ ax.plot(sizes, floor, "s--", label="proved floor of V, any state")
 ax.axhline(alpha.c_star, color="black", linestyle=":", label="c*")
 ax.set(xlabel="n, agents", ylabel="energy", ylim=(0, 150))
 ax.legend()
-print(f"lattices stay below c* up to n = {lattice_reach(alpha)}, and from n = {none_from(alpha)} on no state does")
+largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
+print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
 # The floor is a theorem of its own. A pair that lowers $V$ below $\psi_\alpha(r_\alpha)$ is between 6.568 and 8.4
@@ -85,11 +86,15 @@ _ = ax.set(xlabel="t (time)", ylabel="x (length)")
 # paths, and bounds what it cannot see.
 #
 # ## All errata at once
+#
+# What is printed, and what is right. `E1` to `E16` are of lecture slides and student projects on the paper; of none is
+# it shown that the paper has it. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
+# *vacuous* (true of next to nothing) or, after all, *confirmed*.
 
 # %%
-for name in fl.theorems():
-    if name.startswith("E"):
-        print(f"{name:>4}  {fl.theorem(name).title}")
+for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
+    print(f"\n{sort}")
+    print(*(item for item in fl.errata() if item.sort == sort and item.id.startswith("E")), sep="\n")
 
 # %% [markdown]
 # ## Summary
@@ -108,7 +113,7 @@ for name in fl.theorems():
 n_none = ...
 
 # %% tags=["solution"]
-n_none = none_from(fl.AlphaInteraction(a=1.0, b=1.0))
+n_none = least_infeasible_size(fl.AlphaInteraction(a=1.0, b=1.0))
 
 # %% tags=["check"]
 grade(n_none, 23, hint="how do V and c* change when a = b does?")

@@ -10,7 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from flockana.base.files import replacing
+from flockana.base.files import atomic_write
 from proofs.run import Outcome
 
 SCHEMA = 1
@@ -87,5 +87,5 @@ def write_index(outcomes: Iterable[Outcome], folder: Path) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    with replacing(path, remedy="choose another folder") as partial:
+    with atomic_write(path, remedy="choose another folder") as partial:
         partial.write_text(text, encoding="utf-8")

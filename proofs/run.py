@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from flockana.base.interrupts import interrupts_held, interrupts_hidden
+from flockana.base.interrupts import block_sigint, defer_sigint
 from proofs.proof import Proof, Step, load
 
 START_LIMIT = 300.0  # seconds to import a proof in; only then its own limit begins
@@ -86,7 +86,7 @@ def check(
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
-                with interrupts_held(), interrupts_hidden():  # no child gets it, and none is missing from the list
+                with defer_sigint(), block_sigint():  # no child gets it, and none is missing from the list
                     running.append(_Run(waiting.pop(0), package, time_limit))
             watch(tuple(run.outcome.id for run in running))
             wait([run.pipe for run in running], max(0.0, min(run.deadline for run in running) - time.monotonic()))
@@ -94,7 +94,7 @@ def check(
                 running.remove(run)
                 yield run.outcome
     finally:
-        with interrupts_held():
+        with defer_sigint():
             for run in running:
                 run.end()
 

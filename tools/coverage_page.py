@@ -31,13 +31,13 @@ def page(sources: tuple[Source, ...]) -> str:
     """The page as Markdown."""
     parts = [_OPENING, _counts(sources), "## In part", _in_part(sources)]
     for source in sources:
-        parts += [f"## {source.title}", _table(_HEADER, [_cells(row) for row in source.rows])]
+        parts += [f"## {source.title}", markdown_table(_HEADER, [_cells(row) for row in source.rows])]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
 def _counts(sources: tuple[Source, ...]) -> str:
     rows = [(source.title, *(str(number) for number in (len(source.rows), *_numbers(source)))) for source in sources]
-    return _table(("source", "items", "held", "in part", "prose"), rows)
+    return markdown_table(("source", "items", "held", "in part", "prose"), rows)
 
 
 def _numbers(source: Source) -> tuple[int, int, int]:
@@ -46,22 +46,22 @@ def _numbers(source: Source) -> tuple[int, int, int]:
 
 def _in_part(sources: tuple[Source, ...]) -> str:
     rows = [
-        (source.title, _plain(row.place), _plain(row.what), _plain(row.remark))
+        (source.title, plain(row.place), plain(row.what), plain(row.remark))
         for source in sources
         for row in source.rows
         if row.standing == "weaker"
     ]
-    return _table(("source", "place", "what stands there", "why"), rows) if rows else "Nothing."
+    return markdown_table(("source", "place", "what stands there", "why"), rows) if rows else "Nothing."
 
 
 def _cells(row: Row) -> tuple[str, ...]:
     names = "; ".join(_named(kind, list(some)) for kind, some in groupby(row.held_by, key=lambda one: one.kind))
     standing = {"held": "", "weaker": "*in part*", "prose": "*prose*"}[row.standing]
     return (
-        _plain(row.place),
-        _plain(row.what),
+        plain(row.place),
+        plain(row.what),
         ": ".join(text for text in (standing, names) if text),
-        _plain(row.remark),
+        plain(row.remark),
     )
 
 
@@ -70,14 +70,15 @@ def _named(kind: str, references: list[Reference]) -> str:
     return f"{kind} {links}"
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text that Markdown leaves as it is."""
     for mark in ("\\", "*", "_", "<", "`"):
         text = text.replace(mark, f"\\{mark}")
     return text
 
 
-def _table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def markdown_table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """Return a table as Markdown."""
     lines = [header, ("---",) * len(header), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 

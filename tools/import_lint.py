@@ -23,6 +23,7 @@ STAGES: tuple[tuple[str, ...], ...] = (
     ("lattice",),
     ("laws",),
     ("dynamics",),
+    ("recorded",),
     ("lammps",),
     ("equilibria",),
     ("stability",),

@@ -1,3 +1,3 @@
-"""What every room stands on: errors, checks of arguments, files, units, references."""
+"""Foundations used by every package: errors, argument checks, files, units, references."""
 
 from flockana.base import errors as errors

@@ -1,4 +1,4 @@
-"""What a count of successes says of a probability: the exact interval of Clopper and Pearson."""
+"""Exact confidence intervals of a probability from a count of successes (Clopper and Pearson)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, real_array
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 
 _MOST = 2.0**53  # up to which every whole number is a float
 
@@ -21,7 +21,7 @@ def ensure_level(level: Any) -> float:
 
 
 def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
-    """Two-sided interval for a probability: each end is the one at which the count becomes a tail of (1 − level)/2.
+    """Return the exact two-sided confidence interval of a probability from a count of successes.
 
     It covers the true share with at least the stated probability for every n, unlike the interval of the normal
     approximation, which collapses to a point where all runs agree. Source: Clopper and Pearson (1934).
@@ -56,10 +56,10 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     try:
         k, n = np.broadcast_arrays(real_array(successes), real_array(trials))
     except (TypeError, ValueError, OverflowError):
-        both = f"successes = {told(successes)}, trials = {told(trials)}"
+        both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
         raise ArgumentError(f"{both}: expected counts") from None
     if not ((k >= 0.0) & (k <= n) & (n <= _MOST) & (k == np.floor(k)) & (n == np.floor(n))).all():
-        both = f"successes = {told(successes)}, trials = {told(trials)}"
+        both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
         raise ArgumentError(f"{both}: expected whole numbers 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))
     # the arguments are kept positive where the end is known without them

@@ -1,4 +1,4 @@
-"""Checks at the boundary: every public entry point validates its arguments here, before any work starts."""
+"""Validation of arguments at the public entry points, before any work starts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, told
+from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, format_value
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def ensure_finite_scalar(name: str, value: Any) -> float:
     try:
         number = float(_real(value))
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {told(value)}: expected one real number") from None
+        raise ArgumentError(f"{name} = {format_value(value)}: expected one real number") from None
     if not np.isfinite(number):
         raise ArgumentError(f"{name} = {number}: expected a finite number")
     return number
@@ -49,14 +49,14 @@ def ensure_nonnegative(name: str, value: Any) -> float:
 
 
 def _real(value: Any) -> Any:
-    """The value itself, unless it only looks like a number: a text, a truth value, a time, a masked entry."""
+    """Return the value; raise on text, booleans, dates and masked entries, which numpy would convert."""
     if isinstance(value, str | bytes | bool | np.bool_ | np.datetime64 | np.timedelta64) or np.ma.is_masked(value):
-        raise TypeError(f"{told(value)} is no number")
+        raise TypeError(f"{format_value(value)} is no number")
     return value
 
 
 def real_array(value: Any) -> FloatArray:
-    """A contiguous float64 array of real numbers; raises TypeError or ValueError on what merely converts to them.
+    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert.
 
     Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
 
@@ -129,7 +129,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     try:
         vector = real_array(value)
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {told(value)}: expected a vector of numbers") from None
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a vector of numbers") from None
     if vector.ndim != 1 or vector.size not in (1, 2, 3):
         raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
     if m is not None and vector.size != m:
@@ -140,7 +140,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
 
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
-    """Return a finite float64 series, of so many numbers if `length` is given.
+    """Return a finite float64 series, of the given length if there is one.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
     try:
         series = real_array(value)
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {told(value)}: expected a series of numbers") from None
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a series of numbers") from None
     if series.ndim != 1 or (length is not None and len(series) != length):
         wanted = "a series" if length is None else f"a series of {length} numbers"
         raise ArgumentError(f"{name} has shape {series.shape}: expected {wanted}")
@@ -167,7 +167,7 @@ def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int3
     >>> ensure_links([[0, 1]], 2).tolist()
     [[0, 1]]
     """
-    ensure_fits(f"what is told of n = {told(n)} agents,", (3, n), "ask for fewer agents")
+    ensure_fits(f"the data of n = {format_value(n)} agents,", (3, n), "ask for fewer agents")
     array = np.asarray(links)
     if array.size == 0:
         return np.empty((0, 2), dtype=np.int32)
@@ -192,8 +192,8 @@ def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
         return  # a system that does not tell; the allocation itself may fail
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if 2 * size > memory:
-        much = f"{size:.3g}" if size < 10**DIGITS else told(size)
-        axes = ", ".join(map(told, shape)) + ("," if len(shape) == 1 else "")
+        much = f"{size:.3g}" if size < 10**DIGITS else format_value(size)
+        axes = ", ".join(map(format_value, shape)) + ("," if len(shape) == 1 else "")
         raise ArgumentError(
             f"{name} of shape ({axes}) would take {much} bytes, more than half of this machine's {memory:.3g}: {remedy}"
         )
@@ -210,7 +210,7 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
     try:
         t0, t1 = (float(_real(t)) for t in t_span)
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"t_span = {told(t_span)}: expected two numbers (t0, t1)") from None
+        raise ArgumentError(f"t_span = {format_value(t_span)}: expected two numbers (t0, t1)") from None
     if not (np.isfinite(t0) and np.isfinite(t1) and t0 < t1):
         raise ArgumentError(f"t_span = ({t0:g}, {t1:g}): expected finite t0 < t1")
     return t0, t1
@@ -225,7 +225,7 @@ def ensure_count(name: str, value: Any) -> int:
     7
     """
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise ArgumentError(f"{name} = {told(value)}: expected a whole number >= 1")
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= 1")
     return int(value)
 
 
@@ -238,7 +238,7 @@ def ensure_seed(seed: Any) -> int:
     7
     """
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise ArgumentError(f"seed = {told(seed)}: expected a whole number >= 0")
+        raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number >= 0")
     return int(seed)
 
 
@@ -251,12 +251,12 @@ def ensure_flag(name: str, value: Any) -> bool:
     True
     """
     if not isinstance(value, bool | np.bool_):
-        raise ArgumentError(f"{name} = {told(value)}: expected True or False")
+        raise ArgumentError(f"{name} = {format_value(value)}: expected True or False")
     return bool(value)
 
 
 def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
-    """Return `name` if it is one of those known.
+    """Return `name` if it is one of the known names.
 
     Examples
     --------
@@ -269,7 +269,7 @@ def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
 
 
 def ensure_choice(name: str, value: Any, choices: Collection[str]) -> str:
-    """Return `value` if it is one of a few texts.
+    """Return `value` if it is one of the choices.
 
     Examples
     --------
@@ -277,7 +277,7 @@ def ensure_choice(name: str, value: Any, choices: Collection[str]) -> str:
     'headings'
     """
     if not isinstance(value, str) or value not in choices:
-        raise ArgumentError(f"{name} = {told(value)}: expected one of {', '.join(choices)}")
+        raise ArgumentError(f"{name} = {format_value(value)}: expected one of {', '.join(choices)}")
     return value
 
 
@@ -290,12 +290,12 @@ def ensure_dimension(m: int) -> int:
     2
     """
     if isinstance(m, bool) or not isinstance(m, int | float | np.number) or m not in (1, 2, 3):
-        raise ArgumentError(f"m = {told(m)}: expected a dimension of 1, 2 or 3")
+        raise ArgumentError(f"m = {format_value(m)}: expected a dimension of 1, 2 or 3")
     return int(m)
 
 
-def ensure_given(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
-    """Raise unless what a law gives is an array of real numbers, of the flock's shape."""
+def ensure_returned_array(what: str, value: Any, shape: tuple[int, ...], at: str) -> None:
+    """Raise unless the array that a law returned is real and of the flock's shape."""
     if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiu" or value.shape != shape:
         kind = f"{value.dtype} of shape {value.shape}" if isinstance(value, np.ndarray) else type(value).__name__
         raise ArgumentError(f"{what} as {kind} {at}: expected an array of real numbers of shape {shape}")

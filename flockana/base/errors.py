@@ -1,4 +1,4 @@
-"""The errors that flockana raises on purpose.
+"""Exceptions that flockana raises on purpose, and how messages write values.
 
 Every message names the value it got, what was expected, and the remedy. Anything else that escapes is a bug.
 """
@@ -13,8 +13,8 @@ _FEW = 16  # names that are all told
 DIGITS = 40  # of a whole number beyond which it is told by its size: Python itself refuses to write some
 
 
-def told(value: Any) -> str:
-    """A value as a message writes it: on one line, and a whole number of very many digits by its size.
+def format_value(value: Any) -> str:
+    """Return a value as messages write it: on one line, very long whole numbers by their size.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def told(value: Any) -> str:
 
     Examples
     --------
-    >>> told("x"), told([1, 2]), told(-(10**400))
+    >>> format_value("x"), format_value([1, 2]), format_value(-(10**400))
     ("'x'", '[1, 2]', 'about -1e+400')
     """
     if isinstance(value, int) and abs(value) >= 10**DIGITS:
@@ -38,22 +38,20 @@ def told(value: Any) -> str:
 
 
 class FlockanaError(Exception):
-    """Base class of every error that flockana raises on purpose."""
+    """Base class of flockana's exceptions."""
 
 
 class ArgumentError(FlockanaError, ValueError):
-    """An argument has a wrong value, shape or type."""
+    """Exception for an argument of wrong value, shape or type."""
 
 
 class UnknownNameError(ArgumentError):
-    """A theorem, scenario, method or other name that does not exist.
+    """Exception for the name of a theorem, scenario, method or the like that does not exist.
 
     Parameters
     ----------
     kind : str
         What was looked for, such as ``"scenario"``.
-    name : str
-        The name that was given.
     known : iterable of str
         The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are told.
 
@@ -69,14 +67,14 @@ class UnknownNameError(ArgumentError):
 
         names = sorted(str(k) for k in known) if isinstance(known, Iterable) else [str(known)]
         folded = {known_name.casefold(): known_name for known_name in names}
-        text = name if isinstance(name, str) else told(name)
+        text = name if isinstance(name, str) else format_value(name)
         wanted = text.casefold()
         close = [folded[one] for one in get_close_matches(wanted, folded, n=1)]
         hint = f"did you mean {close[0]!r}? " if close else ""
         nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
         many = len(names) > _FEW
         rest = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
-        super().__init__(f"unknown {kind} {told(name)}; {hint}{rest}")
+        super().__init__(f"unknown {kind} {format_value(name)}; {hint}{rest}")
         self._arguments = (str(kind), text, names)
 
     def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:
@@ -84,8 +82,8 @@ class UnknownNameError(ArgumentError):
 
 
 class FileError(FlockanaError, OSError):
-    """A file that cannot be read, is not one of ours, is damaged, or cannot be written."""
+    """Exception for a file that cannot be read or written, is damaged, or is of another program."""
 
 
 class SolverError(FlockanaError, RuntimeError):
-    """A numerical method gave up; the message says where and why."""
+    """Exception for a numerical method that did not converge; the message says where and why."""

@@ -1,4 +1,4 @@
-"""Facts about a function over its whole range: proved, disproved by a witness, or assumed."""
+"""Facts about a function over its whole range: proved, disproved by a counterexample, or assumed."""
 
 from __future__ import annotations
 
@@ -14,17 +14,6 @@ _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 class Fact:
     """One property of a function.
 
-    Parameters
-    ----------
-    status : {"met", "unmet", "assumed"}
-        Proved, false on the witness, or neither.
-    detail : str
-        The proof, the fault or what is left open, in words.
-    witness : tuple of float, optional
-        Ends of an interval of distances on which the property fails, or is open.
-    width : float
-        Total length of the distances that are left open; 0 unless assumed.
-
     Examples
     --------
     >>> Fact("unmet", "the force jumps at s = 1", (1.0, 1.0)).status
@@ -38,14 +27,7 @@ class Fact:
 
 
 def together(facts: Iterable[Fact], proof: str = "") -> Fact:
-    """All of several facts: unmet if one is, else assumed if one is, else met.
-
-    Parameters
-    ----------
-    facts : iterable of Fact
-        The parts.
-    proof : str
-        Detail if all are met.
+    """Return the conjunction of facts: unmet if one is, else assumed if one is, else met.
 
     Examples
     --------
@@ -64,7 +46,7 @@ def together(facts: Iterable[Fact], proof: str = "") -> Fact:
 
 @dataclass(frozen=True)
 class PairFacts:
-    """What is known about a pair law over all distances up to its range.
+    """Facts about a pair law over all distances up to its range.
 
     Attributes
     ----------
@@ -91,5 +73,5 @@ class PairFacts:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What the pair law certainly lacks of `smooth`, each in words."""
+        """Violations of smoothness that are certain, each in words."""
         return tuple(self.smooth.detail.split("; ")) if self.smooth.status == "unmet" else ()

@@ -1,4 +1,4 @@
-"""Files that are whole or not there; and paths that are none, told before anything is read or written."""
+"""Atomic file writes and path checks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MOST = 2**28  # bytes of a text that is read at once
 
 
 def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose another name") -> Path:
-    """Return a path, or raise if it is none, or holds what no file's name can hold.
+    """Return a path, or raise if the value is no path or holds characters that no file name can hold.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 
 
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
-    """Return the file that a path leads to, links followed; raise if something is there that no file may replace.
+    """Return the file behind a path, links followed; raise if it is something that must not be replaced.
 
     A device or a pipe is left alone, and so is a link: what it points to is written.
 
@@ -54,7 +54,7 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
 
 
 def _in_the_way(target: Path) -> str:
-    """What is there that is no file, in words; nothing if a file may be written."""
+    """Return a description of a path's target that is not a regular file; empty if a file may be written."""
     if target.is_symlink():
         return "its links lead in a circle"
     if target.is_dir():
@@ -63,15 +63,15 @@ def _in_the_way(target: Path) -> str:
 
 
 @contextmanager
-def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
-    """Give a file to write, which takes the other's place when it is whole; after an error or Ctrl-C it is removed.
+def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
+    """Open a temporary file that replaces the target when complete, and is removed after an error.
 
     Examples
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     target = Path(folder) / "it.txt"
-    ...     with replacing(target) as partial:
+    ...     with atomic_write(target) as partial:
     ...         _ = partial.write_text("whole")
     ...     target.read_text(), partial.exists()
     ('whole', False)
@@ -91,31 +91,31 @@ def replacing(path: str | os.PathLike[str], *, remedy: str = "choose another fil
             partial.unlink(missing_ok=True)
 
 
-def write_whole(
+def write_atomic(
     path: str | os.PathLike[str], content: str | bytes | memoryview, *, remedy: str = "choose another file"
 ) -> Path:
-    """Write a file, text as UTF-8, that takes the place of another when it is whole.
+    """Write a file atomically, text as UTF-8.
 
     Examples
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_whole(Path(folder) / "it.txt", "whole").read_text()
+    ...     write_atomic(Path(folder) / "it.txt", "whole").read_text()
     'whole'
     """
-    with replacing(path, remedy=remedy) as partial:
+    with atomic_write(path, remedy=remedy) as partial:
         partial.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     return Path(path)
 
 
-def read_whole(path: Any) -> str:
-    """The text of a regular file in UTF-8; raise on anything else, such as a device that never ends, or a huge file.
+def read_text_file(path: Any) -> str:
+    """Return the UTF-8 text of a regular file; raise on devices and on huge files.
 
     What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
 
     Examples
     --------
-    >>> read_whole(os.devnull)
+    >>> read_text_file(os.devnull)
     Traceback (most recent call last):
     flockana.base.errors.FileError: cannot read ...: it is no regular file; expected a file
     """

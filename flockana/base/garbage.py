@@ -1,4 +1,4 @@
-"""How often Python looks for garbage."""
+"""Frequency of Python's garbage collection."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ and again, as by default after hundreds, takes a tenth of a short command."""
 
 
 @contextmanager
-def garbage_seldom_sought() -> Iterator[None]:
-    """Look for garbage after a hundred thousand new objects, not after hundreds.
+def relaxed_gc() -> Iterator[None]:
+    """Collect garbage after a hundred thousand new objects instead of after hundreds.
 
     Examples
     --------
     >>> before = gc.get_threshold()
-    >>> with garbage_seldom_sought():
+    >>> with relaxed_gc():
     ...     gc.get_threshold()[0]
     100000
     >>> gc.get_threshold() == before
@@ -32,8 +32,8 @@ def garbage_seldom_sought() -> Iterator[None]:
         gc.set_threshold(*before)
 
 
-def look_no_more() -> None:
-    """Take all that there is for no garbage, in a process that is about to end.
+def freeze_gc() -> None:
+    """Exclude all present objects from garbage collection, in a process that is about to end.
 
     Else Python would look through everything that was imported twice more: a tenth of a short command.
     """

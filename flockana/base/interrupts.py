@@ -1,4 +1,4 @@
-"""Ctrl-C: kept for later while something is under way that it must not tear, and recognised in any shape."""
+"""Ctrl-C: deferred during critical work, and restored where libraries convert it to other errors."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from multiprocessing import resource_tracker
 
 
 @contextmanager
-def interrupts_held() -> Iterator[list[int]]:
-    """Keep Ctrl-C for later; gives a list that is empty as long as it did not come.
+def defer_sigint() -> Iterator[list[int]]:
+    """Defer Ctrl-C to the end of the block; yields a list that fills when it arrives.
 
     Examples
     --------
-    >>> with interrupts_held() as came:
+    >>> with defer_sigint() as came:
     ...     print("whole", came)
     whole []
     """
@@ -36,12 +36,12 @@ def interrupts_held() -> Iterator[list[int]]:
 
 
 @contextmanager
-def interrupts_hidden() -> Iterator[None]:
-    """Processes that this thread starts meanwhile never get Ctrl-C, not even before they can ignore it.
+def block_sigint() -> Iterator[None]:
+    """Block Ctrl-C in processes that this thread starts inside the block.
 
     Examples
     --------
-    >>> with interrupts_hidden():
+    >>> with block_sigint():
     ...     pass
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
@@ -56,13 +56,13 @@ def interrupts_hidden() -> Iterator[None]:
 
 
 @contextmanager
-def interrupts_recognised() -> Iterator[None]:
-    """Make Ctrl-C again what others made of it: a kernel's call fails where it comes, a lock is found in disorder.
+def restore_interrupts() -> Iterator[None]:
+    """Raise KeyboardInterrupt again where compiled code or a lock turned it into another error.
 
     Examples
     --------
     >>> try:
-    ...     with interrupts_recognised():
+    ...     with restore_interrupts():
     ...         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
     ... except KeyboardInterrupt:
     ...     print("interrupted")

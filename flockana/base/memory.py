@@ -1,4 +1,4 @@
-"""Results that are computed once for an object and kept as long as it lives."""
+"""Cache of results on the object that they were computed from."""
 
 from __future__ import annotations
 
@@ -9,23 +9,21 @@ from typing import Any, TypeVar
 _Value = TypeVar("_Value")
 
 
-class Remembering:
-    """An object that keeps, beside its fields, what others computed from it."""
+class ResultCache:
+    """Base class of objects that cache results computed from them."""
 
-    def remembered(self, name: str, compute: Callable[[], _Value]) -> _Value:
-        """What was computed from this object before, or is now.
+    def cached(self, name: str, compute: Callable[[], _Value]) -> _Value:
+        """Return the result of that name, computed at the first call.
 
         Parameters
         ----------
-        name : str
-            What it is.
         compute : callable
             Gives it.
 
         Examples
         --------
-        >>> kept = Remembering()
-        >>> kept.remembered("answer", lambda: 42), kept.remembered("answer", lambda: 0)
+        >>> kept = ResultCache()
+        >>> kept.cached("answer", lambda: 42), kept.cached("answer", lambda: 0)
         (42, 42)
         """
         if name not in self._memory:

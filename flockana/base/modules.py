@@ -1,4 +1,4 @@
-"""Walk packages: what is found by the file that it is in needs no table of names."""
+"""Discovery of a package's modules by their names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from types import ModuleType
 
 
 def modules(package: str, *, ending: str = "") -> Iterator[ModuleType]:
-    """Import every module of a package, and of the packages in it, whose name has that ending; in order of names.
+    """Import every module of a package and its subpackages whose name has the ending, in order of names.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Whether what a class says of its methods still holds of a subclass that changed them."""
+"""Consistency of overridden methods with class attributes that describe them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 from flockana.base.errors import ArgumentError
 
 
-def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
-    """Whether no subclass of the class that defines an attribute, as far as `kind`, defines any of the others anew.
+def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
+    """Return whether no subclass overrides `others` without overriding `name` too.
 
     Examples
     --------
@@ -20,7 +20,7 @@ def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
     ...     area = 4.0
     >>> class Larger(Square):
     ...     side = 3.0
-    >>> speaks_for(Square, "area", ["side"]), speaks_for(Larger, "area", ["side"])
+    >>> overrides_consistently(Square, "area", ["side"]), overrides_consistently(Larger, "area", ["side"])
     (True, False)
     """
     ways = list(kind.__mro__)
@@ -29,7 +29,7 @@ def speaks_for(kind: type, name: str, others: Iterable[str]) -> bool:
 
 
 def ensure_consistent(item: Any) -> None:
-    """Raise if a law or what it is made of was given a method anew that the integrators do not ask.
+    """Raise if a law overrides a public method whose counterpart for integrators it keeps.
 
     A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
     that changes the former alone would be integrated without the change. So would a method set on an instance.

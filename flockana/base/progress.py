@@ -1,4 +1,4 @@
-"""A progress bar on the terminal's error stream, or in a notebook; elsewhere a line now and then."""
+"""Progress bars on a terminal or in a notebook; elsewhere a line every minute."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BASIS = 0.1  # of the total: what is done from which on the time left is told
 def progress_bar(
     total: float, *, enabled: bool = True, counted: bool = True, steady: bool = False
 ) -> Iterator[Callable[[float, str], None]]:
-    """Show a bar; gives a function to call with how much of the total is done, and with a text beside the bar.
+    """Show a progress bar; yields a function to report the amount done, and a text to show beside it.
 
     Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute.
 
@@ -46,7 +46,7 @@ def progress_bar(
 
 
 def _lines(total: float) -> Callable[[float, str], None]:
-    """Tells on the error stream how far it is, each time that so many seconds have passed."""
+    """Return a function that prints progress to stderr at fixed intervals."""
     started = told = time.monotonic()
 
     def advance(done: float, text: str) -> None:
@@ -66,7 +66,7 @@ def _lines(total: float) -> Callable[[float, str], None]:
 
 
 def _console() -> Any:
-    """The terminal or notebook to show a bar in; None elsewhere."""
+    """Return the terminal or notebook to show a bar in; None elsewhere."""
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -74,7 +74,7 @@ def _console() -> Any:
 
 
 def _bar(console: Any, counted: bool, steady: bool) -> Any:
-    """A bar of rich with these columns, which vanishes at the end."""
+    """Return a transient bar of rich with these columns."""
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,

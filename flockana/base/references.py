@@ -1,4 +1,4 @@
-"""The BibTeX of what an object rests on."""
+"""Bibliography: BibTeX entries of the sources of laws and theorems."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flockana.base.errors import ArgumentError
 
 @cache
 def bibliography() -> Mapping[str, str]:
-    """BibTeX by key: of every ``KEY.bib`` in the package, each beside the law or theorem that first rests on it.
+    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package.
 
     Examples
     --------
@@ -24,7 +24,7 @@ def bibliography() -> Mapping[str, str]:
 
 
 def cite(item: Any) -> str:
-    """Return the BibTeX entries that an object, or a key of the bibliography, rests on.
+    """Return the BibTeX entries of the sources of an object, or of a key of the bibliography.
 
     A law or theorem of your own brings its entries itself: a reference that begins with @ is BibTeX as it stands.
 

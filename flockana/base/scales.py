@@ -1,4 +1,4 @@
-"""The natural length and time of a law: what its thresholds are multiples of."""
+"""Natural length and time of a law, in which thresholds are measured."""
 
 from __future__ import annotations
 
@@ -7,14 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Scales:
-    """A natural length and time of a law: thresholds are multiples of them, so that no verdict depends on units.
-
-    Parameters
-    ----------
-    length : float
-        What the law holds neighbours at, or the like.
-    time : float
-        In which the law's strongest usual force moves an agent by that length.
+    """Natural length and time of a law; thresholds are multiples of them, so no verdict depends on units.
 
     Examples
     --------
@@ -27,15 +20,15 @@ class Scales:
 
     @property
     def speed(self) -> float:
-        """length/time."""
+        """Unit of speed, length/time."""
         return self.length / self.time
 
     @property
     def force(self) -> float:
-        """length/time²: forces are accelerations here, for all masses are 1."""
+        """Unit of force, length/time²; forces are accelerations, as all masses are 1."""
         return self.length / self.time**2
 
     @property
     def energy(self) -> float:
-        """speed²: per agent, for all masses are 1."""
+        """Unit of energy per agent, speed²."""
         return self.speed**2

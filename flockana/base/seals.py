@@ -1,4 +1,4 @@
-"""Seals: digests by which evidence is known to be what a computation returned, and a file to be what was saved.
+"""Seals: digests that detect changes to computed evidence and saved files.
 
 An object that is evidence (a run, a tube, a basin, an equilibrium, a counterexample) carries a digest of each of its
 fields, set by the function that computes it (`sealed`). Whatever rests on such an object asks for them first
@@ -32,7 +32,7 @@ _Evidence = TypeVar("_Evidence")
 
 
 def digest(data: Any) -> str:
-    """SHA-256 of plain data, in which the order of names does not matter.
+    """Return the SHA-256 of plain data, independent of the order of keys.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def digest(data: Any) -> str:
 
 
 def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data with their digest, as a file holds them.
+    """Return plain data with its digest added, as files hold it.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = None) -> dict[str, Any]:
-    """The data of a file without their digest; raise if it is missing or another, or if a key is not among those known.
+    """Return a file's data without its digest; raise if the digest is missing or wrong, or a key is unknown.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = No
 
 
 def checksum(value: Any) -> str:
-    """SHA-256 of any value: numbers to the bit, parameter objects and results field by field, functions by their code.
+    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their code.
 
     Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
     field that takes no part in comparisons counts for nothing.
@@ -90,7 +90,7 @@ def checksum(value: Any) -> str:
 
 
 def sealed(evidence: _Evidence) -> _Evidence:
-    """The same object, a frozen dataclass, with a seal: for the functions that compute it or read it from a file.
+    """Return a frozen dataclass with a seal added; for functions that compute or read it.
 
     Examples
     --------
@@ -107,23 +107,23 @@ def sealed(evidence: _Evidence) -> _Evidence:
 
 
 def seal_of(evidence: Any) -> dict[str, str]:
-    """The checksum of every field of a dataclass."""
+    """Return the checksum of all fields of a dataclass."""
     return {field.name: checksum(getattr(evidence, field.name)) for field in fields(evidence)}
 
 
 def is_sealed(evidence: Any) -> bool:
-    """Whether a dataclass carries a seal, and holds what was sealed."""
+    """Return whether a dataclass has a seal that agrees with its fields."""
     return bool(vars(evidence).get(_ATTRIBUTE) == seal_of(evidence))
 
 
 def changed(evidence: _Evidence, **changes: Any) -> _Evidence:
-    """The same dataclass with other fields, sealed anew if it was sealed: for the library's own transformations."""
+    """Return a dataclass with some fields replaced, sealed again if it was sealed before."""
     made = replace(evidence, **changes)  # type: ignore[type-var]
     return sealed(made) if is_sealed(evidence) else made
 
 
 def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
-    """Raise unless a dataclass carries the seal of what it holds; the message tells which fields were changed.
+    """Raise unless a dataclass has a valid seal; the message names the changed fields.
 
     Examples
     --------
@@ -144,7 +144,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
 
 
 def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
-    """Add a value to a hash; `within` are the objects that it is a part of."""
+    """Add a value to a hash; `within` are the objects that contain it."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):
@@ -193,7 +193,7 @@ def _feed(total: Any, value: Any, within: tuple[int, ...]) -> None:
 
 
 def _numbers(value: Any) -> npt.NDArray[Any] | None:
-    """A sequence of numbers as an array; None of anything else."""
+    """Return a sequence of numbers as an array; None for anything else."""
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):
@@ -204,7 +204,7 @@ def _numbers(value: Any) -> npt.NDArray[Any] | None:
 
 
 def _public(value: Any) -> dict[str, Any]:
-    """Attributes of another object: neither private ones nor kept results."""
+    """Return an object's attributes without private ones and cached results."""
     own = getattr(value, "__dict__", {})
     kept = {key for key in own if isinstance(getattr(type(value), key, None), cached_property)}
     return {key: item for key, item in own.items() if key[:1] != "_" and key not in kept}

@@ -1,4 +1,4 @@
-"""Frozen parameter objects to plain data and back, so that a saved run carries its law and can be re-verified.
+"""Conversion of parameter objects to JSON data and back.
 
 A class of flockana is written by its name alone, ``flockana:Algorithm1``, wherever in the package it lives. Files that
 named a module are read the same way. A user's class is named with its module, which must be imported before the file
@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.errors import ArgumentError, FileError, told
+from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.modules import modules
 
 _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # whose objects files may hold
@@ -25,7 +25,7 @@ _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # w
 
 @cache
 def parameter_classes() -> dict[str, type]:
-    """Every parameter class that a file may name, by its name.
+    """Return every parameter class that a file may name, by its name.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def to_data(value: Any) -> Any:
 
 
 def from_data(data: Any) -> Any:
-    """Rebuild what `to_data` wrote; only dataclasses of flockana, or of modules already imported, are made.
+    """Rebuild an object from `to_data`; only classes of flockana, or of imported modules, are allowed.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def from_data(data: Any) -> Any:
 
 
 def read_json(text: str) -> Any:
-    """What a JSON text says; one nested too deeply or with a key given twice raises ValueError, as one that is no JSON.
+    """Return the data of a JSON text; raise ValueError on bad JSON, duplicate keys and too deep nesting.
 
     Examples
     --------
@@ -107,23 +107,23 @@ def read_json(text: str) -> Any:
     ValueError: the key 'x' is given twice
     """
     try:
-        return json.loads(text, object_pairs_hook=_without_twins)
+        return json.loads(text, object_pairs_hook=_unique_keys)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
 
 
-def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object whose keys differ."""
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a JSON object; raise on duplicate keys."""
     data: dict[str, Any] = {}
     for key, value in pairs:
         if key in data:
-            raise ValueError(f"the key {told(key)} is given twice")
+            raise ValueError(f"the key {format_value(key)} is given twice")
         data[key] = value
     return data
 
 
 def _own_class(module: str, qualname: str) -> Any:
-    """A user's class, of a module that is imported already."""
+    """Return a user's class from a module that is already imported."""
     item: Any = sys.modules[module]
     for part in qualname.split("."):
         item = getattr(item, part)
@@ -131,7 +131,7 @@ def _own_class(module: str, qualname: str) -> Any:
 
 
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain data of a mapping with text keys.
+    """Return plain data of a mapping with text keys.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The same thing in other units of length and time: every parameter says which powers of the two it carries."""
+"""Conversion of laws, runs and scenarios to other units of length and time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _Any = TypeVar("_Any")
 
 
 def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
-    """The same law, target, obstacle, interaction, run or scenario in other units.
+    """Return a law, target, obstacle, interaction, run or scenario in other units.
 
     A length ℓ becomes ``length * ℓ``, a time t becomes ``time * t``, a speed v becomes ``length / time * v``, and so
     on: metres to millimetres is ``length=1000``. Nothing that is measured in its own scales changes.
@@ -70,7 +70,7 @@ def _rescaled(item: Any, length: float, time: float) -> Any:
 
 
 def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
-    """The arguments that make a parameter object again, in other units."""
+    """Return the constructor arguments of a parameter object in other units."""
     powers: Mapping[str, Powers] = getattr(item, "units", {})
     fields_scaled = {}
     for field in (each for each in fields(item) if each.init):
@@ -84,7 +84,7 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
 
 
 def times(value: Any, factor: float) -> Any:
-    """A number, or numbers in tuples and arrays, times a factor; None stays None.
+    """Return a number, or numbers in tuples and arrays, times a factor; None stays None.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""What no rounding can touch: enclosures in ball arithmetic (Arb) of equilibria, basins and runs."""
+"""Rigorous enclosures in ball arithmetic (Arb) of equilibria, basins and runs."""

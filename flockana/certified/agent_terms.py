@@ -1,4 +1,4 @@
-"""What acts on an agent by itself, in balls and in series (Arb): the pull to a γ-agent on a straight path."""
+"""Forces on single agents in balls and series (Arb): the pull to a γ-agent on a straight path."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ Block = list[list[Any]]
 
 
 class AgentTerm(ABC):
-    """A force on each agent that depends on time and on its own state."""
+    """Force on each agent that depends on time and on its own state."""
 
     @abstractmethod
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """The force at a position and a velocity."""
+        """Return the force at a position and a velocity."""
 
     @abstractmethod
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Its derivatives by position and velocity, two tables."""
+        """Return the derivatives of the force by position and velocity, two tables."""
 
     @abstractmethod
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """What it adds to dH/dt, beside what it takes from its own potential."""
+        """Return the term's part of dH/dt that its own potential does not balance."""
 
     def piece(self, x: Sequence[arb]) -> Piece:
-        """The piece on which it is, anywhere in a box: `Piece.OUT` where it is 0, `Piece.CORE` where it is analytic."""
+        """Return the piece of the law that holds a box: `Piece.OUT` for no force, `Piece.CORE` where analytic."""
         return Piece.CORE
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """How far beyond each place where its pieces meet, and how fast it goes away; proposals in floating point."""
+        """Return how far the state is beyond each switch, and how fast it leaves; floating-point proposals."""
         return []
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Its derivative by time at a fixed state."""
+        """Return the derivative of the force by time at a fixed state."""
         return [arb(0)] * len(x)
 
 
 @dataclass(frozen=True)
 class Pull(AgentTerm):
-    """−c1γ (x − q_r) − c2γ (v − p_r), or −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²) − c2γ (v − p_r).
+    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²).
 
     Attributes
     ----------
@@ -66,16 +66,16 @@ class Pull(AgentTerm):
     unit: arb | None = None
 
     def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
-        """x − q_r."""
+        """Return x − q_r."""
         return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
 
     def _slant(self, away: Sequence[Any], unit: arb) -> Any:
-        """1/√(1 + ‖x − q_r‖²/ℓ²)."""
+        """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
         return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """The force at a position and a velocity."""
+        """Return the force at a position and a velocity."""
         away = self._away(t, x)
         if self.unit is not None:
             slant = self._slant(away, self.unit)
@@ -84,7 +84,7 @@ class Pull(AgentTerm):
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in told]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Its derivatives by position and velocity, two tables."""
+        """Return the derivatives of the force by position and velocity, two tables."""
         m = len(x)
         drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
         if self.unit is None:
@@ -99,11 +99,11 @@ class Pull(AgentTerm):
         return pull, drag
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """−c2γ ⟨v, v − p_r⟩, of a γ-agent whose place rests."""
+        """Return −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
         speed = sum((square(w) if isinstance(w, arb) else w * w for w in v), 0 * v[0])
         return -self.damping * (speed - sum((w * p for w, p in zip(v, self.told, strict=True)), 0 * v[0]))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Minus what moves with q_r: the force depends on x − q_r."""
+        """Return the derivative of the force by time, from the motion of q_r."""
         pull = self.slopes(t, x, x, Piece.CORE)[0]
         return [-sum((a * b for a, b in zip(row, self.velocity, strict=True)), arb(0)) for row in pull]

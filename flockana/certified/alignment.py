@@ -1,4 +1,4 @@
-"""The nearest point of an orbit under rotations: when it is unique, and a rotation that nearly finds it, in balls."""
+"""Alignment of a configuration with a rotated equilibrium, in balls: uniqueness, and a near-best rotation."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from flockana.certified.intervals import ball, square
 from flockana.certified.structure import Balls, Structure, dot
 
 
-def projects(u: Structure, rest: Balls, radius: fmpq) -> bool:
-    """Whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
+def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
+    """Return whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
     if u.m == 1:
         return True
     size = dot(rest, rest)
@@ -26,7 +26,7 @@ def projects(u: Structure, rest: Balls, radius: fmpq) -> bool:
 
 
 def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
-    """A list of balls whose sum over the agents is 0."""
+    """Return a list of balls whose sum over the agents is 0."""
     rows = [[arb(x) if isinstance(x, arb) else arb(float(x)) for x in row] for row in values]
     if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
         raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium")
@@ -36,15 +36,15 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
     return [x - c for row in rows for x, c in zip(row, middle, strict=True)]
 
 
-def turned_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
-    """The equilibrium turned by a rotation, exact but for its enclosure, that nearly aligns it best."""
+def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
+    """Return the equilibrium rotated, exactly but for its enclosure, to nearly the best alignment."""
     rotation = _rotation(*(np.array([float(y) for y in z]).reshape(shape) for z in (rest, x)))
     m = shape[1]
     return [dot(row, rest[i : i + m]) for i in range(0, len(rest), m) for row in rotation]
 
 
 def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
-    """A matrix of balls around a true rotation: proposed by a singular value decomposition, normalised in balls."""
+    """Return balls around a rotation matrix, proposed by a singular value decomposition."""
     m = rest.shape[1]
     if m == 1:
         return [[arb(1)]]

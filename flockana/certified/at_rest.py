@@ -26,7 +26,7 @@ _COLLINEAR = 1e-9
 
 
 def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
-    """(the computed equilibrium next to q, centred; balls that hold the true one that is not turned against it)."""
+    """Return the computed equilibrium next to q, and balls that hold the true one of the same orientation."""
     _ensure_turnable(q)
     x = _refined(u, q)
     radius = ball(half_width(u))
@@ -44,7 +44,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
 
 
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
-    """The equations in (x, μ, ν) about a computed x̄, and their slope."""
+    """Return the equations in (x, μ, ν) about a computed x̄, and their derivative."""
     centre, size = [arb(y) for y in x], len(x)
     motions, shifts = u.turns(centre), u.shifts()
     held = motions + shifts
@@ -65,25 +65,25 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
 
 
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
-    """Whether no turn of any configuration in the box is orthogonal to all turns of the computed one."""
+    """Return whether no configuration in the box has a rotation orthogonal to all those of the computed one."""
     fixed, moving = u.turns([arb(y) for y in x]), u.turns([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
 
 
 def half_width(u: Structure) -> fmpq:
-    """Of the box."""
+    """Return the half-width of the box in which the equilibrium is unique."""
     return BOX * u.par.d
 
 
 def _ensure_turnable(q: FloatArray) -> None:
-    """Raise on a net in space that lies on one line: its orbit is a sphere, of which nothing is said here."""
+    """Raise on a net in space that lies on one line, whose orbit is a sphere."""
     sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
     if q.shape[1] == 3 and sizes[1] <= _COLLINEAR * sizes[0]:
         raise ArgumentError("the agents stand on one line in space: expected a net that does not; certify it in m = 1")
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:
-    """Newton's method from q, centred, with forces and slopes from balls; floating point otherwise."""
+    """Return Newton's method from q, centred, with forces from balls and slopes in floating point."""
     start = (q - q.mean(axis=0)).ravel()
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):

@@ -1,4 +1,4 @@
-"""Certified basins: about an orbit of equilibria of Algorithm 1 or 2, starts that provably end in it.
+"""Certified basins of equilibria of Algorithms 1 and 2: starts that provably end in the orbit.
 
 Let O be the orbit of x* under rotations, in the frame of the centre of mass, dist the distance to O over all
 coordinates, H = U + ½‖v‖². Every state with dist < ρ and H − U* < ΔH stays nearer than ρ, collides nowhere and
@@ -32,15 +32,15 @@ from flint import arb, ctx, fmpq
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
-from flockana.certified.alignment import centred, projects, turned_to
+from flockana.certified.alignment import centred, rotated_to, unique_projection
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.damping import damping
-from flockana.certified.decimals import floored
+from flockana.certified.decimals import round_down
 from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
 from flockana.certified.structure import Structure
-from flockana.equilibria.solve import Equilibrium, ensure_found
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.measures.nets import components, links
 
 DIGITS = 40
@@ -54,7 +54,7 @@ _APART = 1e-6  # of d: nearer agents are at one place
 
 @dataclass(frozen=True, eq=False)
 class Basin:
-    """A certified basin of an equilibrium's orbit under rotations; all numbers are exact, and rounded to the safe side.
+    """Certified basin of an equilibrium's orbit under rotations; all numbers exact, rounded to the safe side.
 
     Every start whose shape is nearer than `radius` to the orbit, over all coordinates, and whose structural energy is
     less than `level` above the equilibrium's, converges to a point of the orbit, in the frame of the centre of mass,
@@ -62,8 +62,6 @@ class Basin:
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law.
     rest : ndarray, shape (n, m)
         The computed equilibrium, its centre at the origin; the true one is within 1e-13 d of it.
     radius : Fraction
@@ -107,11 +105,11 @@ class Basin:
 
     @property
     def share(self) -> float:
-        """ρ/d."""
+        """Radius over desired distance, ρ/d."""
         return float(self.radius) / float(self.law.alpha.d)
 
     def above(self, q: Any, p: Any) -> tuple[arb, arb]:
-        """Upper bounds, as balls, of a state's distance to the orbit and of its energy above the equilibrium's.
+        """Return upper bounds of a state's distance to the orbit and of its energy above the equilibrium's.
 
         Parameters
         ----------
@@ -121,17 +119,17 @@ class Basin:
         with ctx.workdps(DIGITS):
             u, shape = self.proof.structure, self.rest.shape
             x, v = centred("q", q, shape), centred("p", p, shape)
-            turned = turned_to(self.proof.rest, x, shape)
+            turned = rotated_to(self.proof.rest, x, shape)
             distance = sum((square(a - b) for a, b in zip(x, turned, strict=True)), arb(0)).upper().sqrt()
             excess = u.energy(x) - u.energy(self.proof.rest) + sum(map(square, v), arb(0)) / 2
             return distance.upper(), excess.upper()
 
-    def ensure_whole(self) -> None:
-        """Raise unless it is as `certify` returned it."""
+    def ensure_unedited(self) -> None:
+        """Raise unless the basin is unchanged since `certify` returned it."""
         ensure_sealed("basin", self, "a basin as certify returned it", "certify(equilibrium) proves another")
 
     def holds(self, q: Any, p: Any) -> bool:
-        """Whether a start is certainly in the basin; False too where that is not certain.
+        """Return whether a start is certainly in the basin; False also where undecided.
 
         Parameters
         ----------
@@ -144,7 +142,7 @@ class Basin:
         ArgumentError
             If the basin was made or changed by hand.
         """
-        self.ensure_whole()
+        self.ensure_unedited()
         distance, excess = self.above(q, p)
         with ctx.workdps(DIGITS):
             return bool(distance < ball(self.radius) and excess < ball(self.level))
@@ -152,7 +150,7 @@ class Basin:
 
 @dataclass(frozen=True, eq=False)
 class Proved:
-    """What a basin was proved from, for its certificate."""
+    """Evidence behind a basin, for its certificate."""
 
     structure: Structure
     rest: tuple[arb, ...]
@@ -165,7 +163,7 @@ class Proved:
 
 
 def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
-    """A basin of an equilibrium of Algorithm 1 or 2, as large as this proof makes it, that no rounding can touch.
+    """Return a certified basin of an equilibrium of Algorithm 1 or 2, as large as the proof allows.
 
     Parameters
     ----------
@@ -197,7 +195,7 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
     """
     known = isinstance(equilibrium, Equilibrium)
     if known:
-        ensure_found("equilibrium", equilibrium)
+        ensure_unedited_equilibrium("equilibrium", equilibrium)
     law = equilibrium.law if law is None and known else law
     if law is None:
         raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
@@ -221,7 +219,7 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
 
 
 def _ensure_flock(law: Any, q: FloatArray) -> None:
-    """Raise on what cannot be a strict minimum of distinct agents, before work starts."""
+    """Raise before any work unless the configuration can be a strict minimum of distinct agents."""
     if len(q) < 2:
         raise ArgumentError(f"equilibrium has {len(q)} agent: expected two or more, a shape")
     if len(links(q, _APART * law.alpha.d)):
@@ -236,7 +234,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
 
 
 def _largest(around: Surroundings, share: float) -> float:
-    """The largest radius for which floating point still proposes enough curvature, by bisection."""
+    """Return the largest radius for which floating point proposes enough curvature, by bisection."""
     d = float(around.law.alpha.d)
     shortest = min(float(length) for _, length in around.gaps.values())
     at_rest = around.proposed(_SMALLEST * d).mean
@@ -253,15 +251,15 @@ def _largest(around: Surroundings, share: float) -> float:
 
 
 def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Shells) -> Basin | None:
-    """The basin of proved shells; None where the net may part, nothing damps, or distances are not certain."""
+    """Return the basin of proved shells; None where the net may part or nothing damps."""
     u, reach = around.u, ROOT_TWO * shells.radius
     lengths = {pair: length for pair, (_, length) in around.gaps.items()}
     second, degree = damping(u, lengths, reach)
     least, most = u.c2_gamma + u.c2_alpha * second, u.c2_gamma + 2 * u.c2_alpha * degree
-    curvature = floored(shells.curvature, _STATED)
-    surplus = floored(shells.surplus, _STATED)
+    curvature = round_down(shells.curvature, _STATED)
+    surplus = round_down(shells.surplus, _STATED)
     apart = min((length - ball(reach)).lower() for length in lengths.values())
-    if not (least > 0 and curvature > 0 and apart > 0 and projects(u, around.rest, shells.radius)):
+    if not (least > 0 and curvature > 0 and apart > 0 and unique_projection(u, around.rest, shells.radius)):
         return None
     bounds = Bounds(curvature, surplus, least, most)
     found = decay(bounds)
@@ -271,12 +269,12 @@ def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Sh
         law=law,
         rest=np.array(computed).reshape(u.n, u.m),
         radius=_fraction(shells.radius),
-        level=_fraction(floored(shells.level, _STATED)),
+        level=_fraction(round_down(shells.level, _STATED)),
         curvature=_fraction(curvature),
         damping=_fraction(least),
         rate=_fraction(found.rate),
         overshoot=_fraction(found.overshoot),
-        distance=_fraction(floored(apart, _STATED)),
+        distance=_fraction(round_down(apart, _STATED)),
         connected=second > 0,
         proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
     )

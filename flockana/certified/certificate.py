@@ -1,4 +1,4 @@
-"""A certified basin as JSON that `flockana check` can verify without the code that made it.
+"""Basin certificates as JSON, for verification by `flockana check`.
 
 Numbers are exact: decimals as text, computed positions in hexadecimal. A name of a field says which number of
 `flockana.certified.basin` it is; what no machine checks stands in the file.
@@ -15,15 +15,15 @@ from flint import fmpq
 
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
-from flockana.certified.decimals import decimal, written
+from flockana.certified.decimals import decimal, format_decimal
 from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
-    """The certificate as plain data, with its digest; `ArgumentError` of what is no basin.
+    """Return a basin's certificate as plain data with its digest.
 
     Examples
     --------
@@ -34,16 +34,16 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
     """
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
-    basin.ensure_whole()
+    basin.ensure_unedited()
     proof = basin.proof
     u, shells, bounds, found = proof.structure, proof.shells, proof.bounds, proof.decay
-    parameters = {name: written(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
-    gains = {name: written(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
+    parameters = {name: format_decimal(getattr(u.par, name)) for name in ("d", "r", "eps", "h", "a", "b")}
+    gains = {name: format_decimal(getattr(u, name)) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
     bonds = [
         {
             "pairs": [list(pair) for pair in bond.pairs],
-            "along": [written(row[k]) for row in shells.along],
-            "across": [written(row[k]) for row in shells.across],
+            "along": [format_decimal(row[k]) for row in shells.along],
+            "across": [format_decimal(row[k]) for row in shells.across],
         }
         for k, bond in enumerate(shells.bonds)
     ]
@@ -54,13 +54,13 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         "prose": list(BASIN_PROSE),
         "law": {"algorithm": type(basin.law).__name__, **parameters, **gains},
         "positions": [[float(x).hex() for x in row] for row in basin.rest],
-        "box": written(proof.box),
+        "box": format_decimal(proof.box),
         "bonds": bonds,
         "curvatures": _all(shells.curvatures),
-        "second_eigenvalue": written(proof.second),
-        "degree": written(proof.degree),
-        "surplus": written(bounds.surplus),
-        "lyapunov": {name: written(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
+        "second_eigenvalue": format_decimal(proof.second),
+        "degree": format_decimal(proof.degree),
+        "surplus": format_decimal(bounds.surplus),
+        "lyapunov": {name: format_decimal(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
         **{name: decimal(getattr(basin, name)) for name in STATED},
         "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
@@ -71,14 +71,12 @@ STATED = ("radius", "level", "curvature", "rate", "overshoot", "distance")
 
 
 def write_certificate(basin: Basin, path: str | Path) -> None:
-    """Write a basin's certificate; `flockana check` verifies the file.
+    """Write a basin's certificate to a file for `flockana check`.
 
     Parameters
     ----------
     basin : Basin
         Of `certify`.
-    path : str or Path
-        File, usually .json.
 
     Raises
     ------
@@ -87,8 +85,8 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
     FileError
         If the file cannot be written.
     """
-    write_whole(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
+    write_atomic(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
 
 
 def _all(values: tuple[fmpq, ...]) -> list[str]:
-    return [written(value) for value in values]
+    return [format_decimal(value) for value in values]

@@ -1,4 +1,4 @@
-"""Certificates read by who did not make them: a digest against accidents, and a checker for each kind against errors.
+"""Independent certificate checking: a digest against accidents, a checker of each kind against errors.
 
 A kind is checked by the module ``check_<kind>`` beside this one, which shares with the code that proves only the scalar
 functions in balls (`intervals`). Its `form` names every key that it checks: another one, or one given twice, is
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError
-from flockana.base.files import read_whole
+from flockana.base.files import read_text_file
 from flockana.base.seals import without_digest
 from flockana.base.serialize import read_json
 from flockana.certified.forms import MADE_WITH, TEXT, RejectedError, ensure_form
@@ -29,19 +29,7 @@ _HEAD = ("format", "kind", "statement")
 
 @dataclass(frozen=True)
 class Checked:
-    """A certificate that holds.
-
-    Parameters
-    ----------
-    kind : str
-        Such as ``"basin"``.
-    statement : str
-        What is proved.
-    steps : tuple of str
-        What was verified, in order.
-    prose : tuple of str
-        What no machine checks.
-    """
+    """Verified certificate: kind, statement and verified steps."""
 
     kind: str
     statement: str
@@ -51,11 +39,6 @@ class Checked:
 
 def check_certificate(path: str | Path) -> Checked:
     """Verify a certificate's file.
-
-    Parameters
-    ----------
-    path : str or Path
-        JSON, as written by `write_certificate`.
 
     Returns
     -------
@@ -69,7 +52,7 @@ def check_certificate(path: str | Path) -> Checked:
         If it does not prove what it says.
     """
     try:
-        data = read_json(read_whole(path))
+        data = read_json(read_text_file(path))
     except ValueError as error:
         raise FileError(f"{path} is no certificate: {error}") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -78,7 +61,7 @@ def check_certificate(path: str | Path) -> Checked:
 
 
 def check_data(data: Mapping[str, Any]) -> Checked:
-    """Verify a certificate that was read; `RejectedError` if it does not hold."""
+    """Verify a certificate's data; raise `RejectedError` if it does not hold."""
     try:
         rest = without_digest(data)
         kind = str(rest.get("kind"))
@@ -106,7 +89,7 @@ def ensure(holds: bool, otherwise: str) -> None:
 
 
 def unit(stated: Fraction, digits: int) -> Fraction:
-    """One in the last of so many significant digits of a stated number."""
+    """Return one unit in the last of the significant digits of a stated number."""
     exponent = 0
     while stated and abs(stated) >= Fraction(10) ** (exponent + 1):
         exponent += 1

@@ -1,4 +1,4 @@
-"""The checker of basin certificates, to be read in one sitting beside `basin`, whose argument it follows.
+"""Independent checker of basin certificates, with the argument of `basin`.
 
 It and `check_net` share with the prover the scalar functions of `intervals` and nothing else. Everything is in balls or
 exact; "true" means certainly true.
@@ -23,7 +23,7 @@ STATED, OF_RATE = 4, 3  # significant digits
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """What is checked, by key (`forms`)."""
+    """Return the expected form of a certificate, by key (`forms`)."""
     numbers = ("box", "second_eigenvalue", "degree", "radius", "level", "curvature", "surplus", "rate", "overshoot")
     return dict.fromkeys((*numbers, "distance"), NUMBER) | {
         "law": PAIR_LAW,
@@ -35,7 +35,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a certificate and say what was verified, step by step."""
+    """Verify a basin certificate and return the verified steps."""
     with ctx.workdps(DIGITS):
         net = Net(data)
         x = net.equilibrium()
@@ -53,7 +53,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         yield f"all but the {len(listed)} pairs listed stay out of range"
         apart = min((lengths[pair] - ball(reach)).lower() for pair in gaps)
         ensure(apart > 0, "agents may collide")
-        ensure(rounded_down(data["distance"], apart), "the distance is not that of the closest pair")
+        ensure(round_down_float(data["distance"], apart), "the distance is not that of the closest pair")
         yield "no two agents come nearer than the distance stated"
         for bond, pairs in zip(data["bonds"], bonds, strict=True):
             rest = net.hull([lengths[pair] for pair in pairs])
@@ -87,18 +87,19 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 def _conclusions(
     data: Mapping[str, Any], net: Net, x: Sequence[Sequence[arb]], lengths: Mapping[Pair, arb], k: Sequence[Fraction]
 ) -> Iterator[str]:
-    """What follows: level, curvature and surplus from the shells, damping from the net, and the rate from all."""
+    """Check level, curvature, surplus, damping and rate against the shells and the net."""
     radius = Fraction(data["radius"])
     step = radius / len(k)
     slopes = [step * sum(k[: i + 1], Fraction(0)) for i in range(len(k))]  # G' at the shells' ends
     level = step * (sum(slopes, Fraction(0)) - slopes[-1] / 2)
     ends = [step * (i + 1) for i in range(len(k))]
     moments = [sum((k[j] * (2 * j + 1) for j in range(i + 1)), Fraction(0)) / (2 * (i + 1) ** 2) for i in range(len(k))]
-    ensure(rounded_down(data["level"], level), "the level is not that of the shells")
+    ensure(round_down_float(data["level"], level), "the level is not that of the shells")
     ensure(
-        rounded_down(data["curvature"], min(s / t for s, t in zip(slopes, ends, strict=True))), "the least curvature"
+        round_down_float(data["curvature"], min(s / t for s, t in zip(slopes, ends, strict=True))),
+        "the least curvature",
     )
-    ensure(rounded_down(data["surplus"], min(moments)), "the surplus is not that of the shells")
+    ensure(round_down_float(data["surplus"], min(moments)), "the surplus is not that of the shells")
     curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
     ensure(curvature > 0 and level > 0, "the potential does not rise")
     yield "U rises by the level at least on the way out, and the orbit holds all equilibria within"
@@ -111,7 +112,7 @@ def _conclusions(
     ensure(not positive(laplacian, more), "the net's second eigenvalue is larger than stated")
     near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}
     degrees = [sum((w for pair, w in near.items() if i in pair), arb(0)).upper() for i in range(net.n)]
-    ensure(rounded_down(str(-degree), -max(degrees)), "the largest degree is not that of the net")
+    ensure(round_down_float(str(-degree), -max(degrees)), "the largest degree is not that of the net")
     least, most = net.c2_gamma + net.c2_alpha * second, net.c2_gamma + 2 * net.c2_alpha * degree
     ensure(least > 0, "nothing damps")
     yield "relative velocities are damped, the net's part from its second eigenvalue at its longest lengths"
@@ -123,16 +124,16 @@ def _conclusions(
         eps * (theta * curvature + 2 * mean - kappa * most) / (curvature + eps * tau),
         2 * ((1 - eps / (2 * kappa)) * least - eps) / (1 + eps / tau),
     )
-    ensure(rate > 0 and rounded_down(data["rate"], rate / 2, OF_RATE), "the rate is not that of F")
+    ensure(rate > 0 and round_down_float(data["rate"], rate / 2, OF_RATE), "the rate is not that of F")
     share = ball(eps) / ball(curvature).sqrt()
-    ensure(rounded_down(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
+    ensure(round_down_float(str(-Fraction(data["overshoot"])), -(1 + share) / (1 - share), OF_RATE), "the overshoot")
     yield "F = E + ε⟨w, v⟩ falls at twice the rate, and is E but for the overshoot"
-    ensure(net.projects(x, ball(radius)), "the nearest point of the orbit may not be unique")
+    ensure(net.unique_projection(x, ball(radius)), "the nearest point of the orbit may not be unique")
     yield "the nearest point of the orbit is unique, and not degenerate"
 
 
-def rounded_down(stated: str, value: Any, digits: int = STATED) -> bool:
-    """Whether a stated number is the value rounded down to so many digits."""
+def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
+    """Return whether a stated number is the value rounded down to the given digits."""
     number = Fraction(stated)
     above = number + unit(number, digits)
     if number % unit(number, digits):
@@ -143,7 +144,7 @@ def rounded_down(stated: str, value: Any, digits: int = STATED) -> bool:
 
 
 def positive(matrix: arb_mat, shift: Fraction) -> bool:
-    """Whether every symmetric matrix in the balls, less shift·1, is certainly positive definite: L D Lᵀ has D > 0."""
+    """Return whether every symmetric matrix in the balls, less shift·1, is certainly positive definite."""
     rows = [
         [entry - ball(shift) if i == j else entry for j, entry in enumerate(row)]
         for i, row in enumerate(matrix.tolist())

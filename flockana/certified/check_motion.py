@@ -1,4 +1,4 @@
-"""The motion that a checker of tubes believes in: Algorithms 1 to 3 in balls and series, from a certificate's numbers.
+"""Right-hand side of Algorithms 1 to 3 for the checker of tubes, in balls and series.
 
 Only the scalar functions of `intervals` are shared with the prover.
 """
@@ -35,7 +35,7 @@ Vector = list[arb]
 
 @dataclass(frozen=True)
 class Motion:
-    """The law for n agents in m dimensions; what is given as text counts as the decimal that it is."""
+    """Law for n agents in m dimensions; numbers given as text are exact decimals."""
 
     par: AlphaParameters
     gain: Mapping[str, arb]
@@ -48,7 +48,7 @@ class Motion:
     spheres: tuple[Sphere, ...]
 
     def shifted(self, path: Sequence[Vector], s: arb) -> list[Vector]:
-        """Coefficients of q and then of p = q' about a time s into the step."""
+        """Return coefficients of q and then of p = q' about a time s into the step."""
         rows = [
             [sum((comb(i, j) * row[i] * s ** (i - j) for i in range(j, len(row))), arb(0)) for j in range(len(row))]
             for row in path
@@ -56,20 +56,20 @@ class Motion:
         return rows + [[(j + 1) * row[j + 1] for j in range(len(row) - 1)] for row in rows]
 
     def at(self, path: Sequence[Vector], s: arb) -> Vector:
-        """(q, p) at a time s into the step."""
+        """Return (q, p) at a time s into the step."""
         return [row[0] for row in self.shifted(path, s)]
 
     def agents(self, x: Sequence[Any]) -> list[Sequence[Any]]:
-        """Coordinates, agent by agent."""
+        """Return coordinates grouped by agent."""
         return [x[k : k + self.m] for k in range(0, len(x), self.m)]
 
     def gaps(self, x: Sequence[Any]) -> Iterator[tuple[int, int, list[Any]]]:
-        """(i, j, q_j − q_i) of every pair."""
+        """Return (i, j, q_j − q_i) of every pair."""
         q = self.agents(x[: self.n * self.m])
         return ((i, j, [b - a for a, b in zip(q[i], q[j], strict=True)]) for i, j in combinations(range(self.n), 2))
 
     def pieces(self, q: Vector) -> list[int | None]:
-        """0 up to h r_α, 1 up to r_α, 2 beyond; None for a pair that may be on two."""
+        """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if it may be on two."""
         found: list[int | None] = []
         for _, _, gap in self.gaps(q):
             z, cutoff = sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps), r_alpha(self.par)
@@ -78,7 +78,7 @@ class Motion:
         return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
     def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
-        """u along series of q and p about a time."""
+        """Return u along series of q and p about a time."""
         size, m = self.n * self.m, self.m
         q, p, g = self.agents(x[:size]), self.agents(x[size:]), self.gain
         away = [
@@ -102,11 +102,11 @@ class Motion:
         return u
 
     def near(self) -> list[tuple[int, Sphere]]:
-        """Every agent and sphere, in the order of `pieces`."""
+        """Return every agent with every sphere, in the order of `pieces`."""
         return [(i, sphere) for sphere in self.spheres for i in range(self.n)]
 
     def pull(self, x: Vector) -> list[Vector]:
-        """How the pull to a γ-agent at rest falls as an agent moves: c1γ ∂σ₁(x − q_r)/∂x on a box."""
+        """Return the derivative c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
         away = [a - b for a, b in zip(x, self.start, strict=True)]
         slant = (1 + sum(map(square, away), arb(0))).rsqrt()
         cube, gain = slant * slant * slant, self.gain["c1_gamma"]
@@ -115,7 +115,7 @@ class Motion:
         ]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
-        """(φ_α/√(1 + εs²), a_ij) of a pair, a series; of an unknown piece its value at the begin, as a number."""
+        """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as numbers at the begin."""
         par, s2 = self.par, sum((x * x for x in gap[1:]), gap[0] * gap[0])
         if piece is None:
             z = sigma_of_square(s2[0], par.eps)
@@ -128,7 +128,7 @@ class Motion:
         return rho * ((a + b) * s / (1 + s * s).sqrt() + (a - b)) / 2 / root, rho
 
     def slope(self, box: Vector) -> arb_mat:
-        """∂(p, u)/∂(q, p) on a box, across the pieces of the pair law."""
+        """Return ∂(p, u)/∂(q, p) on a box, across the pieces of the pair law."""
         size, m, g, par = self.n * self.m, self.m, self.gain, self.par
         rows = [[arb(int(c == r + size)) for c in range(2 * size)] for r in range(2 * size)]
         for k in range(size):
@@ -161,25 +161,25 @@ class Motion:
         return arb_mat(rows)
 
     def length(self, x: Sequence[arb]) -> arb:
-        """The Euclidean norm, an upper end."""
+        """Return an upper bound of the Euclidean norm."""
         return arb(sum(map(square, x), arb(0)).nonnegative_part().sqrt().upper())
 
     def lengths(self, box: Vector) -> list[arb]:
-        """Distances of the pairs."""
+        """Return the distances of the pairs."""
         return [sum(map(square, gap), arb(0)).nonnegative_part().sqrt() for _, _, gap in self.gaps(box)]
 
     def radii(self, box: Vector) -> list[arb]:
-        """Distances of the agents from their centre of mass."""
+        """Return the distances of the agents from their centre of mass."""
         return [sum(map(square, row), arb(0)).nonnegative_part().sqrt() for row in self.centred(box[: self.n * self.m])]
 
     def centred(self, x: Vector) -> list[Vector]:
-        """Deviations from the mean of all agents."""
+        """Return the deviations from the mean of all agents."""
         rows = self.agents(x)
         means = [sum((row[k] for row in rows), arb(0)) / self.n for k in range(self.m)]
         return [[a - b for a, b in zip(row, means, strict=True)] for row in rows]
 
     def energy(self, x: Vector) -> arb:
-        """The structural energy, c1α V + c1γ J + K in the moving frame; with a bounded pull, all of it."""
+        """Return the energy c1α V + c1γ J + K in the moving frame; with a bounded pull in the given frame."""
         size = self.n * self.m
         pairs = (psi_alpha(sigma_of_square(square(length), self.par.eps), self.par) for length in self.lengths(x))
         total = self.gain["c1_alpha"] * sum(pairs, arb(0))
@@ -196,5 +196,5 @@ class Motion:
 
 
 def number(text: str) -> arb:
-    """A decimal as the ball of its value."""
+    """Return a decimal as the ball of its value."""
     return ball(Fraction(text))

@@ -1,4 +1,4 @@
-"""The flock of a basin certificate as its checker knows it: law, equilibrium, matrices, and the bounds of pairs.
+"""Flock of a basin certificate for its checker: law, equilibrium, matrices, and bounds of pairs.
 
 Nothing of the prover but the scalar functions of `intervals`.
 """
@@ -29,7 +29,7 @@ Pair = tuple[int, int]
 
 
 class Net:
-    """A certificate's law and positions."""
+    """Law and positions of a certificate."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.text = data["law"]
@@ -46,31 +46,31 @@ class Net:
         ensure(min(self.c1_alpha, self.c2_alpha, self.c1_gamma, self.c2_gamma) >= 0, "a gain is negative")
 
     def tension(self, length: arb) -> arb:
-        """F'(ℓ)/ℓ."""
+        """Return F'(ℓ)/ℓ of the pair potential F."""
         s = square(length)
         root = (1 + ball(self.par.eps) * s).sqrt()
         return ball(self.c1_alpha) * phi_alpha(sigma_of_square(s, self.par.eps), self.par) / root
 
     def stiffness(self, length: arb) -> arb:
-        """F''(ℓ)."""
+        """Return F''(ℓ) of the pair potential F."""
         s = square(length)
         root, z = (1 + ball(self.par.eps) * s).sqrt(), sigma_of_square(s, self.par.eps)
         slope, action = phi_alpha_slope(z, self.par), phi_alpha(z, self.par)
         return ball(self.c1_alpha) * (slope * s / root**2 + action / root**3)
 
     def weight(self, length: arb) -> arb:
-        """a_ij."""
+        """Return the weight a_ij at a length."""
         return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
 
     def hull(self, lengths: Sequence[arb]) -> arb:
-        """One ball around several."""
+        """Return one ball around several."""
         total = lengths[0]
         for length in lengths[1:]:
             total = total.union(length)
         return total
 
     def equilibrium(self) -> list[list[arb]]:
-        """Krawczyk's test of (∇U + Σ μ held, ⟨turns, x⟩, Σ x_i): balls around the zero, where μ = 0.
+        """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0.
 
         The turns are those of the positions, to which they are orthogonal.
         """
@@ -91,7 +91,7 @@ class Net:
         return [found[m * i : m * i + m] for i in range(n)]
 
     def krawczyk(self, centre: list[arb], radii: list[arb], held: list[list[arb]]) -> list[arb]:
-        """(1 − Y F'(B)) (B − c) − Y F(c), c the centre with μ = 0 and B the box about it of those radii."""
+        """Return Krawczyk's image (1 − Y F'(B)) (B − c) − Y F(c) of the box B about c."""
         size = len(centre)
         wide = self.slope(self.rows([y + arb(0, r) for y, r in zip(centre, radii, strict=False)]), held)
         factor = middle(middle(wide).inv())
@@ -101,15 +101,15 @@ class Net:
         return [row[0] for row in moved.tolist()]
 
     def rows(self, flat: Sequence[arb]) -> list[list[arb]]:
-        """Agent by agent."""
+        """Return coordinates grouped by agent."""
         return [list(flat[self.m * i : self.m * (i + 1)]) for i in range(self.n)]
 
     def shifts(self) -> list[list[arb]]:
-        """Translations along the axes."""
+        """Return the translations along the axes."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
-        """∇²U, bordered by the motions that are held."""
+        """Return ∇²U, bordered by the motions that are held."""
         blocks = {}
         for (i, j), gap, length in self.pairs(x):
             pull = self.tension(length)
@@ -118,7 +118,7 @@ class Net:
         return arb_mat(rows + [[*motion, *[arb(0)] * len(held)] for motion in held])
 
     def force(self, x: Sequence[Sequence[arb]]) -> list[arb]:
-        """∇U."""
+        """Return ∇U."""
         total = [[ball(self.c1_gamma) * y for y in row] for row in x]
         for (i, j), gap, length in self.pairs(x):
             for a, y in enumerate(gap):
@@ -127,7 +127,7 @@ class Net:
         return [y for row in total for y in row]
 
     def pairs(self, x: Sequence[Sequence[arb]]) -> Iterator[tuple[Pair, list[arb], arb]]:
-        """Pairs that are not certainly out of range: numbers, relative position, length."""
+        """Return pairs that are not certainly out of range: indices, relative position, length."""
         for i, j in combinations(range(self.n), 2):
             gap = [b - a for a, b in zip(x[i], x[j], strict=True)]
             length = sum(map(square, gap), arb(0)).sqrt()
@@ -135,7 +135,7 @@ class Net:
                 yield (i, j), gap, length
 
     def assembled(self, blocks: Mapping[Pair, list[list[arb]]]) -> list[list[arb]]:
-        """c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩ as a matrix."""
+        """Return the matrix of c1γ‖w‖² + Σ ⟨w_j − w_i, B (w_j − w_i)⟩."""
         m, size = self.m, self.n * self.m
         total = [[ball(self.c1_gamma) * int(i == j) for j in range(size)] for i in range(size)]
         for (i, j), own in blocks.items():
@@ -151,7 +151,7 @@ class Net:
         gaps: Mapping[Pair, list[arb]],
         floors: Mapping[Pair, tuple[Fraction, Fraction]],
     ) -> arb_mat:
-        """The matrix of the pairs' bounds, with the rigid motions of x, to which every w is orthogonal, lifted far."""
+        """Return the matrix of the pairs' bounds, with the rigid motions shifted far up."""
         blocks = {}
         for pair, (along, across) in floors.items():
             gap = gaps[pair]
@@ -163,14 +163,14 @@ class Net:
         return total
 
     def turns(self, x: Sequence[Sequence[arb]]) -> list[list[arb]]:
-        """Tangents of the orbit under rotations: in each coordinate plane, (−y, x) of each agent."""
+        """Return the tangents of the orbit under rotations: (−y, x) of each agent in each coordinate plane."""
         return [
             [-row[b] if k == a else row[a] if k == b else arb(0) for row in x for k in range(self.m)]
             for a, b in combinations(range(self.m), 2)
         ]
 
     def laplacian(self, weights: Mapping[Pair, arb]) -> arb_mat:
-        """Of the weighted net, with the translation lifted to n, which no other eigenvalue exceeds."""
+        """Return the Laplacian of the weighted net, with the translation's eigenvalue 0 shifted to n."""
         rows = [[arb(1)] * self.n for _ in range(self.n)]
         for (i, j), weight in weights.items():
             for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
@@ -178,7 +178,7 @@ class Net:
         return arb_mat(rows)
 
     def floor_holds(self, rest: arb, eta: Fraction, along: Fraction, across: Fraction) -> bool:
-        """Whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every relative displacement |e| <= eta.
+        """Return whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every displacement |e| <= eta.
 
         With x the change of length and b = 1 − cos of the turn, left − right is a square in b, of which a bound below
         is linear on [0, most]: see `pair_floors`. Intervals of x are halved until the bound is certain.
@@ -204,8 +204,8 @@ class Net:
             cells += [(low, half, depth + 1), (half, high, depth + 1)]
         return True
 
-    def projects(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
-        """Whether the nearest point of the orbit is unique up to the radius."""
+    def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
+        """Return whether the nearest point of the orbit is unique up to the radius."""
         gram = [[sum((row[a] * row[b] for row in x), arb(0)) for b in range(self.m)] for a in range(self.m)]
         trace = sum((gram[a][a] for a in range(self.m)), arb(0))
         if self.m < 3:
@@ -215,15 +215,15 @@ class Net:
 
 
 def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """⟨a, b⟩."""
+    """Return ⟨a, b⟩."""
     return sum((y * z for y, z in zip(a, b, strict=True)), arb(0))
 
 
 def block(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """across·1 + more·gap gapᵀ."""
+    """Return the matrix across·1 + more·gap gapᵀ."""
     return [[more * y * z + (across if a == b else 0) for b, z in enumerate(gap)] for a, y in enumerate(gap)]
 
 
 def middle(matrix: arb_mat) -> arb_mat:
-    """The matrix of the balls' middles, which nothing rests on."""
+    """Return the midpoints of a matrix of balls, for proposals only."""
     return arb_mat([[entry.mid() for entry in row] for row in matrix.tolist()])

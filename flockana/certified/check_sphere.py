@@ -1,4 +1,4 @@
-"""A sphere that rests, as a checker of tubes believes in it: from a certificate's numbers, by formulas of its own.
+"""Sphere at rest for the checker of tubes, computed from a certificate's numbers.
 
 With w = x − y, D = ‖w‖, e = w/D and the clearance c = D − R, z = ‖c‖_σ, an agent is pushed by
 −c1β φ_β(z) c/√(1 + εc²) e and braked by −c2β ρ_h G, G = v − (R/D)(v − ⟨e, v⟩ e), its velocity past its β-agent.
@@ -29,7 +29,7 @@ from flockana.certified.intervals import (
 
 @dataclass(frozen=True)
 class Sphere:
-    """y, R, the β-pair law and its gains."""
+    """Sphere of centre y and radius R with the β-pair law and its gains."""
 
     par: BetaParameters
     centre: tuple[arb, ...]
@@ -39,33 +39,33 @@ class Sphere:
 
     @classmethod
     def of(cls, law: Mapping[str, Any], one: Mapping[str, Any]) -> Sphere:
-        """As a certificate says; its text counts as the decimal that it is."""
+        """Return the sphere of a certificate, its numbers as exact decimals."""
         par = BetaParameters(d=law["beta_d"], eps=law["beta_eps"], h=law["beta_h"])
         centre = tuple(ball(Fraction(x)) for x in one["centre"])
         numbers = (ball(Fraction(x)) for x in (one["radius"], law["c1_beta"], law["c2_beta"]))
         return cls(par, centre, *numbers)
 
     def clearance(self, x: Sequence[arb]) -> arb:
-        """‖x − y‖ − R."""
+        """Return ‖x − y‖ − R."""
         total = sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0))
         return total.nonnegative_part().sqrt() - self.radius
 
     def height(self, x: Sequence[arb]) -> arb:
-        """‖c‖_σ."""
+        """Return ‖c‖_σ of the clearance c."""
         return sigma_of_square(square(self.clearance(x)), self.par.eps)
 
     def energy(self, x: Sequence[arb]) -> arb:
-        """c1β ψ_β."""
+        """Return c1β ψ_β."""
         return self.push * psi_beta(self.height(x), self.par)
 
     def piece(self, x: Sequence[arb]) -> int | None:
-        """0 up to h d_β, 1 up to d_β, 2 beyond; None for an agent that may be on two."""
+        """Return an agent's piece: 0 up to h d_β, 1 up to d_β, 2 beyond, None if it may be on two."""
         z, cutoff = self.height(x), d_beta(self.par)
         knee = ball(self.par.h) * cutoff
         return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
 
     def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
-        """Along series of a position and a velocity; of an unknown piece the value at the begin, as numbers."""
+        """Return the force along series of position and velocity; on an unknown piece as numbers at the begin."""
         if piece is None:
             x, v = [a[0] for a in x], [a[0] for a in v]
         e, distance = self._direction(x)
@@ -83,7 +83,7 @@ class Sphere:
         return [-size * a - self.drag * rho * (w - share * (w - along * a)) for a, w in zip(e, v, strict=True)]
 
     def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
-        """∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
+        """Return ∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
         e, distance = self._direction(x)
         c, along, share = distance - self.radius, _dot(e, v), self.radius / distance
         stretch, z = 1 + ball(self.par.eps) * square(c), sigma_of_square(square(c), self.par.eps)
@@ -104,7 +104,7 @@ class Sphere:
         return by_x, by_v
 
     def _direction(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
-        """(e, D)."""
+        """Return the unit vector e from the centre, and its derivative D."""
         away = [a - b for a, b in zip(x, self.centre, strict=True)]
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
         distance = sum(squares[1:], squares[0]).sqrt()

@@ -1,4 +1,4 @@
-"""The checker of tube certificates, to be read in one sitting: it follows no step of the prover.
+"""Independent checker of tube certificates, by another argument than the prover's.
 
 A certificate holds a path of polynomials in time, one for each coordinate of q and each step, and claims that the run
 from its start is never farther from it than a stated error. That is proved here by another theorem than Lohner's
@@ -36,7 +36,7 @@ BITS = 128
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
-    """What is checked, by key (`forms`): only Algorithm 3 has spheres, and only with spheres there is a clearance."""
+    """Return the expected form of a certificate, by key; only Algorithm 3 has spheres and a clearance."""
     law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "told")}
     if bounded := data["law"]["algorithm"] == "Algorithm3":
         law |= dict.fromkeys(("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta"), NUMBER)
@@ -56,7 +56,7 @@ def form(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check(data: Mapping[str, Any]) -> Iterator[str]:
-    """Verify a certificate and say what was verified, step by step."""
+    """Verify a tube certificate and return the verified steps."""
     with ctx.workprec(BITS):
         run = Run.of(data)
         yield from run.follow(data)
@@ -64,13 +64,13 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Run(Motion):
-    """A motion, and the weight w of the norm."""
+    """Motion of a certificate with the weight w of its norm."""
 
     weight: arb
 
     @classmethod
     def of(cls, data: Mapping[str, Any]) -> Run:
-        """As the certificate says."""
+        """Return the run of a certificate's data."""
         law, n, m = data["law"], len(data["q0"]), len(data["q0"][0])
         ensure(law["algorithm"] in ("Algorithm1", "Algorithm2", "Algorithm3"), "its law is unknown")
         bounded = law["algorithm"] == "Algorithm3"
@@ -90,7 +90,7 @@ class Run(Motion):
         return cls(par, gain, start, velocity, told, n, m, bounded, spheres, weight)
 
     def follow(self, data: Mapping[str, Any]) -> Iterator[str]:
-        """The run step by step, then what is claimed of all of it."""
+        """Check the run step by step, then the claims about all of it."""
         size, times = self.n * self.m, [exact(t) for t in data["times"]]
         x0 = [exact(x) for rows in (data["q0"], data["p0"]) for row in rows for x in row]
         ensure(len(times) == len(data["paths"]) + 1 == len(data["errors"]) + 1 and len(x0) == 2 * size, "its length")
@@ -133,7 +133,7 @@ class Run(Motion):
     def ends_in(
         self, basin: Mapping[str, Any], own: Mapping[str, str], turn: arb, state: Vector, error: arb
     ) -> Iterator[str]:
-        """The end of the run lies in the basin of a certificate of its own, turned by an angle."""
+        """Check that the end of the run lies in the rotated basin of another certificate."""
         ensure(basin.get("kind") == "basin", "what stands for the basin is no certificate of one")
         yield from (f"basin: {step}" for step in check_data(basin).steps)
         law, size = basin["law"], self.n * self.m
@@ -153,11 +153,11 @@ class Run(Motion):
         yield "all of the end lies in the basin: the run converges to its orbit, with matched velocities"
 
     def jumped(self, state: Vector, path: Sequence[Vector], error: arb) -> arb:
-        """The error where one path follows another."""
+        """Return the error where one path follows another."""
         return error + self.norm([a - b for a, b in zip(state, self.at(path, arb(0)), strict=True)])
 
     def grown(self, t: arb, h: arb, path: Sequence[Vector], error: arb, bound: arb) -> tuple[arb, Vector]:
-        """(the error at the end of a step, a box of all states within a bound of its path)."""
+        """Return the error at the end of a step, and a box of all states within a bound of its path."""
         span = arb(0).union(h)
         reach = self.at(path, span)
         half, size = bound / self.weight, self.n * self.m
@@ -167,7 +167,7 @@ class Run(Motion):
         return (rate.max(arb(0)) * h).exp() * (error + h * defect), box
 
     def defect(self, t: arb, h: arb, path: Sequence[Vector]) -> arb:
-        """A bound of |y'' − u(t, y, y')| on a step. (y is the integral of its velocity, and has no other defect.)
+        """Return a bound of the defect |y'' − u(t, y, y')| of a path on a step.
 
         Where every pair is on one piece of its law: the coefficients of the difference at the begin of the step, and of
         u the next one at any time of it. Elsewhere: the difference at the begin, and its slope during the step.
@@ -195,7 +195,7 @@ class Run(Motion):
         return self.length(total)
 
     def logarithmic_norm(self, slope: arb_mat) -> arb:
-        """A bound μ of ⟨e, A e⟩/|e|² for every matrix A in the balls, e in the weighted coordinates (w q, p)."""
+        """Return a bound μ of ⟨e, A e⟩/|e|² over all A in the balls, in the weighted coordinates (w q, p)."""
         size, w, a = self.n * self.m, self.weight, slope.tolist()
         scale = [w] * size + [arb(1)] * size
         rows = [
@@ -211,14 +211,14 @@ class Run(Motion):
         raise AssertionError
 
     def norm(self, x: Vector) -> arb:
-        """√(w²|q|² + |p|²)."""
+        """Return √(w²|q|² + |p|²)."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
 
 
 @contextmanager
 def capped(length: int) -> Iterator[None]:
-    """Series to so many coefficients."""
+    """Set the length of series inside the block."""
     before, ctx.cap = ctx.cap, length
     try:
         yield
@@ -227,7 +227,7 @@ def capped(length: int) -> Iterator[None]:
 
 
 def positive(rows: list[list[arb]]) -> bool:
-    """Whether every symmetric matrix in the balls is certainly positive definite: L D Lᵀ has D > 0."""
+    """Return whether every symmetric matrix in the balls is certainly positive definite."""
     for k, pivot in enumerate(rows):
         if not pivot[k] > 0:
             return False
@@ -239,11 +239,11 @@ def positive(rows: list[list[arb]]) -> bool:
 
 
 def same(stated: str, value: arb, *, down: bool) -> bool:
-    """Whether a decimal is the one that bounds a number."""
+    """Return whether a stated decimal is the rounded bound of a number."""
     return stated == (at_least(value) if down else at_most(value))
 
 
 def exact(text: str) -> Fraction:
-    """A number in hexadecimal, mantissa and exponent of 2: -0x3p-1 is −3/2."""
+    """Return a number from its hexadecimal mantissa and exponent of 2: -0x3p-1 is −3/2."""
     mantissa, _, exponent = text.partition("p")
     return Fraction(int(mantissa, 16)) * Fraction(2) ** int(exponent)

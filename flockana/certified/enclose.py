@@ -1,4 +1,4 @@
-"""`enclose`: a run as a sequence of sets that provably hold it."""
+"""`enclose`: rigorous enclosure of a run, step by step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.certified.flow import Flow
@@ -35,7 +35,7 @@ _BLUR = 1e-4  # by which a step may let the set grow
 
 @dataclass(frozen=True)
 class _Settings:
-    """The knobs of `enclose`, and the law's length."""
+    """Options of `enclose`, and the law's length."""
 
     order: int
     remainder: float
@@ -74,8 +74,6 @@ def enclose(
         Under the latter two the γ-agent is a `StaticTarget` or a `LinearTarget`; each obstacle is a `Sphere`.
     q0, p0 : array_like, shape (n, m)
         Initial positions and velocities, exact.
-    t_span : (float, float)
-        Start and end.
     radius : float or (float, float)
         Of the box of starts: of each coordinate of q0, and of p0 (by default the same number).
     order : int
@@ -136,7 +134,7 @@ def _collected(
     most: int,
     progress: bool,
 ) -> Tube:
-    """All steps, or those up to Ctrl-C or to where the tube breaks."""
+    """Return all steps, or those before Ctrl-C or the failure of the enclosure."""
     flow = flow_of(law, *q0.shape)
     radius = [arb(r) for r in radii for _ in range(q0.size)]
     start = StateSet.box([arb(float(x)) for x in (*q0.ravel(), *p0.ravel())], radius)
@@ -144,7 +142,7 @@ def _collected(
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 for t, step in _steps(flow, start, span, knobs):
                     if isinstance(step, str):
                         message = step
@@ -166,7 +164,7 @@ def _collected(
 def _steps(
     flow: Flow, start: StateSet, span: tuple[float, float], knobs: _Settings
 ) -> Iterator[tuple[float, Step | str]]:
-    """The steps one by one, each with its end; a text instead of one that cannot be taken."""
+    """Yield each step with its end; a text instead of a step that cannot be proved."""
     t, current, own = span[0], start, 1.0 / flow.pace
     wanted = 0.1 * own
     while t < span[1]:
@@ -207,18 +205,18 @@ def _steps(
 
 
 def _excess(flow: Flow, step: Step, knobs: _Settings) -> float:
-    """What a step adds, of what it may: the remainder of the knobs, or a part of the set's own width."""
+    """Return a step's remainder relative to what is allowed."""
     widest = size(flow, [arb(x.rad()) for x in step.after.hull])
     return step.added / max(knobs.remainder * knobs.length, _PART * widest)
 
 
 def _factor(excess: float, order: int) -> float:
-    """By what a step may be longer, if what it adds falls like a power of its length."""
+    """Return the factor to lengthen a step by, from the order of its remainder."""
     return float(0.9 * excess ** (-1.0 / order)) if excess > 0.0 else inf
 
 
 def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[float, float | None]:
-    """(length of a Taylor step, length of one across a switch if the set lies on one): proposals in floating point."""
+    """Return lengths of the next Taylor step and of a step across a switch, proposed in floating point."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
     (q, p), radii = state[:, 0].reshape(2, flow.n, flow.m), state[:, 1].reshape(2, -1)
     wide, blown = (2.0 * sqrt(flow.m) * float(part.max()) for part in radii)
@@ -237,7 +235,7 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
 
 
 def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
-    """(how far beyond a switch, how fast it goes away), of each pair and of each agent in each term."""
+    """Return how far each pair and agent is beyond a switch, and how fast it moves away."""
     eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
     switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     for i, j in combinations(range(flow.n), 2):
@@ -251,7 +249,7 @@ def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, flo
 
 
 def _where(flow: Flow, current: StateSet) -> str:
-    """Which pairs and agents are about a switching distance, in words."""
+    """Return in words which pairs and agents are about a switching distance."""
     names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
     names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
     about = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]

@@ -1,4 +1,4 @@
-"""The right-hand side of Algorithms 1 to 3 on balls and on power series in time (Arb), and its Taylor coefficients.
+"""Right-hand side of Algorithms 1 to 3 on balls and on power series in time (Arb).
 
 A state is a list of 2 n m numbers, all coordinates of q and then all of p, agent by agent. What is written here for one
 number holds for a ball (`arb`: an enclosure over all states in a box, also across the distances where the pair law is
@@ -25,7 +25,7 @@ Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agen
 
 @contextmanager
 def series_length(length: int) -> Iterator[None]:
-    """Series arithmetic to so many coefficients."""
+    """Set the length of power series inside the block."""
     before, ctx.cap = ctx.cap, length
     try:
         yield
@@ -35,7 +35,7 @@ def series_length(length: int) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Flow:
-    """q' = p, p' = u(t, q, p) of Algorithm 1, 2 or 3 in balls.
+    """Right-hand side q' = p, p' = u(t, q, p) of Algorithm 1, 2 or 3 in balls.
 
     Attributes
     ----------
@@ -60,18 +60,18 @@ class Flow:
     terms: tuple[AgentTerm, ...] = ()
 
     def pieces(self, state: Sequence[arb]) -> Pieces:
-        """On which piece of its law each pair and each agent is, anywhere in a box."""
+        """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
         q = self.split(state)[0]
         pairs = [self.pair.piece(squared_distance(q[i], q[j])) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
-        """Positions and velocities, agent by agent."""
+        """Return positions and velocities, grouped by agent."""
         m, half = self.m, self.n * self.m
         return [state[k : k + m] for k in range(0, half, m)], [state[k : k + m] for k in range(half, 2 * half, m)]
 
     def input(self, t: Any, state: Sequence[Any], pieces: Pieces) -> list[Any]:
-        """u(t, q, p), coordinate by coordinate."""
+        """Return u(t, q, p), coordinate by coordinate."""
         (q, p), m = self.split(state), self.m
         u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
         for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
@@ -90,7 +90,7 @@ class Flow:
         return [x for agent in u for x in agent]
 
     def powers(self, state: Sequence[Any], pieces: Pieces) -> list[Any]:
-        """dH/dt, of all pairs and then of each term: −c2α Σ a_ij ‖p_j − p_i‖², and what the terms add by themselves."""
+        """Return the parts of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² of all pairs, then the power of each term."""
         q, p = self.split(state)
         zero = 0 * q[0][0]
         heat = zero
@@ -107,7 +107,7 @@ class Flow:
         return [-self.damping * heat, *terms]
 
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
-        """(∂u/∂q, ∂u/∂p), square tables; what is 0 everywhere is the number 0."""
+        """Return (∂u/∂q, ∂u/∂p), square tables with the number 0 where nothing depends."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = _table(size), _table(size)
         for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
@@ -133,14 +133,14 @@ class Flow:
         return by_q, by_p
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[AgentTerm, Pieces]]:
-        """Each term with the pieces of its agents."""
+        """Yield each term with the pieces of its agents."""
         first = self.n * (self.n - 1) // 2
         for term in self.terms:
             yield term, pieces[first : first + self.n]
             first += self.n
 
     def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
-        """Taylor coefficients 0 to `order` of each coordinate of the solutions from a box, at a ball of times."""
+        """Return Taylor coefficients 0 to `order` of the solutions from a box, at a ball of times."""
         half = self.n * self.m
         path = [[x] for x in state]
         for k in range(order):
@@ -153,7 +153,7 @@ class Flow:
         return path
 
     def variation(self, t: arb, path: Sequence[Sequence[arb]], order: int, pieces: Pieces) -> list[arb_mat]:
-        """Taylor coefficients 0 to `order` of ∂x(t + s)/∂x(t), a matrix, along a path with that many known."""
+        """Return Taylor coefficients 0 to `order` of ∂x(t + s)/∂x(t) along a path."""
         half = self.n * self.m
         with series_length(order):
             series = [arb_series(coefficients[:order]) for coefficients in path]
@@ -170,18 +170,18 @@ class Flow:
         return [stacked(a, b) for a, b in zip(upper, lower, strict=True)]
 
     def rate(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """x' = (p, u), on a box that may lie on several pieces."""
+        """Return x' = (p, u) on a box that may lie on several pieces."""
         return [*state[self.n * self.m :], *self.input(t, state, pieces)]
 
     def jacobian(self, t: arb, state: Sequence[arb], pieces: Pieces) -> arb_mat:
-        """∂(p, u)/∂(q, p), on a box that may lie on several pieces."""
+        """Return ∂(p, u)/∂(q, p) on a box that may lie on several pieces."""
         half = self.n * self.m
         by_q, by_p = self.slopes(t, state, pieces)
         rows = [[int(c == half + r) for c in range(2 * half)] for r in range(half)]
         return arb_mat(rows + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
 
     def acceleration(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """x'' = ∂x'/∂x x' + ∂x'/∂t, continuous, on a box that may lie on several pieces."""
+        """Return x'' = ∂x'/∂x x' + ∂x'/∂t on a box that may lie on several pieces."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
         half, q = self.n * self.m, self.split(state)[0]
         by_time = [
@@ -191,17 +191,17 @@ class Flow:
 
 
 def squared_distance(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """‖a − b‖² of two boxes, never below 0."""
+    """Return ‖a − b‖² of two boxes, never below 0."""
     return sum((square(x - y) for x, y in zip(a, b, strict=True)), arb(0))
 
 
 def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
-    """One matrix above another."""
+    """Return one matrix stacked above another."""
     return arb_mat(upper.nrows() + lower.nrows(), upper.ncols(), upper.entries() + lower.entries())
 
 
 def _norm2(x: Sequence[Any]) -> Any:
-    """‖x‖² of balls or of series."""
+    """Return ‖x‖² of balls or of series."""
     return sum(
         (square(a) if isinstance(a, arb) else a * a for a in x[1:]),
         square(x[0]) if isinstance(x[0], arb) else x[0] * x[0],
@@ -213,12 +213,12 @@ def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
 
 
 def _pair(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any]:
-    """(stress, adjacency) on a ball or along a series."""
+    """Return (stress, adjacency) on a ball or along a series."""
     return pair_hull(s2, law)[:2] if isinstance(s2, arb) else pair_series(s2, law, piece)
 
 
 def _pair_and_slopes(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any, Any, Any]:
-    """(stress, adjacency, and their slopes by s²) on a ball or along a series."""
+    """Return (stress, adjacency, and their slopes by s²) on a ball or along a series."""
     return pair_hull(s2, law) if isinstance(s2, arb) else (*pair_series(s2, law, piece), *pair_slopes(s2, law, piece))
 
 
@@ -227,18 +227,18 @@ def _table(size: int) -> list[list[Any]]:
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
-    """Add what coordinate h of two agents' difference pulls coordinate k of one by, and of the other back."""
+    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction."""
     for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
         table[row * m + k][other * m + h] += value if sign > 0 else -value
 
 
 def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
-    """The k-th coefficients of a table of series."""
+    """Return the k-th coefficients of a table of series."""
     return arb_mat(
         [[entry[k] if isinstance(entry, arb_series) else (entry if k == 0 else 0) for entry in row] for row in table]
     )
 
 
 def _block(half: int, which: int) -> arb_mat:
-    """The upper (0) or lower (1) half of the identity."""
+    """Return the upper (0) or lower (1) half of the identity."""
     return arb_mat([[int(c == r + which * half) for c in range(2 * half)] for r in range(half)])

@@ -1,4 +1,4 @@
-"""The form of a certificate: which keys it has, at every depth, and what a number is written like.
+"""Expected form of a certificate: its keys at every depth, and how numbers are written.
 
 A form is a dict of forms by key, a list of one form for all entries, or one of the words below. What a checker does not
 read has no place in a certificate, or it would be believed unseen.
@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from flockana.base.errors import FlockanaError, told
+from flockana.base.errors import FlockanaError, format_value
 
 NUMBER, BINARY, WHOLE, TRUTH, TEXT, ANY = "number", "binary", "whole", "truth", "text", "any"
 MADE_WITH = {"flockana": TEXT, "python-flint": TEXT}
@@ -32,11 +32,11 @@ _TYPES = {
 
 
 class RejectedError(FlockanaError):
-    """A certificate that does not prove what it says."""
+    """Exception for a certificate that does not prove its statement."""
 
 
 def ensure_form(data: Any, form: Any, where: str = "it") -> None:
-    """Raise `RejectedError` unless data from JSON have a form, in every key and every entry.
+    """Raise `RejectedError` unless JSON data have the expected form in every key and entry.
 
     Examples
     --------
@@ -68,4 +68,4 @@ def ensure_form(data: Any, form: Any, where: str = "it") -> None:
 
 def _ensure(holds: bool, data: Any, where: str, expected: str) -> None:
     if not holds:
-        raise RejectedError(f"{where} = {told(data)[:_SHOWN]}: expected {expected}")
+        raise RejectedError(f"{where} = {format_value(data)[:_SHOWN]}: expected {expected}")

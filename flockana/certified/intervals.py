@@ -17,18 +17,18 @@ from flint import acb, arb, ctx, fmpq
 
 
 def ball(x: Any) -> arb:
-    """An exact number, or a ball, as a ball at the present precision."""
+    """Return an exact number, or a ball, as a ball at the present precision."""
     return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
 
 
 def exact(x: Any) -> fmpq:
-    """A number as a rational: a float or a string is the decimal that it prints as, 0.1 = 1/10."""
+    """Return a number as the rational of its printed decimal, 0.1 = 1/10."""
     fraction = Fraction(str(x))
     return fmpq(fraction.numerator, fraction.denominator)
 
 
 def hull(*balls: arb) -> arb:
-    """The smallest ball around several."""
+    """Return the smallest ball around several."""
     first, *rest = balls
     for one in rest:
         first = first.union(one)
@@ -36,23 +36,23 @@ def hull(*balls: arb) -> arb:
 
 
 def square(x: arb) -> arb:
-    """x², never below 0."""
+    """Return x², never below 0."""
     return (x * x).nonnegative_part()
 
 
 def monotone(f: Callable[[arb], arb], x: arb) -> arb:
-    """The range of a monotone function on a ball, from the ends of the ball: no overestimation."""
+    """Return the range of a monotone function on a ball, from the ends of the ball."""
     return f(x) if x.is_exact() else hull(f(x.lower()), f(x.upper()))
 
 
 def clamp(x: arb) -> arb:
-    """The nearest number in [0, 1]."""
+    """Return the nearest number in [0, 1]."""
     return x.max(arb(0)).min(arb(1))
 
 
 @dataclass(frozen=True)
 class AlphaParameters:
-    """Parameters of the α-pair law as exact rationals; decimals as printed, d = "8.4" or 8.4 alike."""
+    """Parameters of the α-pair law as exact rationals of their printed decimals."""
 
     d: fmpq = 7
     r: fmpq = "8.4"
@@ -68,7 +68,7 @@ class AlphaParameters:
 
     @classmethod
     def of(cls, alpha: Any) -> AlphaParameters:
-        """Of an `AlphaInteraction`, each number as the decimal that it prints as."""
+        """Return the parameters of an `AlphaInteraction` as exact decimals."""
         return cls(**{field.name: getattr(alpha, field.name) for field in fields(cls)})
 
     def __str__(self) -> str:
@@ -90,7 +90,7 @@ class BetaParameters:
 
     @classmethod
     def of(cls, beta: Any) -> BetaParameters:
-        """Of a `BetaInteraction`, each number as the decimal that it prints as."""
+        """Return the parameters of a `BetaInteraction` as exact decimals."""
         return cls(**{field.name: getattr(beta, field.name) for field in fields(cls)})
 
     def __str__(self) -> str:
@@ -107,82 +107,82 @@ def _listed(bundle: Any) -> str:
 
 
 def sigma_of_square(s: arb, eps: Any) -> arb:
-    """‖x‖_σ as a function of s = ‖x‖² >= 0, without cancellation at small s."""
+    """Return ‖x‖_σ as a function of s = ‖x‖² >= 0, without cancellation at small s."""
     s = ball(s).nonnegative_part()
     return monotone(lambda s: s / ((1 + ball(eps) * s).sqrt() + 1), s)
 
 
 def sigma_norm(x: arb, eps: Any) -> arb:
-    """‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length."""
+    """Return ‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length."""
     return sigma_of_square(square(ball(x)), eps)
 
 
 def sigma_1(s: arb) -> arb:
-    """s/√(1 + s²), increasing."""
+    """Return s/√(1 + s²), increasing."""
     return monotone(lambda s: s * (1 + square(s)).rsqrt(), ball(s))
 
 
 def sigma_1_slope(s: arb) -> arb:
-    """(1 + s²)^(−3/2)."""
+    """Return (1 + s²)^(−3/2)."""
     root = (1 + square(ball(s))).rsqrt()
     return root * root * root
 
 
 def bump(z: arb, h: Any) -> arb:
-    """ρ_h(z) for z >= 0, 0 < h < 1: nonincreasing, so that no ball is too wide for it."""
+    """Return ρ_h(z) for z >= 0, 0 < h < 1, nonincreasing."""
     return monotone(lambda z: (1 + (clamp((z - ball(h)) / (1 - ball(h)))).cos_pi()) / 2, ball(z))
 
 
 def bump_slope(z: arb, h: Any) -> arb:
-    """ρ_h'(z), continuous: −π sin(π (z − h)/(1 − h))/(2 (1 − h)) on [h, 1], 0 elsewhere."""
+    """Return ρ_h'(z), continuous: −π sin(π (z − h)/(1 − h))/(2 (1 − h)) on [h, 1], 0 elsewhere."""
     rest = 1 - ball(h)
     return -arb.pi() / (2 * rest) * clamp((ball(z) - ball(h)) / rest).sin_pi()
 
 
 def shift(a: Any, b: Any) -> arb:
-    """c = |a − b|/√(4ab), which makes φ(0) = 0."""
+    """Return c = |a − b|/√(4ab), which makes φ(0) = 0."""
     return (ball(b) - ball(a)) / (4 * ball(a) * ball(b)).sqrt()
 
 
 def phi(s: arb, a: Any, b: Any) -> arb:
-    """φ(s) = ½[(a+b) σ₁(s+c) + (a−b)], increasing."""
+    """Return φ(s) = ½[(a+b) σ₁(s+c) + (a−b)], increasing."""
     return ((ball(a) + ball(b)) * sigma_1(ball(s) + shift(a, b)) + ball(a) - ball(b)) / 2
 
 
 def phi_slope(s: arb, a: Any, b: Any) -> arb:
-    """φ'(s) > 0."""
+    """Return φ'(s) > 0."""
     return (ball(a) + ball(b)) / 2 * sigma_1_slope(ball(s) + shift(a, b))
 
 
 def d_alpha(par: AlphaParameters) -> arb:
-    """‖d‖_σ."""
+    """Return ‖d‖_σ."""
     return sigma_norm(ball(par.d), par.eps)
 
 
 def r_alpha(par: AlphaParameters) -> arb:
-    """‖r‖_σ."""
+    """Return ‖r‖_σ."""
     return sigma_norm(ball(par.r), par.eps)
 
 
 def adjacency(z: arb, par: AlphaParameters) -> arb:
-    """a_ij = ρ_h(z/r_α)."""
+    """Return a_ij = ρ_h(z/r_α)."""
     return bump(ball(z) / r_alpha(par), par.h)
 
 
 def phi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """φ_α(z) = ρ_h(z/r_α) φ(z − d_α)."""
+    """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α)."""
     return adjacency(z, par) * phi(ball(z) - d_alpha(par), par.a, par.b)
 
 
 def phi_alpha_slope(z: arb, par: AlphaParameters) -> arb:
-    """dφ_α/dz, continuous."""
+    """Return dφ_α/dz, continuous."""
     x, s, cutoff = ball(z) / r_alpha(par), ball(z) - d_alpha(par), r_alpha(par)
     falling = bump_slope(x, par.h) / cutoff * phi(s, par.a, par.b)
     return falling + bump(x, par.h) * phi_slope(s, par.a, par.b)
 
 
 def psi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """ψ_α(z) = ∫_{d_α}^{z} φ_α for z >= 0: falls to 0 at d_α, rises up to r_α, constant beyond.
+    """Return ψ_α(z) = ∫_{d_α}^{z} φ_α for z >= 0: decreasing to d_α, increasing to r_α, constant beyond.
 
     Closed form where ρ_h = 1; on the taper the integral is enclosed by Arb.
     """
@@ -195,19 +195,19 @@ def psi_alpha(z: arb, par: AlphaParameters) -> arb:
 
 
 def _psi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """ψ_α at a point."""
+    """Return ψ_α at a point."""
     at_zero, at_cutoff = _alpha_levels(par, ctx.prec)
     return (at_cutoff if z >= r_alpha(par) else _alpha_from_knee(z, par)) - at_zero
 
 
 @cache
 def _alpha_levels(par: AlphaParameters, prec: int) -> tuple[arb, arb]:
-    """The integral of φ_α from h r_α to d_α and to r_α; what is kept holds at the precision it was computed at."""
+    """Return the integrals of φ_α from h r_α to d_α and to r_α (cached by precision)."""
     return _alpha_from_knee(d_alpha(par), par), _alpha_from_knee(r_alpha(par), par)
 
 
 def _alpha_from_knee(z: arb, par: AlphaParameters) -> arb:
-    """The integral of φ_α from h r_α to z: closed form before, enclosed by Arb after; z may lie on either side."""
+    """Return the integral of φ_α from h r_α to z: closed form before, enclosed by Arb after."""
     cutoff = r_alpha(par)
     knee = ball(par.h) * cutoff
     before = arb(0) if z >= knee else _alpha_closed(z.min(knee), par) - _alpha_closed(knee, par)
@@ -216,13 +216,13 @@ def _alpha_from_knee(z: arb, par: AlphaParameters) -> arb:
 
 
 def _alpha_closed(z: arb, par: AlphaParameters) -> arb:
-    """An antiderivative of φ(z − d_α)."""
+    """Return an antiderivative of φ(z − d_α)."""
     a, b, s = ball(par.a), ball(par.b), z - d_alpha(par) + shift(par.a, par.b)
     return ((a + b) * (1 + square(s)).sqrt() + (a - b) * z) / 2
 
 
 def _alpha_taper(low: arb, high: arb, par: AlphaParameters) -> arb:
-    """The integral of φ_α between two points of the taper."""
+    """Return the integral of φ_α between two points of the taper."""
     a, b, h, cutoff = ball(par.a), ball(par.b), ball(par.h), r_alpha(par)
     offset = shift(par.a, par.b) - d_alpha(par)
 
@@ -235,39 +235,39 @@ def _alpha_taper(low: arb, high: arb, par: AlphaParameters) -> arb:
 
 
 def c_star(par: AlphaParameters) -> arb:
-    """c* = ψ_α(0), the energy of a coincident pair (without the gain c1α)."""
+    """Return c* = ψ_α(0), the energy of a coincident pair (without the gain c1α)."""
     return psi_alpha(arb(0), par)
 
 
 def far_potential(par: AlphaParameters) -> arb:
-    """ψ_α(r_α), what every pair out of range adds to V."""
+    """Return ψ_α(r_α), the part of V of every pair out of range."""
     return psi_alpha(r_alpha(par), par)
 
 
 def d_beta(par: BetaParameters) -> arb:
-    """‖d'‖_σ."""
+    """Return ‖d'‖_σ."""
     return sigma_norm(ball(par.d), par.eps)
 
 
 def phi_beta(z: arb, par: BetaParameters) -> arb:
-    """φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1)."""
+    """Return φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1)."""
     return bump(ball(z) / d_beta(par), par.h) * (sigma_1(ball(z) - d_beta(par)) - 1)
 
 
 def phi_beta_slope(z: arb, par: BetaParameters) -> arb:
-    """dφ_β/dz, continuous."""
+    """Return dφ_β/dz, continuous."""
     x, s = ball(z) / d_beta(par), ball(z) - d_beta(par)
     falling = bump_slope(x, par.h) / d_beta(par) * (sigma_1(s) - 1)
     return falling + bump(x, par.h) * sigma_1_slope(s)
 
 
 def psi_beta(z: arb, par: BetaParameters) -> arb:
-    """ψ_β(z) = ∫_{d_β}^{z} φ_β for z >= 0: falls to 0 at d_β, and stays there."""
+    """Return ψ_β(z) = ∫_{d_β}^{z} φ_β for z >= 0: decreasing to d_β, 0 beyond."""
     return monotone(lambda z: _psi_beta(z, par), ball(z).nonnegative_part())
 
 
 def _psi_beta(z: arb, par: BetaParameters) -> arb:
-    """ψ_β at a point."""
+    """Return ψ_β at a point."""
     cutoff = d_beta(par)
     if z >= cutoff:
         return arb(0)
@@ -277,12 +277,12 @@ def _psi_beta(z: arb, par: BetaParameters) -> arb:
 
 
 def _beta_closed(s: arb) -> arb:
-    """An antiderivative of σ₁(s) − 1."""
+    """Return an antiderivative of σ₁(s) − 1."""
     return (1 + square(s)).sqrt() - s
 
 
 def _beta_taper(low: arb, par: BetaParameters) -> arb:
-    """The integral of −φ_β from a point of the taper to its end."""
+    """Return the integral of −φ_β from a point of the taper to its end."""
     h, cutoff = ball(par.h), d_beta(par)
 
     def integrand(z: acb, analytic: bool) -> acb:

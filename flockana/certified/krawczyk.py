@@ -1,4 +1,4 @@
-"""Verified linear algebra on balls: Krawczyk's test for a zero, and a lower bound of the eigenvalues of a matrix.
+"""Verified linear algebra on balls: Krawczyk's test for a zero, and lower bounds of eigenvalues.
 
 Floating point only proposes, an inverse or eigenvectors; what is concluded holds whatever it proposed.
 """
@@ -12,17 +12,17 @@ from flint import arb, arb_mat
 
 
 def column(values: Sequence[arb]) -> arb_mat:
-    """A vector as a matrix of one column."""
+    """Return a vector as a matrix of one column."""
     return arb_mat(len(values), 1, list(values))
 
 
 def midpoints(matrix: arb_mat) -> arb_mat:
-    """The matrix of the balls' middles."""
+    """Return the midpoints of a matrix of balls."""
     return arb_mat(matrix.nrows(), matrix.ncols(), [entry.mid() for entry in matrix.entries()])
 
 
 def identity(size: int) -> arb_mat:
-    """1 on the diagonal."""
+    """Return the identity matrix."""
     return arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
 
 
@@ -32,7 +32,7 @@ def enclose_zero(
     centre: Sequence[arb],
     radius: arb,
 ) -> list[arb] | None:
-    """Balls that hold the one zero of f in the box of that radius about the centre; None if the test fails.
+    """Return balls that hold the unique zero of f in a box; None if Krawczyk's test fails.
 
     Krawczyk: with an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K lies
     inside B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
@@ -47,7 +47,7 @@ def enclose_zero(
 
 
 def least_eigenvalue(matrix: arb_mat) -> arb | None:
-    """A number below every eigenvalue of every symmetric matrix within the balls; None unless it is above 0.
+    """Return a positive lower bound of the eigenvalues of the matrices in the balls; None if there is none.
 
     With Q any matrix, here approximate eigenvectors, Gershgorin's discs bound the eigenvalues of QᵀAQ by some g. If
     g > 0, Q is invertible, and ⟨Qx, A Qx⟩ >= g |x|² >= g |Qx|²/|QᵀQ|: the eigenvalues of A are at least g/|QᵀQ|.
@@ -64,5 +64,5 @@ def least_eigenvalue(matrix: arb_mat) -> arb | None:
 
 
 def _others(row: Sequence[arb], i: int) -> arb:
-    """Radius of a disc."""
+    """Return the radius of a Gershgorin disc."""
     return sum((abs(x) for j, x in enumerate(row) if j != i), arb(0))

@@ -1,4 +1,4 @@
-"""What may be enclosed: a law as its right-hand side in balls."""
+"""Laws that `enclose` supports, as right-hand sides in balls."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LED = (Algorithm2, Algorithm3)
 
 
 def ensure_enclosable(law: Any) -> None:
-    """Raise unless a law is one that `enclose` knows.
+    """Raise unless `enclose` supports a law.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def ensure_enclosable(law: Any) -> None:
 
 
 def flow_of(law: Any, n: int, m: int) -> Flow:
-    """The law for n agents in m dimensions, at the present precision, each number as the decimal that it prints as."""
+    """Return a law for n agents in m dimensions in balls, each number as its exact decimal."""
     gains: Any = law.gains
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
@@ -64,7 +64,7 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
 
 
 def sphere_terms(law: Algorithm3) -> tuple[SphereTerm, ...]:
-    """Of each obstacle of a law, at the present precision."""
+    """Return the terms of a law's obstacles at the present precision."""
     gains: Any = law.gains
     beta, pull, drag = BetaNumbers.of(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
     spheres = [cast(Sphere, obstacle) for obstacle in law.obstacles]

@@ -1,4 +1,4 @@
-"""Energies that bound what a flock can do, as balls: where two agents may coincide, and where one may be left behind.
+"""Energy levels as balls: below which no two agents can coincide, and no agent can leave.
 
 The counting is that of `flockana.equilibria.barrier`, with every length and level enclosed, and each count rounded to
 the side that is safe.
@@ -30,12 +30,12 @@ _HALVINGS = 40  # of the bracket of the shortest length of a bound pair
 
 
 def gain(law: Any) -> arb:
-    """c1α ℓ², by which V in units of ℓ is multiplied."""
+    """Return c1α ℓ², the factor of V in units of ℓ."""
     return arb(exact(law.gains.c1_alpha)) * arb(exact(law.alpha.unit)) ** 2
 
 
 def coincident_floor(alpha: Any, n: int, m: int) -> arb:
-    """A lower bound of V of n agents, two of which coincide, in units of ℓ²."""
+    """Return a lower bound of V of n agents, two of which coincide, in units of ℓ²."""
     with ctx.workprec(BITS):
         par = scaled(alpha)
         clique = _largest_clique(par, m)
@@ -46,7 +46,7 @@ def coincident_floor(alpha: Any, n: int, m: int) -> arb:
 
 
 def coincident_state(alpha: Any, n: int, m: int) -> arb:
-    """V, in units of ℓ², of a state of n agents two of which coincide."""
+    """Return V, in units of ℓ², of a state of n agents two of which coincide."""
     q = coincident_lattice(alpha, n, m)
     with ctx.workprec(BITS):
         par, area = scaled(alpha), arb(exact(alpha.unit)) ** 2
@@ -58,7 +58,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
 
 
 def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
-    """V, in units of ℓ², of the best lattice of n − 1 agents and one agent far away; None if no lattice is exact."""
+    """Return V, in units of ℓ², of the best lattice of n − 1 agents with one agent far away; None if unknown."""
     with ctx.workprec(BITS):
         par = scaled(alpha)
         square_of_kappa = (par.r / par.d) ** 2
@@ -73,7 +73,7 @@ def _pairs(q: Any) -> list[tuple[Any, Any]]:
 
 
 def _shortest_bound(par: AlphaParameters) -> fmpq | None:
-    """A length below which a pair certainly has ψ_α > ψ_α(r_α); None where 0 is not certainly one.
+    """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none.
 
     ψ_α falls up to d_α, so that it holds below any length at which it holds.
     """
@@ -87,7 +87,7 @@ def _shortest_bound(par: AlphaParameters) -> fmpq | None:
 
 
 def _largest_clique(par: AlphaParameters, m: int) -> int | None:
-    """At most so many points have all their distances between the shortest of a bound pair and r; None if unbounded."""
+    """Return a bound of the number of points whose pairs all have ψ_α < ψ_α(r_α); None if unbounded."""
     shortest = _shortest_bound(par)
     if not shortest:
         return None
@@ -100,7 +100,7 @@ def _largest_clique(par: AlphaParameters, m: int) -> int | None:
 
 
 def _least_ratios(m: int) -> dict[int, arb]:
-    """Least ratio of the longest to the shortest distance among so many points (sources: `equilibria.barrier`)."""
+    """Return the least ratio of longest to shortest distance by number of points (`equilibria.barrier`)."""
     if m == 2:
         return {4: arb(2).sqrt(), 5: (1 + arb(5).sqrt()) / 2, 6: 2 * arb(fmpq(2, 5)).sin_pi(), 7: arb(2)}
     return {5: arb(fmpq(12, 7)).sqrt()} if m == 3 else {}

@@ -1,4 +1,4 @@
-"""One rigorous step of an ordinary differential equation: Lohner's method in ball arithmetic (Arb).
+"""Rigorous step of an ordinary differential equation: Lohner's method in ball arithmetic (Arb).
 
 The set of possible states is x̂ + C r₀ + B r: a point, what is left of the start, and all that was added since, each in
 coordinates that turn with the flow. A step of the Taylor polynomial moves the point, its derivative the sets, and
@@ -27,7 +27,7 @@ _VARIATION = 14  # order of the derivative of a step
 
 @dataclass(frozen=True)
 class StateSet:
-    """The states x̂ + C r₀ + B r.
+    """Set of states x̂ + C r₀ + B r.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class StateSet:
 
     @classmethod
     def box(cls, centre: Sequence[arb], radius: Sequence[arb]) -> StateSet:
-        """All states in a box."""
+        """Return the set of all states in a box."""
         middle = tuple(x.mid() for x in centre)
         spread = tuple(x - y + arb(0, r.upper()) for x, y, r in zip(centre, middle, radius, strict=True))
         size = len(middle)
@@ -55,13 +55,13 @@ class StateSet:
 
     @property
     def hull(self) -> list[arb]:
-        """The smallest box, in the coordinates of the state."""
+        """Return the smallest box, in the coordinates of the state."""
         spread = (self.c * column(self.start) + self.b * column(self.error)).entries()
         return [x + y for x, y in zip(self.centre, spread, strict=True)]
 
 
 class Step(NamedTuple):
-    """What one step proves.
+    """Proved enclosures of one step.
 
     Attributes
     ----------
@@ -88,12 +88,12 @@ class Step(NamedTuple):
 
 
 def variation_order(order: int) -> int:
-    """The order of the derivative of a Taylor step."""
+    """Return the order of the derivative of a Taylor step."""
     return min(_VARIATION, order - 1)
 
 
 def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
-    """A step of a Taylor polynomial; None if it is too long, or a pair may change its piece on the way."""
+    """Return a step by a Taylor polynomial; None if it is too long, or a pair may change its piece on the way."""
     span, box = _interval(h), before.hull
     if Piece.SWITCH in (pieces := flow.pieces(box)):
         return None
@@ -115,7 +115,7 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
-    """A step of second order, which needs the right-hand side C¹ only; None if it is too long.
+    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long.
 
     x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
     """
@@ -137,7 +137,7 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
 def _enclosed(
     flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
 ) -> tuple[list[arb], list[arb]] | None:
-    """(box that holds the solutions during a step, remainder at its end), if the Taylor series proves one.
+    """Return the box of the solutions during a step and the remainder at its end, if proved.
 
     If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
     would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
@@ -159,7 +159,7 @@ def _enclosed(
 
 
 def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | None:
-    """A box that no solution leaves: start + [0, h] x'(box) lies inside it."""
+    """Return a box that no solution leaves, since start + [0, h] x'(box) lies inside it."""
     image = list(start)
     for _ in range(_INFLATIONS):
         growth = _first_growth(image, span.upper())
@@ -174,7 +174,7 @@ def _picard(flow: Flow, t: arb, span: arb, start: Sequence[arb]) -> list[arb] | 
 
 
 def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
-    """By how much a candidate is made larger than what it should hold: an eighth, and never by nothing."""
+    """Return the margin added to a candidate box: an eighth, and never nothing."""
     half = len(box) // 2
     far, fast = (arb(max(x.abs_upper() for x in part)) for part in (box[:half], box[half:]))
     least = [(far + h * fast) * _GRAIN] * half + [(fast + far / h) * _GRAIN] * half
@@ -184,7 +184,7 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
 def _variation(
     flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
 ) -> tuple[arb_mat, arb_mat]:
-    """∂x(t + h)/∂x(t) on the whole set, a Taylor polynomial and a remainder; and the remainder alone.
+    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder.
 
     At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest row
     sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the identity
@@ -204,7 +204,7 @@ def _variation(
 
 
 def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) -> StateSet:
-    """The image of a set whose centre goes to `moved`, by the mean value theorem with derivatives in `slope`."""
+    """Return the image of a set by the mean value theorem, its centre at `moved`, derivatives in `slope`."""
     centre = tuple(x.mid() for x in moved)
     rest = column([x - y for x, y in zip(moved, centre, strict=True)])
     c, b = slope * before.c, slope * before.b
@@ -217,7 +217,7 @@ def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) 
 
 
 def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
-    """An exact matrix whose columns are orthogonal but for rounding, the first along the longest edge, and so on.
+    """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set.
 
     Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it does
     not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
@@ -234,7 +234,7 @@ def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
 
 
 def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
-    """(q_j − q_i of each pair, q_i − q_c of each agent), from what tells a linear combination of coordinates."""
+    """Return q_j − q_i of each pair and q_i − q_c of each agent, from linear combinations of coordinates."""
     n, m, share = flow.n, flow.m, arb(1) / flow.n
     relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
     deviations = [[combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)]
@@ -242,33 +242,33 @@ def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[lis
 
 
 def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: Sequence[arb], span: arb) -> arb:
-    """A linear combination of coordinates during a step: that of their polynomials, and their remainders."""
+    """Return a linear combination of coordinates during a step, from polynomials and remainders."""
     orders = range(len(path[0]))
     polynomial = [sum((weight * path[k][order] for k, weight in weights.items()), arb(0)) for order in orders]
     return _at(polynomial, span) + sum((weight * tail[k] for k, weight in weights.items()), arb(0))
 
 
 def size(flow: Flow, remainder: Sequence[arb]) -> float:
-    """The largest of some coordinates, velocities by what they go in the law's own time; nothing rests on it."""
+    """Return the largest coordinate, velocities scaled by the law's time; for step control only."""
     half = len(remainder) // 2
     far, fast = (max(float(x.abs_upper()) for x in part) for part in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)
 
 
 def _blur(flow: Flow, slope: arb_mat) -> float:
-    """The largest row sum of the radii of a derivative, velocities counting as in `_frame`; a proposal only."""
+    """Return the largest row sum of a derivative's radii; for step control only."""
     weights = np.repeat((1.0, 1.0 / flow.pace), slope.nrows() // 2)
     radii = np.array([[float(x.rad()) for x in row] for row in slope.tolist()])
     return float((radii * weights[:, None] / weights).sum(axis=1).max())
 
 
 def _interval(h: arb) -> arb:
-    """[0, h]."""
+    """Return the ball [0, h]."""
     return hull(arb(0), h)
 
 
 def _at(coefficients: Sequence[arb], s: arb) -> arb:
-    """A polynomial at a ball (Horner)."""
+    """Return a polynomial's value at a ball (Horner)."""
     total = arb(0)
     for coefficient in reversed(coefficients):
         total = total * s + coefficient

@@ -27,7 +27,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.decimals import floored, raised
+from flockana.certified.decimals import round_down, round_up
 from flockana.certified.intervals import ball
 
 _DIGITS, _CHOSEN = 3, 9  # of what is proved, and of the choice, some of whose differences are small
@@ -37,7 +37,7 @@ _HALVINGS = 60
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is known of U and of the damping in the basin: curvature λ, surplus s, damping μ <= D <= M."""
+    """Bounds of U and of the damping in the basin: curvature λ, surplus s, damping μ <= D <= M."""
 
     curvature: fmpq
     surplus: fmpq
@@ -47,7 +47,7 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Decay:
-    """ε, θ, κ and τ, and with them half the proved rate α, rounded down, and (1 + e)/(1 − e), rounded up."""
+    """Parameters ε, θ, κ, τ of the function, half the proved rate α, and the factor (1 + e)/(1 − e)."""
 
     eps: fmpq
     theta: fmpq
@@ -58,7 +58,7 @@ class Decay:
 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:
-    """The largest α of the inequalities; 0 if there is none above it. Exact."""
+    """Return the largest exact α of the inequalities; 0 if there is none above it."""
     curvature, least, most = bounds.curvature, bounds.least, bounds.most
     mixed = theta * bounds.surplus + (1 - theta) * curvature
     places = eps * (theta * curvature / 2 + mixed - kappa * most / 2) / (curvature / 2 + eps * tau / 2)
@@ -69,7 +69,7 @@ def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> f
 
 
 def decay(bounds: Bounds) -> Decay:
-    """About the best choice of ε, θ, κ and τ with e <= ½, proposed in floating point, and what it proves.
+    """Return nearly the best ε, θ, κ and τ with e <= ½, proposed in floating point, and the proved rate.
 
     Examples
     --------
@@ -86,14 +86,14 @@ def decay(bounds: Bounds) -> Decay:
         low, high = np.where(left, middle, low), np.where(left, high, middle)
     best = int(np.argmax(low))
     proposed = (eps[best], *(x[best] for x in _others(bounds, eps, low)))
-    eps_, theta, kappa, tau = (floored(arb(float(x)), _CHOSEN) for x in proposed)
-    rate = floored(rate_of(bounds, eps_, theta, kappa, tau) / 2, _DIGITS)
+    eps_, theta, kappa, tau = (round_down(arb(float(x)), _CHOSEN) for x in proposed)
+    rate = round_down(rate_of(bounds, eps_, theta, kappa, tau) / 2, _DIGITS)
     share = ball(eps_) / ball(bounds.curvature).sqrt()
-    return Decay(eps_, theta, kappa, tau, rate, raised((1 + share) / (1 - share), _DIGITS))
+    return Decay(eps_, theta, kappa, tau, rate, round_up((1 + share) / (1 - share), _DIGITS))
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """θ, κ and τ that suit ε and α best; κ and τ are not positive where α is too large."""
+    """Return θ, κ and τ best suited to ε and α; κ and τ are not positive where α is too large."""
     curvature, surplus, least, most = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     room = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
@@ -102,7 +102,7 @@ def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatAr
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
-    """What the inequality of the speeds leaves."""
+    """Return the slack in the inequality of the speeds."""
     _, kappa, tau = _others(bounds, eps, alpha)
     least, sound = float(bounds.least), tau > 0.0
     cost = 1.0 + 0.5 * least / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)

@@ -1,4 +1,4 @@
-"""The repulsion of a sphere, in balls and in series (Arb): the β-agent of an agent on an obstacle that rests.
+"""Repulsion of a sphere at rest in balls and series (Arb).
 
 With a = (x − y)/‖x − y‖ and the clearance c = ‖x − y‖ − R the β-agent is at x − c a and moves at μ (v − ⟨a, v⟩ a),
 μ = R/‖x − y‖. The force is analytic in x outside the centre while c stays on one piece of ρ_h: the surface is no switch
@@ -33,7 +33,7 @@ from flockana.certified.series import Piece
 
 @dataclass(frozen=True)
 class BetaNumbers:
-    """What the β-pair law is computed from, as balls at one precision, lengths in units of ℓ.
+    """Numbers of the β-pair law as balls at one precision, lengths in units of ℓ.
 
     Attributes
     ----------
@@ -56,14 +56,14 @@ class BetaNumbers:
 
     @classmethod
     def of(cls, beta: Any) -> BetaNumbers:
-        """Of a `BetaInteraction`, each of whose numbers counts as the decimal that it prints as."""
+        """Return the numbers of a `BetaInteraction` as exact decimals."""
         unit = exact(beta.unit)
         par = BetaParameters(d=exact(beta.d) / unit, eps=exact(beta.eps) * unit * unit, h=exact(beta.h))
         cutoff = d_beta(par)
         return cls(par, arb(par.eps), arb(par.h), cutoff, arb(par.h) * cutoff, arb(unit * unit))
 
     def piece(self, clearance: arb) -> Piece:
-        """The piece on which every clearance in a ball lies."""
+        """Return the piece of ρ_h on which every clearance in a ball lies."""
         z = sigma_of_square(square(clearance) / self.area, self.eps)
         if z > self.cutoff:
             return Piece.OUT
@@ -72,7 +72,7 @@ class BetaNumbers:
         return Piece.TAPER if z > self.knee and z < self.cutoff else Piece.SWITCH
 
     def weights(self, s2: Any, piece: Piece) -> tuple[Any, Any]:
-        """(φ_β/√(1 + εs²), b_ik) at a squared clearance, a ball on any pieces or a series on one."""
+        """Return (φ_β/√(1 + εs²), b_ik) at a squared clearance: a ball on any pieces, or a series on one."""
         if isinstance(s2, arb):
             z, slant = sigma_of_square(s2 / self.area, self.eps), (1 + self.eps * (s2 / self.area)).rsqrt()
             return phi_beta(z, self.par) * slant, bump(z / self.cutoff, self.par.h)
@@ -80,7 +80,7 @@ class BetaNumbers:
         return rho * action * slant, rho
 
     def slopes(self, s2: Any, piece: Piece) -> tuple[Any, Any]:
-        """The derivatives of `weights` by s²; continuous, so that their balls hold them on either side of a switch."""
+        """Return the derivatives of `weights` by s², continuous across switches."""
         if isinstance(s2, arb):
             z, slant = sigma_of_square(s2 / self.area, self.eps), (1 + self.eps * (s2 / self.area)).rsqrt()
             along = phi_beta_slope(z, self.par) - self.eps * slant * phi_beta(z, self.par)
@@ -92,7 +92,7 @@ class BetaNumbers:
         return along * slant * slant / (2 * self.area), falling * slant / (2 * self.area)
 
     def _along(self, s2: arb_series, piece: Piece) -> tuple[arb_series, ...]:
-        """(z, 1/√(1 + εs²), σ₁(z − d_β) − 1, its derivative by z, ρ_h) along a path, on one piece."""
+        """Return (z, 1/√(1 + εs²), σ₁(z − d_β) − 1, its derivative by z, ρ_h) along a path, on one piece."""
         slant = (1 + self.eps * (s2 / self.area)).rsqrt()
         z = ((1 + self.eps * (s2 / self.area)) * slant - 1) / self.eps
         s = z - self.cutoff
@@ -101,19 +101,19 @@ class BetaNumbers:
         return z, slant, s * root - 1, root * root * root, rho
 
     def _falling(self, z: arb_series, piece: Piece) -> arb_series:
-        """dρ_h/dz on a piece."""
+        """Return dρ_h/dz on a piece."""
         if piece is Piece.CORE:
             return arb_series([0])
         return -arb.pi() / (2 * (1 - self.h) * self.cutoff) * self._phase(z).sin_pi()
 
     def _phase(self, z: arb_series) -> arb_series:
-        """How far on the taper, from 0 to 1."""
+        """Return the position on the taper, from 0 to 1."""
         return (z / self.cutoff - self.h) / (1 - self.h)
 
 
 @dataclass(frozen=True)
 class SphereTerm(AgentTerm):
-    """c1β φ_β n̂ + c2β b (p̂ − v) of a sphere that rests.
+    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest.
 
     Attributes
     ----------
@@ -132,23 +132,23 @@ class SphereTerm(AgentTerm):
     damping: arb
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
-        """((x − y)/‖x − y‖, ‖x − y‖)."""
+        """Return ((x − y)/‖x − y‖, ‖x − y‖)."""
         away = [a - b for a, b in zip(x, self.centre, strict=True)]
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
         distance = sum(squares[1:], squares[0]).sqrt()
         return [a / distance for a in away], distance
 
     def clearance(self, x: Sequence[arb]) -> arb:
-        """‖x − y‖ − R, negative inside."""
+        """Return ‖x − y‖ − R, negative inside."""
         squares = sum((square(a - b) for a, b in zip(x, self.centre, strict=True)), arb(0))
         return squares.nonnegative_part().sqrt() - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
-        """The piece of ρ_h on which the clearance is, anywhere in a box."""
+        """Return the piece of ρ_h that holds the clearance, anywhere in a box."""
         return self.beta.piece(self.clearance(x))
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """How far beyond h d_β and d_β, as clearances, and how fast it goes away."""
+        """Return how far the clearance is beyond h d_β and d_β, and how fast it moves away."""
         away = x - np.array([float(y) for y in self.centre])
         distance = float(np.linalg.norm(away))
         speed = float(away @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
@@ -157,7 +157,7 @@ class SphereTerm(AgentTerm):
         return [(clearance - switch, speed) for switch in meet]
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²): not positive unless the agent is inside."""
+        """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, _dot(a, v)
         across = sum((_squared(w - radial * k) for k, w in zip(a, v, strict=True)), 0 * radial)
@@ -167,7 +167,7 @@ class SphereTerm(AgentTerm):
         return -self.damping * adjacency * (clearance / distance * across + _squared(radial))
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """The force at a position and a velocity."""
+        """Return the force at a position and a velocity."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, _dot(a, v)
         weight, adjacency = self.beta.weights(_squared(clearance), piece)
@@ -175,7 +175,7 @@ class SphereTerm(AgentTerm):
         return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Its derivatives by position and velocity, two tables.
+        """Return the derivatives of the force by position and velocity, two tables.
 
         With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
         """
@@ -206,7 +206,7 @@ class SphereTerm(AgentTerm):
 
 
 def _squared(x: Any) -> Any:
-    """x² of a ball, never below 0, or of a series."""
+    """Return x² of a ball, never below 0, or of a series."""
     return square(x) if isinstance(x, arb) else x * x
 
 

@@ -1,4 +1,4 @@
-"""A lower bound of a pair's second derivative along a displacement, uniform over all displacements up to a length.
+"""Lower bounds of a pair's second derivative, uniform over all displacements up to a length.
 
 Let e be the relative displacement of a pair at rest at Δ, of length ℓ0 and direction u, and f(Δ + e) = F(|Δ + e|).
 Sought are numbers α ("along") and β ("across") with
@@ -35,7 +35,7 @@ _SPARE = (0.03, 1e-5)  # of K (η/ℓ0)², and of K: what a proposed β keeps in
 
 @dataclass(frozen=True)
 class LengthCells:
-    """Enclosures of F'' and T over cells of lengths about ℓ0, kept: shells share them."""
+    """Cached enclosures of F'' and T over cells of lengths about ℓ0, shared by shells."""
 
     u: Structure
     rest: arb
@@ -43,7 +43,7 @@ class LengthCells:
     kept: dict[tuple[int, int], tuple[arb, arb, arb]] = field(default_factory=dict, compare=False)
 
     def at(self, level: int, k: int) -> tuple[arb, arb, arb]:
-        """(x, F'', T) over x in reach·[k, k + 1]/2^level."""
+        """Return (x, F'', T) over x in reach·[k, k + 1]/2^level."""
         if (level, k) not in self.kept:
             unit = self.reach / 2**level
             x = ball(unit * k).union(ball(unit * (k + 1)))
@@ -52,7 +52,7 @@ class LengthCells:
         return self.kept[level, k]
 
     def holds(self, shell: int, along: fmpq, across: fmpq) -> bool:
-        """Whether (α, β) certainly are lower bounds up to η = reach·shell/SHELLS; False too where it is not certain."""
+        """Return whether (α, β) certainly are lower bounds up to η = reach·shell/SHELLS; False also if undecided."""
         cells = [(LEVELS, k) for k in range(-shell, shell)]
         limit = square(ball(self.reach * shell / SHELLS))
         while cells:
@@ -77,7 +77,7 @@ class LengthCells:
 
 
 def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
-    """A β that goes with an α, by floating point at points x; less what makes it easy to prove.
+    """Return a β for an α, proposed in floating point at points x, with slack for the proof.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray,
 
 
 def points(reach: float) -> FloatArray:
-    """Displacements at which floating point looks: the shells' ends, and more of them the nearer to 0."""
+    """Return displacements at which floating point evaluates: the shells' ends, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
     ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
     found: FloatArray = reach * np.unique(np.concatenate([inner, ends]))

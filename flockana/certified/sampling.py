@@ -1,4 +1,4 @@
-"""How far the true basin of an equilibrium reaches, as far as samples can tell: beside what is certified."""
+"""Estimate of an equilibrium's true basin by random runs, beside the certified one."""
 
 from __future__ import annotations
 
@@ -18,19 +18,7 @@ from flockana.equilibria.terminal import rigid_motions
 
 @dataclass(frozen=True, eq=False)
 class SampledBasin:
-    """How many starts at rest, displaced in random directions, came back to the orbit.
-
-    Parameters
-    ----------
-    basin : Basin
-        What is certified.
-    distances : ndarray
-        Distances from the orbit over all coordinates, in units of length.
-    returned : int array
-        Starts that ended in the certified basin.
-    runs : int
-        Starts at each distance.
-    """
+    """Numbers of starts at rest, displaced in random directions, that returned to the orbit."""
 
     basin: Basin = field(repr=False)
     distances: FloatArray
@@ -44,20 +32,14 @@ class SampledBasin:
         return found
 
     def interval(self, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
-        """Ends of the exact confidence interval of each share.
-
-        Parameters
-        ----------
-        level : float
-            Confidence.
-        """
+        """Return the exact confidence interval of each share."""
         return clopper_pearson(self.returned, np.full_like(self.returned, self.runs), level=level)
 
 
 def sample_basin(
     basin: Basin, distances: Sequence[float], *, runs: int = 20, seed: int = 0, t_end: float = 20.0
 ) -> SampledBasin:
-    """Run starts at rest at given distances from the orbit, in random directions, and count those that return.
+    """Run starts at rest at given distances from the orbit in random directions, and count those that return.
 
     A run counts if its end is in the certified basin: from there on it is proved. A run that needs longer than `t_end`
     does not.
@@ -70,8 +52,6 @@ def sample_basin(
         Over all coordinates, in units of length.
     runs : int
         Starts at each.
-    seed : int
-        Of the directions.
     t_end : float
         Length of a run.
 

@@ -1,4 +1,4 @@
-"""The α-pair law along a path, as power series in time (Arb), on each of the pieces on which it is analytic.
+"""α-pair law along a path as power series in time (Arb), piece by piece.
 
 ρ_h is only C¹ at z = h r_α and at z = r_α. Between these distances, below and beyond, φ_α and a_ij are analytic in the
 squared distance, so that the Taylor coefficients of a pair's force follow from those of its path by series arithmetic.
@@ -16,7 +16,7 @@ from flockana.certified.intervals import bump, bump_slope, exact, phi, phi_slope
 
 
 class Piece(Enum):
-    """Where the distance of a pair lies: on one piece of ρ_h, or possibly on two."""
+    """Piece of ρ_h on which the distance of a pair lies, or possibly two."""
 
     CORE = "z < h r_α"
     TAPER = "h r_α < z < r_α"
@@ -26,7 +26,7 @@ class Piece(Enum):
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """What the α-pair law is computed from, as balls at one precision, lengths in units of ℓ where they are marked so.
+    """Numbers of the α-pair law as balls at one precision, lengths in units of ℓ where marked.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class PairNumbers:
 
     @classmethod
     def of(cls, alpha: Any) -> PairNumbers:
-        """Of an `AlphaInteraction`, each of whose numbers counts as the decimal that it prints as."""
+        """Return the numbers of an `AlphaInteraction` as exact decimals."""
         unit = exact(alpha.unit)
         d, r, eps = exact(alpha.d) / unit, exact(alpha.r) / unit, exact(alpha.eps) * unit * unit
         h, a, b = exact(alpha.h), exact(alpha.a), exact(alpha.b)
@@ -60,7 +60,7 @@ class PairNumbers:
         return cls(arb(eps), arb(h), arb(a), arb(b), offset, cutoff, arb(h) * cutoff, arb(unit * unit))
 
     def piece(self, s2: arb) -> Piece:
-        """The piece on which every squared distance in a ball lies."""
+        """Return the piece on which every squared distance in a ball lies."""
         z = sigma_of_square(s2 / self.area, self.eps)
         if z > self.cutoff:
             return Piece.OUT
@@ -70,14 +70,14 @@ class PairNumbers:
 
 
 def pair_series(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """(stress s_ij, adjacency a_ij) along a path of squared distances, on one piece that is not `Piece.OUT`."""
+    """Return (stress s_ij, adjacency a_ij) along a path of squared distances, on one piece within range."""
     slant, z = _slant_and_norm(s2, law)
     rho, (s, root) = _bump(z, law, piece), _shifted(z, law)
     return rho * _action(s, root, law) * slant, rho
 
 
 def pair_slopes(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """(d s_ij/d s², d a_ij/d s²) along a path of squared distances, on one piece that is not `Piece.OUT`."""
+    """Return (d s_ij/d s², d a_ij/d s²) along a path of squared distances, on one piece within range."""
     slant, z = _slant_and_norm(s2, law)
     rho, rho_slope, (s, root) = _bump(z, law, piece), _bump_slope(z, law, piece), _shifted(z, law)
     action, action_slope = _action(s, root, law), (law.a + law.b) / 2 * (root * root * root)
@@ -86,44 +86,44 @@ def pair_slopes(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_ser
 
 
 def _slant_and_norm(s2: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """(1/√(1 + εs²), z = (√(1 + εs²) − 1)/ε)."""
+    """Return (1/√(1 + εs²), z = (√(1 + εs²) − 1)/ε)."""
     square = 1 + law.eps * (s2 / law.area)
     slant = square.rsqrt()
     return slant, (square * slant - 1) / law.eps
 
 
 def _shifted(z: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """(s = z − d_α + c, 1/√(1 + s²)), of which φ and its slope are made."""
+    """Return (s = z − d_α + c, 1/√(1 + s²)), from which φ and its slope follow."""
     s = z + law.offset
     return s, (1 + s * s).rsqrt()
 
 
 def _action(s: arb_series, root: arb_series, law: PairNumbers) -> arb_series:
-    """φ(z − d_α)."""
+    """Return φ(z − d_α)."""
     return ((law.a + law.b) * (s * root) + (law.a - law.b)) / 2
 
 
 def _bump(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """ρ_h(z/r_α) on a piece."""
+    """Return ρ_h(z/r_α) on a piece."""
     if piece is Piece.CORE:
         return arb_series([1])
     return (1 + _phase(z, law).cos_pi()) / 2
 
 
 def _bump_slope(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """The derivative of ρ_h(z/r_α) on a piece."""
+    """Return the derivative of ρ_h(z/r_α) on a piece."""
     if piece is Piece.CORE:
         return arb_series([0])
     return -arb.pi() / (2 * (1 - law.h) * law.cutoff) * _phase(z, law).sin_pi()
 
 
 def _phase(z: arb_series, law: PairNumbers) -> arb_series:
-    """How far on the taper, from 0 to 1."""
+    """Return the position on the taper, from 0 to 1."""
     return (z / law.cutoff - law.h) / (1 - law.h)
 
 
 def pair_hull(s2: arb, law: PairNumbers) -> tuple[arb, arb, arb, arb]:
-    """(s_ij, a_ij, and their derivatives by s²) on a ball of squared distances that may lie on several pieces.
+    """Return (s_ij, a_ij, and their derivatives by s²) on a ball of squared distances over several pieces.
 
     The derivatives are continuous, so that their balls hold all of them, on either side of a switch and at it.
     """
@@ -136,5 +136,5 @@ def pair_hull(s2: arb, law: PairNumbers) -> tuple[arb, arb, arb, arb]:
 
 
 def _phi(z: arb, law: PairNumbers) -> arb:
-    """φ(z − d_α) on a ball."""
+    """Return φ(z − d_α) on a ball."""
     return phi(z + law.offset - shift(law.a, law.b), law.a, law.b)

@@ -1,4 +1,4 @@
-"""Radial curvatures of U about an orbit of equilibria, shell by shell, and what they bound: energy, slope, uniqueness.
+"""Radial curvatures of U about an orbit of equilibria, shell by shell, and the bounds they give.
 
 Let w be orthogonal to the orbit's tangent at x*, Σ w_i = 0, and t = ‖w‖. If ⟨w, ∇²U(x* + s w) w⟩ >= k_i t² wherever
 s t lies in the shell (t_{i−1}, t_i], then along the segment, ∇U(x*) being 0,
@@ -21,7 +21,7 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.decimals import floored
+from flockana.certified.decimals import round_down
 from flockana.certified.intervals import ball, hull
 from flockana.certified.krawczyk import column, identity, least_eigenvalue
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
@@ -36,7 +36,7 @@ _DIGITS = 4
 
 @dataclass(frozen=True)
 class Bond:
-    """Pairs of one length (as nearly as matters), that are or may come into range."""
+    """Pairs of nearly one length that are or may come into range."""
 
     pairs: tuple[tuple[int, int], ...]
     rest: arb
@@ -44,7 +44,7 @@ class Bond:
 
 @dataclass(frozen=True)
 class Floors:
-    """What floating point proposes for a radius: α and β of each bond in each shell, and the curvatures they leave."""
+    """Bounds proposed in floating point for a radius: α and β of each bond in each shell, and curvatures."""
 
     radius: float
     along: FloatArray
@@ -53,19 +53,19 @@ class Floors:
 
     @property
     def mean(self) -> float:
-        """Least mean of the curvatures over the first shells: λ."""
+        """Return the least mean λ of the curvatures over the first shells."""
         return float(np.min(np.cumsum(self.curvatures) / np.arange(1, SHELLS + 1)))
 
 
 class Surroundings:
-    """The bonds about an enclosed equilibrium, and the matrices of their bounds."""
+    """Bonds about an enclosed equilibrium, and the matrices of their bounds."""
 
     def __init__(self, law: Any, u: Structure, rest: Balls) -> None:
         self.law, self.u, self.rest = law, u, rest
         self.gaps = {(i, j): (gap, s.sqrt()) for i, j, gap, s in u.pairs(rest)}
 
     def bonds(self, reach: fmpq) -> list[Bond]:
-        """Pairs grouped by length, without those that stay out of range."""
+        """Return pairs grouped by length, without those that stay out of range."""
         groups: list[list[tuple[int, int]]] = []
         last, same = -np.inf, _ALIKE * self.law.alpha.d
         for pair in sorted(self.gaps, key=lambda pair: float(self.gaps[pair][1])):
@@ -80,7 +80,7 @@ class Surroundings:
 
     @cached_property
     def lifts(self) -> arb_mat:
-        """Σ g gᵀ/‖g‖² of the true rigid motions, times much."""
+        """Return Σ g gᵀ/‖g‖² over the rigid motions, times a large number."""
         total = arb_mat(len(self.rest), len(self.rest))
         at_rest = [abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values()]
         for motion in self.u.turns(self.rest) + self.u.shifts():
@@ -89,7 +89,7 @@ class Surroundings:
         return total
 
     def matrix(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb_mat:
-        """c1γ 1 + Σ [α uuᵀ + β (1 − uuᵀ)] of the pairs, with rigid motions lifted."""
+        """Return c1γ 1 + Σ [α uuᵀ + β (1 − uuᵀ)] over pairs, with rigid motions shifted far up."""
         blocks = []
         for bond, a, b in zip(bonds, along, across, strict=True):
             for pair in bond.pairs:
@@ -98,14 +98,14 @@ class Surroundings:
         return self.u.assembled(blocks) + self.lifts
 
     def curvature(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb:
-        """A number that is certainly below ⟨w, M w⟩/‖w‖² for all w orthogonal to the rigid motions."""
+        """Return a lower bound of ⟨w, M w⟩/‖w‖² over all w orthogonal to the rigid motions."""
         total = self.matrix(bonds, along, across)
         shift = 2 * max(sum(map(abs, row), arb(0)).upper() for row in (total - self.lifts).tolist())
         found = least_eigenvalue(total + identity(total.nrows()) * shift)
         return arb("-inf") if found is None else (found - shift).lower()
 
     def proposed(self, radius: float) -> Floors:
-        """Bounds for a radius, by floating point: in each shell the slack of α that leaves most curvature."""
+        """Return bounds for a radius, proposed in floating point with the best slack in each shell."""
         reach = float(ROOT_TWO.p) / float(ROOT_TWO.q) * radius
         bonds = self.bonds(fmpq(*reach.as_integer_ratio()))
         x = points(reach)
@@ -132,14 +132,14 @@ class Surroundings:
         return Floors(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(F'', T) in floating point."""
+        """Return (F'', T) in floating point."""
         alpha, gain = self.law.alpha, self.law.gains.c1_alpha
         root, z = np.sqrt(1.0 + alpha.eps * length**2), alpha.sigma_norm(length)
         action = alpha.phi_alpha(z)
         return gain * (alpha.phi_alpha_slope(z) * (length / root) ** 2 + action / root**3), gain * action / root
 
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """In floating point: the matrices that α and β of each bond multiply, and the rest, on the complement."""
+        """Return the matrices that α and β of each bond multiply, and the rest, in floating point."""
         size, m = len(self.rest), self.u.m
         motions = np.array([[float(y) for y in g] for g in self.u.turns(self.rest) + self.u.shifts()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
@@ -161,7 +161,7 @@ def _least(matrix: FloatArray) -> float:
 
 @dataclass(frozen=True)
 class Shells:
-    """Proved: in the i-th of the shells of a radius the curvature is at least k_i.
+    """Proved curvatures k_i in the shells of a radius.
 
     `along` and `across` hold, shell by shell, the α and β of every bond that the k_i were proved with.
     """
@@ -174,25 +174,25 @@ class Shells:
 
     @property
     def slopes(self) -> tuple[fmpq, ...]:
-        """G'(t_i)."""
+        """Slopes G'(t_i) of the energy bound G."""
         step, total = self.radius / SHELLS, fmpq(0)
         return tuple(total := total + k * step for k in self.curvatures)
 
     @property
     def level(self) -> fmpq:
-        """G(ρ)."""
+        """Energy bound G(ρ) at the radius."""
         step, slopes = self.radius / SHELLS, (fmpq(0), *self.slopes)
         return sum(((a + b) * step / 2 for a, b in pairwise(slopes)), fmpq(0))
 
     @property
     def curvature(self) -> fmpq:
-        """λ = min G'(t)/t: ⟨∇U, w⟩ >= λ‖w‖² and U − U* >= ½ λ‖w‖²."""
+        """Bound λ = min G'(t)/t: ⟨∇U, w⟩ >= λ‖w‖² and U − U* >= ½ λ‖w‖²."""
         step = self.radius / SHELLS
         return min(slope / (step * (i + 1)) for i, slope in enumerate(self.slopes))
 
     @property
     def surplus(self) -> fmpq:
-        """min (t G' − G)/t²: ⟨∇U, w⟩ − (U − U*) >= surplus ‖w‖², which may be negative."""
+        """Bound min (t G' − G)/t² of (⟨∇U, w⟩ − (U − U*))/‖w‖², which may be negative."""
         step, total, least = self.radius / SHELLS, fmpq(0), []
         for i, k in enumerate(self.curvatures):
             total += k * step**2 * ((i + 1) ** 2 - i**2) / 2
@@ -201,8 +201,8 @@ class Shells:
 
 
 def prove(around: Surroundings, floors: Floors) -> Shells | None:
-    """What was proposed, rounded down and proved; None where a bound is not certain."""
-    radius = floored(arb(floors.radius), _DIGITS)
+    """Return proposed bounds rounded down and proved; None where a bound is not certain."""
+    radius = round_down(arb(floors.radius), _DIGITS)
     reach = ROOT_TWO * radius
     bonds = around.bonds(reach)
     if len(bonds) != floors.along.shape[1]:
@@ -210,8 +210,8 @@ def prove(around: Surroundings, floors: Floors) -> Shells | None:
     cells = [LengthCells(around.u, bond.rest, reach) for bond in bonds]
     along, across, curvatures = [], [], []
     for i in range(SHELLS):
-        a = tuple(floored(arb(y), _DIGITS) for y in floors.along[i])
-        b = tuple(floored(arb(y), _DIGITS) for y in floors.across[i])
+        a = tuple(round_down(arb(y), _DIGITS) for y in floors.along[i])
+        b = tuple(round_down(arb(y), _DIGITS) for y in floors.across[i])
         if not all(cell.holds(i + 1, *pair) for cell, *pair in zip(cells, a, b, strict=True)):
             return None
         least = around.curvature(bonds, a, b)
@@ -219,5 +219,5 @@ def prove(around: Surroundings, floors: Floors) -> Shells | None:
             return None
         along.append(a)
         across.append(b)
-        curvatures.append(floored(least, _DIGITS))
+        curvatures.append(round_down(least, _DIGITS))
     return Shells(radius, tuple(bonds), tuple(along), tuple(across), tuple(curvatures))

@@ -1,4 +1,4 @@
-"""What each kind of certificate says, word for word: a file that says anything else is rejected."""
+"""Exact wording of the statement of each kind of certificate; any other is rejected."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The structural energy of Algorithms 1 and 2 in the moving frame, in balls."""
+"""Structural energy of Algorithms 1 and 2 in the moving frame, in balls."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BITS = 100
 
 
 def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """The energy of Algorithm 1 or 2 in the moving frame, on a box of states.
+    """Return the energy of Algorithm 1 or 2 in the moving frame, on a box of states.
 
     Examples
     --------
@@ -30,7 +30,7 @@ def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence
 
 
 def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """The structural energy from squared distances, positions and velocities, boxes of the same states."""
+    """Return the structural energy from squared distances, positions and velocities of a box."""
     par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
     pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
     total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
@@ -38,7 +38,7 @@ def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequen
 
 
 def scaled(alpha: Any) -> AlphaParameters:
-    """The pair law's exact parameters, in units of ℓ."""
+    """Return the pair law's exact parameters in units of ℓ."""
     unit = exact(alpha.unit)
     lengths = {name: exact(getattr(alpha, name)) / unit for name in ("d", "r")}
     rest = {name: exact(getattr(alpha, name)) for name in ("h", "a", "b")}
@@ -46,12 +46,12 @@ def scaled(alpha: Any) -> AlphaParameters:
 
 
 def norm2(x: Sequence[arb]) -> arb:
-    """‖x‖²."""
+    """Return ‖x‖²."""
     return sum(map(square, x), arb(0))
 
 
 def _inertia(x: Sequence[Sequence[arb]]) -> arb:
-    """½ Σ‖x_i − x_c‖²."""
+    """Return ½ Σ‖x_i − x_c‖²."""
     columns = list(zip(*x, strict=True))
     means = [sum(column, arb(0)) / len(x) for column in columns]
     return sum((square(a - mean) for column, mean in zip(columns, means, strict=True) for a in column), arb(0)) / 2

@@ -1,4 +1,4 @@
-"""The structural energy of Algorithms 1 and 2 in balls, with exact parameters: U(x) = c1α V(x) + ½ c1γ ‖x‖².
+"""Structural potential U(x) = c1α V(x) + ½ c1γ ‖x‖² of Algorithms 1 and 2 in balls.
 
 In the frame of the centre of mass both laws read x' = v, v' = −∇U(x) − (c2γ + c2α L̂(x)) v on Σ x_i = 0, with
 c1γ = c2γ = 0 under Algorithm 1. A configuration is a list of balls x_11, ..., x_1m, x_21, ...
@@ -34,7 +34,7 @@ Balls = Sequence[arb]
 
 @dataclass(frozen=True)
 class Structure:
-    """What U and the damping are made of: parameters and gains as exact rationals, n agents in m dimensions."""
+    """Parameters and gains of U and of the damping as exact rationals, for n agents in m dimensions."""
 
     par: AlphaParameters
     c1_alpha: fmpq
@@ -46,7 +46,7 @@ class Structure:
 
     @classmethod
     def of(cls, law: Any, n: int, m: int) -> Structure:
-        """Of a law, each number as the decimal that it prints as; an error if the law is neither of the two."""
+        """Return the exact numbers of a law; raise unless it is Algorithm 1 or 2."""
         if type(law) not in (Algorithm1, Algorithm2) or not isinstance(law.alpha, AlphaInteraction):
             raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2 with AlphaInteraction, alone")
         if law.alpha.unit != 1.0:
@@ -67,34 +67,34 @@ class Structure:
         )
 
     def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
-        """(i, j, x_j − x_i, squared distance) of every pair."""
+        """Return (i, j, x_j − x_i, squared distance) of every pair."""
         m = self.m
         for i, j in combinations(range(self.n), 2):
             gap = [x[m * j + a] - x[m * i + a] for a in range(m)]
             yield i, j, gap, sum(map(square, gap), arb(0))
 
     def near(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
-        """The pairs that are not certainly out of range."""
+        """Return the pairs that are not certainly out of range."""
         beyond = ball(self.par.r) ** 2
         return (pair for pair in self.pairs(x) if not pair[3] >= beyond)
 
     def tension(self, s: arb) -> arb:
-        """F'(ℓ)/ℓ of a pair's potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²: its stress."""
+        """Return the stress F'(ℓ)/ℓ of a pair's potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²."""
         z = sigma_of_square(s, self.par.eps)
         return ball(self.c1_alpha) * phi_alpha(z, self.par) / self._root(s)
 
     def stiffness(self, s: arb) -> arb:
-        """F''(ℓ), by s = ℓ²: φ_α' s/(1 + εs) + φ_α/(1 + εs)^(3/2), times c1α."""
+        """Return F''(ℓ), by s = ℓ²: c1α (φ_α' s/(1 + εs) + φ_α/(1 + εs)^(3/2))."""
         z, root = sigma_of_square(s, self.par.eps), self._root(s)
         along = phi_alpha_slope(z, self.par) * s / square(root) + phi_alpha(z, self.par) / (root * square(root))
         return ball(self.c1_alpha) * along
 
     def weight(self, s: arb) -> arb:
-        """a_ij by s = ℓ²."""
+        """Return a_ij by s = ℓ²."""
         return adjacency(sigma_of_square(s, self.par.eps), self.par)
 
     def gradient(self, x: Balls) -> list[arb]:
-        """∇U."""
+        """Return ∇U."""
         m, total = self.m, [ball(self.c1_gamma) * y for y in x]
         for i, j, gap, s in self.near(x):
             pull = self.tension(s)
@@ -104,7 +104,7 @@ class Structure:
         return total
 
     def hessian(self, x: Balls) -> arb_mat:
-        """∇²U: each pair's T 1 + (F'' − T) uuᵀ, and c1γ."""
+        """Return ∇²U: the block T 1 + (F'' − T) uuᵀ of each pair, and c1γ."""
         blocks = []
         for i, j, gap, s in self.near(x):
             pull = self.tension(s)
@@ -112,7 +112,7 @@ class Structure:
         return self.assembled(blocks)
 
     def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
-        """The matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
+        """Return the matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
         m, size, own = self.m, self.n * self.m, ball(self.c1_gamma)
         total = [[own if i == j else arb(0) for j in range(size)] for i in range(size)]
         for i, j, block in blocks:
@@ -125,7 +125,7 @@ class Structure:
         return arb_mat(total)
 
     def energy(self, x: Balls) -> arb:
-        """U."""
+        """Return U."""
         far, total = far_potential(self.par), arb(0)
         beyond = ball(self.par.r) ** 2
         for *_, s in self.pairs(x):
@@ -133,7 +133,7 @@ class Structure:
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * sum(map(square, x), arb(0))
 
     def turns(self, x: Balls) -> list[list[arb]]:
-        """Tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
+        """Return tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
         m, found = self.m, []
         for a in range(m):
             for b in range(a):
@@ -144,7 +144,7 @@ class Structure:
         return found
 
     def shifts(self) -> list[list[arb]]:
-        """Translations along the axes."""
+        """Return the translations along the axes."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     def _root(self, s: arb) -> arb:
@@ -152,7 +152,7 @@ class Structure:
 
 
 def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """across·1 + more·gap gapᵀ."""
+    """Return the matrix across·1 + more·gap gapᵀ."""
     return [
         [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
         for a, x in enumerate(gap)
@@ -160,5 +160,5 @@ def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
 
 
 def dot(a: Balls, b: Balls) -> arb:
-    """⟨a, b⟩."""
+    """Return ⟨a, b⟩."""
     return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))

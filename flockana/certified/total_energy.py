@@ -1,4 +1,4 @@
-"""The energy of Algorithm 3 with a γ-agent at rest, in balls, and the integral of its rate along a tube."""
+"""Energy of Algorithm 3 with a γ-agent at rest, in balls, and the integral of its rate along a tube."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ORDER = 12  # of the rate's Taylor polynomials
 
 
 def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖², every pair once, on a box of states.
+    """Return the energy H of Algorithm 3 (obstacles, bounded pull, every pair once) on a box of states.
 
     Examples
     --------
@@ -42,13 +42,13 @@ def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]
 
 
 def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
-    """dH/dt by its parts (`Flow.powers`), balls that hold them at all times from step k to the next."""
+    """Return the parts of dH/dt (`Flow.powers`) as balls valid from step k to the next."""
     box = tube.taken[k].during
     return flow.powers(box, flow.pieces(box))
 
 
 def work(tube: Tube) -> arb:
-    """A ball that holds the integral of dH/dt over the tube, from the closed form of the rate.
+    """Return a ball around the integral of dH/dt over the tube, from the closed form of the rate.
 
     On a step where every pair and agent is on one piece, the rate's Taylor polynomial is integrated, with its last
     coefficient taken over all states of the step; elsewhere the step's length times the rate's range.
@@ -69,7 +69,7 @@ def work(tube: Tube) -> arb:
 
 
 def _rate(flow: Flow, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-    """Taylor coefficients of dH/dt along the solutions from a box."""
+    """Return Taylor coefficients of dH/dt along the solutions from a box."""
     path = flow.taylor(t, state, _ORDER, pieces)
     with series_length(_ORDER + 1):
         total = sum(flow.powers([arb_series(row) for row in path], pieces), arb_series([0]))

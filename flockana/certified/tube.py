@@ -1,4 +1,4 @@
-"""A tube: sets that provably hold a run at its steps, and boxes that hold it between them."""
+"""Tubes: sets that provably hold a run at its steps, and boxes that hold it between them."""
 
 from __future__ import annotations
 
@@ -25,37 +25,37 @@ Pair = tuple[int, int]
 
 
 class BasinLike(Protocol):
-    """What a tube may end in: `flockana.certified.basin.Basin`."""
+    """Interface of a basin that a tube may end in (`flockana.certified.basin.Basin`)."""
 
     @property
     def law(self) -> Any:
-        """Of which law."""
+        """The law."""
 
     @property
     def rest(self) -> FloatArray:
-        """The equilibrium that all its starts converge to, but for a rotation."""
+        """Equilibrium to which all starts converge, up to a rotation."""
 
     @property
     def proof(self) -> Any:
-        """Balls that hold that equilibrium, and the structure that it is one of."""
+        """Balls that hold the equilibrium, and its structure."""
 
-    def ensure_whole(self) -> None:
-        """Raise unless it is as it was proved."""
+    def ensure_unedited(self) -> None:
+        """Raise unless the basin is unchanged since it was proved."""
 
     def holds(self, q: Any, p: Any) -> bool:
-        """Whether every state in a box certainly lies in it."""
+        """Return whether every state in a box certainly lies in the basin."""
 
 
 class Approach(NamedTuple):
-    """How near two agents come: a proved lower bound, which ones, and when (the step's begin)."""
+    """Closest approach of two agents: a proved lower bound, the pair, and the begin of the step."""
 
     lower: float
     pair: Pair
     time: float
 
 
-class Touch(NamedTuple):
-    """How near an agent comes to an obstacle: a proved lower bound, which ones, and when (the step's begin)."""
+class ObstacleApproach(NamedTuple):
+    """Closest approach to an obstacle: a proved lower bound, agent, obstacle, and begin of the step."""
 
     lower: float
     agent: int
@@ -72,8 +72,6 @@ class Tube:
 
     Parameters
     ----------
-    law : Algorithm1, Algorithm2 or Algorithm3
-        What moves the flock.
     q0, p0 : ndarray, shape (n, m)
         The start, or the middle of the starts.
     t : tuple of float
@@ -109,17 +107,11 @@ class Tube:
     stats: dict[str, Any]
 
     def with_seconds(self, seconds: float) -> Tube:
-        """The same, with the time that it took.
-
-        Parameters
-        ----------
-        seconds : float
-            By the clock.
-        """
+        """Return the same tube with its computing time."""
         return changed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
 
-    def ensure_whole(self) -> None:
-        """Raise unless it is as `enclose` returned it."""
+    def ensure_unedited(self) -> None:
+        """Raise unless the tube is unchanged since `enclose` returned it."""
         ensure_sealed("tube", self, "a tube as enclose returned it", "enclose(law, q0, p0, t_span) proves another")
 
     @property
@@ -134,17 +126,17 @@ class Tube:
 
     @property
     def q(self) -> FloatArray:
-        """Middles of the positions' boxes at the steps, shape (T, n, m): to draw, no bounds."""
+        """Midpoints of the positions at the steps, shape (T, n, m), for drawing."""
         return self._middles[:, 0]
 
     @property
     def p(self) -> FloatArray:
-        """Middles of the velocities' boxes at the steps, shape (T, n, m)."""
+        """Midpoints of the velocities at the steps, shape (T, n, m), for drawing."""
         return self._middles[:, 1]
 
     @cached_property
     def boxes(self) -> tuple[list[arb], ...]:
-        """At each step, balls that hold all coordinates of q and then of p."""
+        """Balls that hold all coordinates of q and then of p, at each step."""
         with ctx.workprec(BITS):
             return tuple(one.hull for one in self.sets)
 
@@ -163,7 +155,7 @@ class Tube:
         return np.array(rows).reshape(len(self.t), 2, self.n, self.m)
 
     def state(self, k: int) -> tuple[list[list[arb]], list[list[arb]]]:
-        """(q, p) at step k as balls, agent by agent.
+        """Return (q, p) at step k as balls, grouped by agent.
 
         Parameters
         ----------
@@ -180,7 +172,7 @@ class Tube:
         return list(combinations(range(self.n), 2))
 
     def distances_during(self, k: int) -> list[arb]:
-        """Balls that hold the distance of each pair from step k to the next.
+        """Return balls that hold the distance of each pair from step k to the next.
 
         Parameters
         ----------
@@ -191,7 +183,7 @@ class Tube:
             return [norm(gap) for gap in self.taken[k].relative]
 
     def min_distance(self) -> Approach:
-        """A proved lower bound of the distance of any two agents, at all times of the tube."""
+        """Return a proved lower bound of the distance of any two agents over the whole tube."""
         least, q = Approach(inf, (0, 0), self.t[0]), self.state(0)[0]
         with ctx.workprec(BITS):
             start = [norm([b - a for a, b in zip(x, y, strict=True)]) for x, y in combinations(q, 2)]
@@ -202,7 +194,7 @@ class Tube:
         return least
 
     def clearances_during(self, k: int) -> list[list[arb]]:
-        """Balls that hold the clearances of the agents from each obstacle, from step k to the next.
+        """Return balls that hold the agents' clearances from each obstacle, from step k to the next.
 
         Parameters
         ----------
@@ -213,33 +205,33 @@ class Tube:
             return self._clearances(self.taken[k].during)
 
     def _clearances(self, box: Sequence[arb]) -> list[list[arb]]:
-        """Of each obstacle and each agent, anywhere in a box."""
+        """Return the clearances of each agent from each obstacle, anywhere in a box."""
         from flockana.certified.laws import sphere_terms
 
         agents = [box[i : i + self.m] for i in range(0, self.n * self.m, self.m)]
         terms = sphere_terms(self.law) if self.law.obstacles else ()
         return [[term.clearance(x) for x in agents] for term in terms]
 
-    def min_clearance(self) -> Touch:
-        """A proved lower bound of the clearance of any agent from any obstacle, at all times of the tube."""
+    def min_clearance(self) -> ObstacleApproach:
+        """Return a proved lower bound of any agent's clearance from any obstacle over the whole tube."""
         with ctx.workprec(BITS):
             boxes = [self.boxes[0], *(step.during for step in self.taken)]
             rows = [self._clearances(box) for box in boxes]
         each = [
-            Touch(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
+            ObstacleApproach(down(clearance.lower()) if clearance.is_finite() else -inf, agent, obstacle, t)
             for t, row in zip((self.t[0], *self.t), rows, strict=False)
             for obstacle, own in enumerate(row)
             for agent, clearance in enumerate(own)
         ]
-        return min(each, key=lambda one: one.lower, default=Touch(inf, 0, 0, self.t[0]))
+        return min(each, key=lambda one: one.lower, default=ObstacleApproach(inf, 0, 0, self.t[0]))
 
     def cohesion_radius(self) -> FloatArray:
-        """Upper bounds of R = max ‖q_i − q_c‖ from each step to the next, proved, shape (T − 1,)."""
+        """Return proved upper bounds of R = max ‖q_i − q_c‖ between steps, shape (T − 1,)."""
         with ctx.workprec(BITS):
             return np.array([max(up(norm(x).upper()) for x in step.deviations) for step in self.taken])
 
     def energy(self, k: int) -> arb:
-        """A ball that holds the structural energy at step k: c1α V(x) + c1γ J(x) + K(v) in the moving frame.
+        """Return a ball around the structural energy c1α V(x) + c1γ J(x) + K(v) at step k.
 
         Parameters
         ----------
@@ -250,7 +242,7 @@ class Tube:
         return structural_energy(self.law, *self.state(k))
 
     def energy_during(self, k: int) -> arb:
-        """A ball that holds the structural energy at all times from step k to the next.
+        """Return a ball around the structural energy from step k to the next.
 
         Parameters
         ----------
@@ -264,7 +256,7 @@ class Tube:
             return energy_of(self.law, [norm2(gap) for gap in step.relative], step.deviations, p)
 
     def ends_in(self, basin: BasinLike) -> bool:
-        """Whether every state at the end lies in a certified basin of the same law: then all converge to its orbit.
+        """Return whether every state at the end lies in a certified basin of the same law.
 
         Parameters
         ----------
@@ -276,27 +268,27 @@ class Tube:
         ArgumentError
             If either was made or changed by hand.
         """
-        self.ensure_whole()
-        basin.ensure_whole()
+        self.ensure_unedited()
+        basin.ensure_unedited()
         return bool(basin.law == self.law and basin.holds(*self.state(-1)))
 
 
 def _ensure_energy(law: Any) -> None:
-    """Raise on Algorithm 3, whose γ-agent has another energy."""
+    """Raise on Algorithm 3, whose energy is another."""
     if type(law) not in (Algorithm1, Algorithm2):
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
 
 
 def up(x: arb) -> float:
-    """A float that is certainly not below an exact number."""
+    """Return a float that is certainly not below an exact number."""
     return nextafter(float(x), inf)
 
 
 def down(x: arb) -> float:
-    """A float that is certainly not above an exact number."""
+    """Return a float that is certainly not above an exact number."""
     return nextafter(float(x), -inf)
 
 
 def norm(x: Sequence[arb]) -> arb:
-    """The length of a vector, a ball that is nowhere below 0."""
+    """Return the length of a vector, a ball that is nowhere below 0."""
     return norm2(x).nonnegative_part().sqrt()

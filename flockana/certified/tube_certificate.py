@@ -1,4 +1,4 @@
-"""A tube as JSON that `flockana check` can verify by another theorem than the one that the tube rests on.
+"""Tube certificates as JSON, verified by `flockana check` with an independent argument.
 
 The certificate holds a path of polynomials beside the run, of a higher order than the tube's, and its distance from it.
 """
@@ -16,7 +16,7 @@ from flint import arb, ctx
 
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.certificate import basin_certificate
@@ -37,21 +37,7 @@ _TRIES = 30  # of an error that holds itself up
 
 
 def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
-    """The certificate of the run in the middle of a tube from one start, as plain data with its digest.
-
-    Parameters
-    ----------
-    tube : Tube
-        Of one start (radius 0), complete.
-    basin : Basin, optional
-        In which it ends; in one or two dimensions.
-    weight : float
-        In which units errors of position count beside those of velocity, a rate; any is valid, some prove more.
-
-    Raises
-    ------
-    ArgumentError
-        On a tube of which there is no certificate.
+    """Return the certificate of the run in the middle of a tube, as plain data with its digest.
 
     Examples
     --------
@@ -68,14 +54,12 @@ def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 
 
 
 def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None = None) -> None:
-    """Write a tube's certificate; `flockana check` verifies the file.
+    """Write a tube's certificate to a file for `flockana check`.
 
     Parameters
     ----------
     tube : Tube
         Of one start, complete.
-    path : str or Path
-        File, usually .json.
     basin : Basin, optional
         In which it ends.
 
@@ -86,13 +70,13 @@ def write_tube_certificate(tube: Tube, path: str | Path, *, basin: Basin | None 
     FileError
         If the file cannot be written.
     """
-    write_whole(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
+    write_atomic(path, json.dumps(tube_certificate(tube, basin=basin), indent=1) + "\n")
 
 
 def _ensure_certifiable(tube: Tube, basin: Basin | None) -> None:
     if not isinstance(tube, Tube):
         raise ArgumentError(f"tube = {tube!r}: expected a tube, as enclose(...) gives it")
-    tube.ensure_whole()
+    tube.ensure_unedited()
     if not isinstance(basin, Basin | None):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it, or None")
     law: Any = tube.law
@@ -129,7 +113,7 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
 
 
 def _spheres(law: Any) -> dict[str, Any]:
-    """What Algorithm 3 has beside: obstacles, and the law of β-agents."""
+    """Return the obstacles of Algorithm 3 and the law of β-agents."""
     if not isinstance(law, Algorithm3):
         return {}
     numbers: dict[str, Any] = {f"beta_{name}": _decimal(getattr(law.beta, name)) for name in ("d", "eps", "h")}
@@ -140,7 +124,7 @@ def _spheres(law: Any) -> dict[str, Any]:
 
 
 def _paths(tube: Tube) -> list[list[list[str]]]:
-    """Taylor polynomials of positions, from the start and then each from the end of the one before; all exact."""
+    """Return Taylor polynomials of positions, each from the end of the one before, exactly."""
     flow, half, paths = flow_of(tube.law, tube.n, tube.m), tube.n * tube.m, []
     state = [arb(x) for x in (*tube.q0.ravel().tolist(), *tube.p0.ravel().tolist())]
     for t, end, step in zip(tube.t[:-1], tube.t[1:], tube.taken, strict=True):
@@ -153,7 +137,7 @@ def _paths(tube: Tube) -> list[list[list[str]]]:
 
 
 def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]) -> list[list[arb]]:
-    """Of positions, of the third order where a pair changes its piece."""
+    """Return polynomials of positions, of third order where a pair changes its piece."""
     half = flow.n * flow.m
     if Piece.SWITCH not in pieces:
         return [[c.mid() for c in row] for row in flow.taylor(t, state, _ORDER, pieces)[:half]]
@@ -163,7 +147,7 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
-    """Errors that hold themselves up, and what they leave of distances, radii and the energy."""
+    """Return errors that the steps justify, with bounds of distances, radii and energy."""
     state, error = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())], arb(0)
     level = run.energy(state)
     errors, least, widest, clear = list[str](), list[arb](), list[arb](), list[arb]()
@@ -194,7 +178,7 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
 
 
 def _ending(tube: Tube, basin: Basin | None) -> dict[str, Any]:
-    """The basin's own certificate, and by how much its equilibrium is turned."""
+    """Return the basin's certificate, and the rotation of its equilibrium."""
     if basin is None:
         return {"basin": None, "turn": "0"}
     x = tube.q[-1] - tube.q[-1].mean(axis=0)
@@ -203,7 +187,7 @@ def _ending(tube: Tube, basin: Basin | None) -> dict[str, Any]:
 
 
 def arb_of(text: str) -> arb:
-    """A number in hexadecimal as a ball of radius 0."""
+    """Return a hexadecimal number as a ball of radius 0."""
     value = exact(text)
     return arb(value.numerator) / value.denominator
 
@@ -213,6 +197,6 @@ def _decimal(x: float) -> str:
 
 
 def _hexadecimal(x: arb) -> str:
-    """An exact number: mantissa in hexadecimal, and exponent of 2."""
+    """Return an exact number as hexadecimal mantissa and exponent of 2."""
     mantissa, exponent = x.man_exp()
     return f"{int(mantissa):#x}p{int(exponent)}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.cli.options import Drawing, Jobs, ScenarioName, output
 from flockana.cli.show import show, show_files
 from flockana.cli.status import OK, UNEXPECTED
@@ -80,7 +80,7 @@ def ensemble_command(
     table = shares(runs, level=level)
     _show(runs, table, axes)
     if save_to is not None:  # in memory first: HDF5 tears itself apart on a disk that fills
-        write_whole(save_to, runs.to_netcdf(None, engine="h5netcdf"))
+        write_atomic(save_to, runs.to_netcdf(None, engine="h5netcdf"))
     if plot is not None:
         write_picture(lambda ax: _draw(ax, runs, table, axes), plot, m=2)
     show_files(store=store, saved=save_to, picture=plot)

@@ -14,7 +14,7 @@ from flockana.cli.status import OK
 if TYPE_CHECKING:
     from flockana.cli.source import Source
     from flockana.measures.nets import LinkArray
-    from flockana.theorems import Verdict
+    from flockana.theorems import Tolerances, Verdict
 
 _CROSSING = "each decided exactly, for the positions as stored"
 
@@ -23,6 +23,15 @@ def lattice_command(
     source: Annotated[str, typer.Argument(metavar="SOURCE", help="A file, or a builder with its size.")],
     d: Annotated[float | None, typer.Option("--d", help="Scale; by default the run's, else 7.")] = None,
     r: Annotated[float | None, typer.Option("--r", help="Range; by default the run's, else 1.2 d.")] = None,
+    tol: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SHARE",
+            help="Largest |link - d|/d of an α-lattice, at most 0.1; by default 1e-6. Positions that are rounded to "
+            "two decimals need about 0.001.",
+            show_default=False,
+        ),
+    ] = None,
     time: Time = None,
     picture: Annotated[Path | None, output("PNG, SVG or PDF to draw to.", metavar="PICTURE")] = None,
     as_json: AsJson = False,
@@ -49,17 +58,42 @@ def lattice_command(
     ensure_file(picture, KINDS)
     given = read_source(source, d=d, r=r, time=time)
     pairs = links(given.q, given.r)
-    verdict = verify("os-5", q=given.q, d=given.d, r=given.r, subject=given.name)
+    tolerances = _tolerances(tol)
+    verdict = verify("os-5", q=given.q, d=given.d, r=given.r, subject=given.name, tolerances=tolerances)
     facts = lattice_facts(given, pairs, verdict)
     if as_json:
         show_json(facts | {"verdict": verdict.to_dict()})
     else:
-        show(given.name, fact_table(_rows(facts)), details(verdict))
+        show(given.name, fact_table(_rows(facts)), details(verdict), *_hint(facts, tolerances))
     if picture is not None:
         write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
     if not as_json:
         show_files(picture=picture)
     return OK
+
+
+def _tolerances(tol: float | None) -> Tolerances:
+    """Return the tolerances with that of an α-lattice; beyond that of a quasi-α-lattice Theorem 5 is not proved."""
+    from flockana.base.errors import ArgumentError
+    from flockana.theorems import Tolerances
+
+    usual = Tolerances()
+    if tol is None:
+        return usual
+    if not 0.0 < tol <= usual.quasi:
+        raise ArgumentError(f"--tol {tol:g}: expected more than 0 and at most {usual.quasi:g}")
+    return Tolerances(lattice=tol)
+
+
+def _hint(facts: dict[str, Any], tolerances: Tolerances) -> list[str]:
+    """Return the option with which a quasi-α-lattice counts as an α-lattice."""
+    from math import ceil, floor, log10
+
+    error = facts["edge-length error"]
+    if error is None or not tolerances.lattice < (strain := error / facts["d"]) < tolerances.quasi:
+        return []
+    unit = 10.0 ** floor(log10(strain))
+    return [f"as an α-lattice, for Theorem 5: --tol {ceil(strain / unit) * unit:.1g}\n"]
 
 
 def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:

@@ -13,8 +13,8 @@ import typer
 
 from flockana._version import __version__
 from flockana.base.errors import FlockanaError, UnknownNameError
-from flockana.base.garbage import garbage_seldom_sought, look_no_more
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.garbage import freeze_gc, relaxed_gc
+from flockana.base.interrupts import restore_interrupts
 from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.check import check_command
@@ -95,11 +95,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_output()
     prepare_home()
     try:
-        with interrupts_recognised(), garbage_seldom_sought():
+        with restore_interrupts(), relaxed_gc():
             given = list(sys.argv[1:] if arguments is None else arguments)
             code = _app(_asked(given))(args=given, prog_name=_NAME, standalone_mode=False)
             if arguments is None:
-                look_no_more()
+                freeze_gc()
         finish_output()
     except FlockanaError as error:
         complain(error)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import ensure_target, write_whole
+from flockana.base.files import ensure_target, write_atomic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,4 +50,4 @@ def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[fl
         figure = Figure(figsize=size, layout="constrained")
         draw(figure)
         figure.savefig(drawing, dpi=_DPI, format=path.suffix[1:].lower())
-    write_whole(path, drawing.getvalue())
+    write_atomic(path, drawing.getvalue())

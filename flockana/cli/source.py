@@ -16,7 +16,7 @@ import numpy as np
 from flockana import lattice
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.base.files import ensure_path, read_whole
+from flockana.base.files import ensure_path, read_text_file
 
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
@@ -169,7 +169,7 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
 def read_csv(path: Path) -> FloatArray:
     """Return positions from a CSV with a row per agent, one to three columns, with or without a header."""
     try:
-        rows = csv.reader(StringIO(read_whole(path).removeprefix("\ufeff"), newline=""))
+        rows = csv.reader(StringIO(read_text_file(path).removeprefix("\ufeff"), newline=""))
         lines = [(k, row) for k, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise FileError(f"cannot read {path}: {error}; expected a CSV of positions") from error

@@ -228,7 +228,7 @@ def _print_verdicts(
 ) -> None:
     from rich.console import Console
 
-    from flockana.report.console import details, statistics_table, summary, titles, verdict_table
+    from flockana.report.console import details, errata_table, statistics_table, summary, verdict_table
     from flockana.report.work import ERRATA
 
     console, in_full = Console(highlight=False), name not in (None, ERRATA)
@@ -238,7 +238,7 @@ def _print_verdicts(
                 console.print(details(finding.verdict))
     console.print(verdict_table(pages, width=console.width))
     if name == ERRATA:
-        console.print(titles(pages))
+        console.print(errata_table(pages))
     for page in pages:
         for text in page.surprises:
             console.print(f"  {page.name}: {text}", style="bold red", markup=False)

@@ -10,7 +10,7 @@ from typing import Any
 import nbformat
 
 from flockana.base.errors import FileError
-from flockana.base.files import ensure_path, write_whole
+from flockana.base.files import ensure_path, write_atomic
 
 _REMEDY = "choose another folder"
 
@@ -40,7 +40,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
     try:
         for path, content in missing.items():
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(path, content, remedy=_REMEDY)
+            write_atomic(path, content, remedy=_REMEDY)
     except OSError as error:
         reason = getattr(error.__cause__, "strerror", None) or error.strerror or error
         raise FileError(f"cannot write all of the course to {home}: {reason}; {_REMEDY}") from error

@@ -33,7 +33,7 @@ _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 EXACT = Floors(0.0, 0.0, 0.0)
 
 
-class Allowed(NamedTuple):
+class StepTolerances(NamedTuple):
     """Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by."""
 
     rtol: float
@@ -66,7 +66,7 @@ class Engine:
         The coefficients.
     encounters : Encounters
         What no step may leap over.
-    allowed : Allowed
+    allowed : StepTolerances
         Tolerances.
     """
 
@@ -75,7 +75,7 @@ class Engine:
     frame: Frame
     method: Tableau
     encounters: Encounters
-    allowed: Allowed
+    allowed: StepTolerances
 
     def start(self, q0: FloatArray, p0: FloatArray) -> tuple[Sample, Point]:
         """The start as a sample and as a point."""
@@ -133,7 +133,7 @@ def engine_of(
         return None  # obstacles that no term, or more than one, keeps from being leapt over
     balance = (BALANCED * rtol, BALANCED * floor.work) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
-    engine = Engine(law, form, frame, tableau(method), encounters, Allowed(rtol, floor, balance))
+    engine = Engine(law, form, frame, tableau(method), encounters, StepTolerances(rtol, floor, balance))
     return engine if engine.fits(q0, p0) else None
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_given
-from flockana.base.errors import ArgumentError, told
+from flockana.base.checks import FloatArray, ensure_returned_array
+from flockana.base.errors import ArgumentError, format_value
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 
@@ -22,9 +22,9 @@ def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: Floa
     memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
     given: Any = law.step(t0, q0.copy(), p0.copy(), memory)
     if not isinstance(given, tuple) or len(given) != 4 or not isinstance(given[3], Mapping):
-        raise ArgumentError(f"{name} gives {told(given)} {at}: expected (q, p, u, memory)")
+        raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (q, p, u, memory)")
     for part, value in zip("qpu", given, strict=False):
-        ensure_given(f"{name} gives {part}", value, q0.shape, at)
+        ensure_returned_array(f"{name} gives {part}", value, q0.shape, at)
 
 
 def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray, p0: FloatArray, at: str) -> None:
@@ -34,7 +34,9 @@ def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray,
         i = int(np.argmin(known))
         raise ArgumentError(f"{name} gives u[{i}] = {u[i]} {at}: expected finite accelerations there")
     if np.ndim(energy) != 0 or np.asarray(energy).dtype.kind not in "fiu":
-        raise ArgumentError(f"{name} gives H = {told(energy)} {at}: expected a real number, or NaN without energy")
+        raise ArgumentError(
+            f"{name} gives H = {format_value(energy)} {at}: expected a real number, or NaN without energy"
+        )
     if np.isfinite(energy) and not np.isfinite(rate):
         raise ArgumentError(
             f"{name} gives H = {energy:g}, but dH/dt = {rate} {at}: expected the rate of that energy, or H = NaN for a "

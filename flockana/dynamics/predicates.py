@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.trajectory import Trajectory
 
 BoolArray = npt.NDArray[np.bool_]
@@ -29,7 +29,7 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
         Of the argument.
     """
     if not isinstance(trajectory, Trajectory):
-        raise ArgumentError(f"{name} = {told(trajectory)}: expected a run, as simulate(...) gives it")
+        raise ArgumentError(f"{name} = {format_value(trajectory)}: expected a run, as simulate(...) gives it")
     return trajectory
 
 

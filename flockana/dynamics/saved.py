@@ -19,7 +19,7 @@ import numpy as np
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import ensure_path, replacing
+from flockana.base.files import atomic_write, ensure_path
 from flockana.base.seals import checksum, is_sealed, seal_of, sealed
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.between import Between
@@ -69,7 +69,7 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     # in memory first: HDF5 tears itself apart on a disk that fills
     netcdf = dataset.to_netcdf(None, engine="h5netcdf")
     total = hashlib.sha256(netcdf).hexdigest()
-    with replacing(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
+    with atomic_write(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
         file.write(netcdf)
         file.write(_LINE % total.encode())
     return Path(path)

@@ -22,7 +22,7 @@ from flockana.base.checks import (
     real_array,
 )
 from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.dynamics.adaptive import SCIPY, adaptive
@@ -215,7 +215,7 @@ def _collect(
     recorder, reached = Recorder(), t_span[0]
     with progress_bar(t_span[1] - t_span[0], enabled=progress, counted=False, steady=True) as advance:
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 for found in samples if watch is None else _one_by_one(samples):
                     if found.wanted:
                         kept.append(found)

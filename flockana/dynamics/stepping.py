@@ -101,7 +101,7 @@ class Check(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Meetings:
+class EncounterCheck:
     """The check that no encounter is leapt over.
 
     Parameters

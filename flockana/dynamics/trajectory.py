@@ -14,9 +14,10 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, real_array
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.base.memory import Remembering
+from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.seals import changed
+from flockana.base.tables import facts_html
 from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
@@ -54,7 +55,7 @@ def _frozen_series(name: str, values: Any, samples: int) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Remembering):
+class Trajectory(ResultCache):
     """A sampled run of `simulate`; made by hand, a recording, which has metrics and plots but no verdicts.
 
     Parameters
@@ -130,6 +131,21 @@ class Trajectory(Remembering):
         """One line: arrays of thousands of numbers tell nobody anything."""
         span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
+
+    def facts(self) -> dict[str, str]:
+        """Return what a table shows: sizes, times, method and status."""
+        steps = f", {self.stats['steps']} steps" if "steps" in self.stats else ""
+        return {
+            "law": type(self.law).__name__,
+            "agents": f"{self.n}, m = {self.m}",
+            "time": f"{self.t[0]:g} to {self.t[-1]:g}, {len(self.t)} samples{steps}",
+            "method": str(self.stats.get("method", "recorded")),
+            "status": f"{self.status}: {self.message}" if self.message else self.status,
+            "smallest distance": f"{self.min_distance():.4g}",
+        }
+
+    def _repr_html_(self) -> str:
+        return facts_html("Trajectory", self.facts())
 
     @cached_property
     def scales(self) -> Scales:
@@ -389,12 +405,20 @@ class Trajectory(Remembering):
         return replace(seen, lower=-np.inf, lower_by_obstacle=np.full(len(obstacles), -np.inf))
 
     def animate(
-        self, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        seconds: float = 10.0,
+        fps: float = 15.0,
+        velocities: bool = False,
+        ranges: bool = False,
     ) -> Any:
-        """The run as a film: a notebook shows it, ``.save(path)`` writes GIF or MP4.
+        """The run as a film: a notebook shows it, and with a path it is written as GIF or MP4.
 
         Parameters
         ----------
+        path : path-like, optional
+            File to write; the film's ``.save(path)`` does the same.
         seconds : float
             Length of the film.
         fps : float
@@ -406,9 +430,10 @@ class Trajectory(Remembering):
 
         Returns
         -------
-        flockana.plots.Film
+        flockana.plots.Film, or pathlib.Path with a path
         """
-        return import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
+        film = import_module(PLOTS).Film(self, seconds, fps, velocities, ranges)
+        return film if path is None else film.save(path)
 
     def player(self, *, height: int = 760, verdicts: Sequence[Any] = ()) -> Any:
         """The run in a player: a notebook shows it, and so does its export as HTML; ``.save(path)`` writes a page.

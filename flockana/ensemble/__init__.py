@@ -1,4 +1,4 @@
-"""Ensembles: many runs of a scenario, over seeds and options, verified, counted, and kept."""
+"""Ensembles: many runs of a scenario over seeds and options, verified, counted and stored."""
 
 from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.campaign import ensemble

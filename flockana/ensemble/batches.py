@@ -1,4 +1,4 @@
-"""Distribution of work in batches to executors, with results as they are done.
+"""Distribution of work to executors in batches, with results in order of completion.
 
 Nothing is decided by which comes first, so results do not depend on who works. An item that ends its worker process
 (for want of memory, say) is found by trying those under suspicion one at a time; all others are worked on again.
@@ -13,7 +13,7 @@ from concurrent.futures import wait as wait_for
 from typing import Any, TypeVar
 
 from flockana.base.errors import FlockanaError, SolverError
-from flockana.ensemble.executors import Crew
+from flockana.ensemble.executors import WorkerPool
 
 _TICK = 0.2  # seconds between looks around
 _QUEUED = 2  # batches per worker that are out at once: one at work, one ready
@@ -25,24 +25,24 @@ Batch = tuple[Any, ...]
 Pending = dict[Future[Any], Batch]
 
 
-def work_through(
+def map_in_batches(
     items: Sequence[Item],
     function: Callable[[tuple[Item, ...]], tuple[Result, ...]],
-    workers: Crew,
+    workers: WorkerPool,
     *,
     batch_size: Callable[[tuple[Result, ...]], int] = lambda results: 1,
     watch: Callable[[tuple[Item, ...]], None] = lambda under_way: None,
 ) -> Iterator[tuple[tuple[Item, Result | None], ...]]:
-    """Call a function on batches of items; give each item with its result as batches are done, in any order.
+    """Call a function on batches of items, and yield each item with its result as batches complete.
 
     The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
     items to send together; `watch` is told what is under way. An error of the function ends all.
 
     Examples
     --------
-    >>> from flockana.ensemble.executors import crew
-    >>> with crew(jobs=1) as workers:
-    ...     list(work_through([2, 3], lambda batch: tuple(x * x for x in batch), workers))
+    >>> from flockana.ensemble.executors import worker_pool
+    >>> with worker_pool(jobs=1) as workers:
+    ...     list(map_in_batches([2, 3], lambda batch: tuple(x * x for x in batch), workers))
     [((2, 4),), ((3, 9),)]
     """
     waiting, suspects = deque(items), deque[Any]()
@@ -93,7 +93,7 @@ def work_through(
 def next_batches(
     waiting: deque[Any], suspects: deque[Any], out: int, width: int, size: int
 ) -> Iterator[tuple[Any, ...]]:
-    """Batches to send now: a few per worker; one item alone while some are suspected of ending workers."""
+    """Return batches to submit now: a few per worker; single items while one may have killed a worker."""
     if suspects:
         if not out:
             yield (suspects.popleft(),)
@@ -109,7 +109,7 @@ def _under_way(pending: Pending) -> Batch:
     return tuple(item for future, batch in pending.items() if future.running() for item in batch)
 
 
-def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Crew) -> Batch:
+def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: WorkerPool) -> Batch:
     """Return the items that may have ended a worker; raise if the failure has another cause."""
     if type(error).__name__ == "KilledWorker":  # Dask's, after it tried the batch on several workers
         return batch

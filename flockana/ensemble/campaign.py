@@ -1,4 +1,4 @@
-"""Many runs of a scenario: over seeds and options, on any number of processors, into a store that can be resumed."""
+"""Ensembles of a scenario over seeds and options, in parallel, with a store to resume from."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
-from flockana.ensemble.executors import crew, ensure_crew
+from flockana.ensemble.executors import ensure_worker_options, worker_pool
+from flockana.ensemble.guard import can_start_processes
 from flockana.ensemble.processes import cores
 from flockana.ensemble.runs import make_runs
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, resolve
 from flockana.measures.measure import measures
-from flockana.scenarios import Scenario, scenarios
+from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
+from flockana.scenarios.flock import chosen as chosen_flock
 from flockana.scenarios.given import SOURCE
 from flockana.theorems import Tolerances, theorem, theorems
 
@@ -40,9 +42,13 @@ _REMEDY = "split them into several ensembles"
 
 
 def ensemble(
-    scenario: str | Callable[..., Scenario],
-    seeds: Iterable[int],
+    scenario: str | Flock | Callable[..., Scenario] | None = None,
+    seeds: Iterable[int] = (0,),
     *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
     theorems: Iterable[str] | None = None,
     parameters: Mapping[str, Scalar | Iterable[Scalar]] | None = None,
     metrics: Iterable[str | Callable[[Trajectory], float]] | None = None,
@@ -61,15 +67,18 @@ def ensemble(
 
     Parameters
     ----------
-    scenario : str or callable
-        A name of the catalogue, or a function ``seed, **options -> Scenario`` from the top of a module.
+    scenario : str, Flock or callable
+        A name of the catalogue, a flock, or a function ``seed, **options -> Scenario`` from the top of a module.
     seeds : iterable of int
         Seeds, each >= 0 and given once; with all combinations of options at most a million runs.
+    law, q0, p0, t_span : optional
+        Instead of a scenario: the parts of a `Flock`; q0 and p0 are functions of the seed if there are several seeds.
     theorems : iterable of str, optional
         Which to check, ``"source"`` standing for what the source reports; by default all of the scenario's own and
-        what its source reports. Empty for none.
+        what its source reports, or all that are about the law of a flock. Empty for none.
     parameters : mapping of str to scalar or iterable, optional
-        Options of the scenario: several values make a dimension of the result, one value does not.
+        Options of the scenario, or numbers of a flock's law by dotted name, such as ``"gains.c1_gamma"``: several
+        values make a dimension of the result, one value does not.
     metrics : iterable of str or callable
         What to keep of each run: names, by default all there are, or functions ``trajectory -> float`` from the
         top of a module.
@@ -114,7 +123,7 @@ def ensemble(
     >>> runs.status.sel(claim="os-1:iii").values.tolist()  # 0 is verified
     [0, 0, 0, 0]
     """
-    ensure_crew(executor, cluster, jobs)
+    ensure_worker_options(executor, cluster, jobs)
     seeds = ensure_seeds(seeds)
     axes, fixed = _split(parameters)
     runs = prod(map(len, axes.values()), start=len(seeds))
@@ -124,8 +133,13 @@ def ensemble(
     _ensure_names(axes, fixed, chosen)
     if tolerances is not None and not isinstance(tolerances, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
-    name = _ensure_scenario(scenario, axes, fixed, seeds[0])
-    request = Request(name, _ensure_theorems(theorems), chosen, tolerances or Tolerances())
+    given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
+    flock = given if isinstance(given, Flock) else None
+    if flock is None:
+        name, checked = _ensure_scenario(given, axes, fixed, seeds[0]), _ensure_theorems(theorems)
+    else:
+        name, checked = flock.name, _ensure_flock(flock, seeds, axes, fixed, theorems)
+    request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
     grid = job_grid(axes, fixed, seeds)
     with ExitStack() as stack:
         kept = None if store is None else stack.enter_context(Store(store))
@@ -140,7 +154,9 @@ def ensemble(
             done = 0
             if executor is None and cluster is None:
                 jobs = min(jobs or cores(), len(missing))
-            with crew(executor, cluster=cluster, jobs=jobs) as workers:
+                if jobs > 1 and not can_start_processes(request):
+                    jobs = 1
+            with worker_pool(executor, cluster=cluster, jobs=jobs) as workers:
                 for made in make_runs(request, missing, workers):
                     new = {keys[record.job]: record for record in made}
                     if kept is not None:
@@ -177,7 +193,7 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
-    """Options with several values, and options with one: (axes, fixed)."""
+    """Return options with several values and options with one: (axes, fixed)."""
     axes: dict[str, list[Scalar]] = {}
     fixed: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
@@ -256,9 +272,27 @@ def _ensure_scenario(
     return name
 
 
+def _ensure_flock(
+    flock: Flock,
+    seeds: Sequence[int],
+    axes: Mapping[str, Sequence[Scalar]],
+    fixed: Mapping[str, Scalar],
+    theorems: Any,
+) -> tuple[str, ...]:
+    """Return the theorems to check on a flock after building it once with each combination of parameters."""
+    if len(seeds) > 1 and not flock.drawn:
+        raise ArgumentError(
+            f"{len(seeds)} seeds, but q0 and p0 are arrays, so all runs would be the same: expected functions of a "
+            "seed, such as q0=lambda seed: 20 * numpy.random.default_rng(seed).random((30, 2)), or one seed"
+        )
+    for job in job_grid(axes, fixed, seeds[:1]):
+        flock.scenario(job.seed, **dict(job.options))
+    return flock.theorems(seeds[0]) if theorems is None else _ensure_theorems(theorems) or ()
+
+
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:
     """Return the key of each run; the source of user functions is part of it."""
-    shared = request.to_dict()
+    shared = request.to_dict(strict=strict)
     own = {name for name in (request.scenario, *request.metrics) if ":" in name}
     shared["own"] = {name: _source_digest(name, strict=strict) for name in sorted(own)}
     return {job: run_key(shared | {"seed": job.seed, "options": dict(job.options)}) for job in grid}

@@ -1,4 +1,4 @@
-"""Dask clusters, by address or local: every wait has a limit, and failures close the client.
+"""Dask clusters, local or by address; every wait has a time limit, and failures close the client.
 
 A client that is left open closes itself when it is collected, and waits for ever if Dask holds its own lock just then.
 """
@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.base.interrupts import interrupts_held, interrupts_hidden, interrupts_recognised
+from flockana.base.interrupts import block_sigint, defer_sigint, restore_interrupts
 from flockana.ensemble.processes import single_threaded_children
 
 CONNECT = 10.0  # seconds to find a scheduler and a worker
@@ -36,7 +36,7 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
     own = None
     try:
         if address == "local":
-            with interrupts_held(), interrupts_hidden(), single_threaded_children():
+            with defer_sigint(), block_sigint(), single_threaded_children():
                 own = _own_cluster(count)
         client = _client(own or address, address)
         try:
@@ -87,9 +87,9 @@ def _own_cluster(count: int) -> Any:
 
 
 def _client(target: Any, address: str) -> Any:
-    """A client of a cluster, or of the scheduler at an address, that has a worker."""
+    """Return a client of a cluster, or of the scheduler at an address, with at least one worker."""
     try:
-        with interrupts_recognised():
+        with restore_interrupts():
             return _opened(target)
     except Exception as error:
         reason = _reason(error)
@@ -132,7 +132,7 @@ def _threads(client: Any, limit: float) -> int:
 
 
 class _Width:
-    """Current number of runs that a cluster can make at once."""
+    """Number of runs that a cluster can make at once, at present."""
 
     def __init__(self, client: Any) -> None:
         self.client, self.seen = client, time.monotonic()
@@ -157,8 +157,8 @@ class _Width:
 
 
 def _end(closing: Any) -> None:
-    """Close a client or a cluster, also one whose constructor failed, and the thread that it started."""
-    with interrupts_held():
+    """Close a client or a cluster, also after a failed constructor, with the thread that it started."""
+    with defer_sigint():
         with suppress(Exception):  # there is nobody left to answer
             closing.close(timeout=_CLOSE)
         with suppress(AttributeError):  # it failed before it had one

@@ -1,4 +1,4 @@
-"""The records of an ensemble as one `xarray.Dataset`, and the shares of runs in which each claim holds."""
+"""Records of an ensemble as an `xarray.Dataset`, and shares of runs in which each claim holds."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def to_dataset(
     seeds: Sequence[int],
     records: Sequence[Record],
 ) -> xarray.Dataset:
-    """Lay records out along parameters, seeds, claims and theorems."""
+    """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
 
     dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana.base.errors import FileError
-from flockana.base.files import replacing
+from flockana.base.files import atomic_write
 
 _DIGEST = re.compile("[0-9a-f]{16}")
 _LIBRARIES = ("numpy", "scipy", "numba")
@@ -34,7 +34,7 @@ _ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
 
 @cache
 def mathematics() -> str:
-    """Version of all that decides the numbers of a run, 16 hexadecimal digits.
+    """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits.
 
     Examples
     --------
@@ -43,11 +43,11 @@ def mathematics() -> str:
     """
     root = Path(__file__).resolve().parent.parent
     sources = {str(p.relative_to(root)): p.read_bytes() for p in source_files(root)}
-    return kept_digest(sources, Path(cache_from_source(__file__)).parent)
+    return cached_digest(sources, Path(cache_from_source(__file__)).parent)
 
 
-def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
-    """`digest_of_sources`, read from a folder where these very files were digested before.
+def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
+    """Return `digest_of_sources`, cached in a folder by the files' contents.
 
     To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
     named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
@@ -64,7 +64,7 @@ def kept_digest(sources: Mapping[str, bytes], folder: Path) -> str:
         return digest
     digest = digest_of_sources(sources)
     if not sys.dont_write_bytecode and folder.is_dir():
-        with suppress(FileError), replacing(kept) as partial:
+        with suppress(FileError), atomic_write(kept) as partial:
             partial.write_text(digest, encoding="ascii")
     return digest
 
@@ -74,7 +74,7 @@ def _libraries() -> dict[str, str]:
 
 
 def source_files(root: Path) -> list[Path]:
-    """The package's modules and data that decide numbers."""
+    """Return the package's modules and data that decide a run's numbers."""
     files = (p for p in root.rglob("*") if p.suffix in (".py", ".json") and "__pycache__" not in p.parts)
     pairs = ((p, p.relative_to(root)) for p in files)
     return sorted(p for p, r in pairs if r.as_posix() in _ENSEMBLE or not {r.parts[0], r.as_posix()} & {*_SILENT})
@@ -111,7 +111,7 @@ def _meaning(source: bytes) -> bytes:
 
 
 def run_key(what: Mapping[str, Any]) -> str:
-    """Key of one run in a store: a digest of plain data in which the order of names does not matter.
+    """Return the key of a run in a store: a digest of plain data, independent of the order of names.
 
     Examples
     --------

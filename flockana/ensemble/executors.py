@@ -33,8 +33,8 @@ class Serial(Executor):
 
 
 @dataclass
-class Crew:
-    """Executor with its width and its way of failing."""
+class WorkerPool:
+    """Executor with its number of workers and its behaviour when one dies."""
 
     executor: Executor  # who works
     width: Callable[[], int]  # how many batches it can work on at once, now
@@ -43,27 +43,29 @@ class Crew:
 
 
 @contextmanager
-def crew(executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None) -> Iterator[Crew]:
-    """Give workers: this process if there shall be one; processes that are started here end here."""
-    ensure_crew(executor, cluster, jobs)
+def worker_pool(
+    executor: Executor | None = None, *, cluster: str | None = None, jobs: int | None = None
+) -> Iterator[WorkerPool]:
+    """Provide workers: this process, a pool that ends with the block, a cluster, or a given executor."""
+    ensure_worker_options(executor, cluster, jobs)
     count = cores() if jobs is None else jobs
     if executor is not None:
         width = getattr(executor, "_max_workers", None) or cores()
-        yield Crew(executor, lambda: width)
+        yield WorkerPool(executor, lambda: width)
     elif cluster is not None:
         from flockana.ensemble.cluster import connected
 
         with connected(cluster, count) as (workers, threads):
-            yield Crew(workers, threads, loses=True)
+            yield WorkerPool(workers, threads, loses=True)
     elif count == 1:
-        yield Crew(Serial(), lambda: 1)
+        yield WorkerPool(Serial(), lambda: 1)
     else:
         with _pool(count) as pool:
             yield pool
 
 
-def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
-    """Check the executor options before anything is started."""
+def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
+    """Raise on bad executor options before anything is started."""
     if executor is not None and not isinstance(executor, Executor):
         raise ArgumentError(f"executor = {executor!r}: expected a concurrent.futures.Executor")
     if executor is not None and (cluster is not None or jobs is not None):
@@ -77,7 +79,7 @@ def ensure_crew(executor: Any, cluster: Any, jobs: Any) -> None:
 
 
 @contextmanager
-def _pool(count: int) -> Iterator[Crew]:
+def _pool(count: int) -> Iterator[WorkerPool]:
     """Yield a process pool that is replaced when a worker dies."""
     pools = [ProcessPool(count)]
 
@@ -87,7 +89,7 @@ def _pool(count: int) -> Iterator[Crew]:
         return pools[-1]
 
     try:
-        yield Crew(pools[0], lambda: count, renew)
+        yield WorkerPool(pools[0], lambda: count, renew)
         pools[-1].shutdown()
     except BaseException:
         pools[-1].stop()

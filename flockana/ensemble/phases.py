@@ -1,4 +1,4 @@
-"""Phases in which runs end: flocking, fragmentation, collapse."""
+"""Classification of runs by their end: flocking, fragmentation, collapse."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FORMER = {"deviation_energy": "normalised_deviation_energy"}  # what saved ense
 def phases(
     dataset: xarray.Dataset, *, contact: float = CONTACT, tolerances: Tolerances | None = None
 ) -> xarray.DataArray:
-    """Name the phase in which each run of an ensemble ended, from its measures at the end.
+    """Return the phase in which each run of an ensemble ended, from its measures at the end.
 
     In this order: *collapse*, two agents are closer than `contact` d, which no lattice under pressure is before its
     links fold; *fragmentation*, the net has several components; *flocking*, it is connected with velocities matched

@@ -1,4 +1,4 @@
-"""Worker processes of our own: they never see Ctrl-C, use one thread each, and never outlive the program."""
+"""Worker processes that ignore Ctrl-C, use one thread each, and end with the program."""
 
 from __future__ import annotations
 
@@ -14,27 +14,21 @@ from contextlib import contextmanager
 from multiprocessing.connection import wait as wait_for_end
 from typing import Any
 
-from flockana.base.garbage import SELDOM, look_no_more
-from flockana.base.interrupts import interrupts_held, interrupts_hidden
+from flockana.base.garbage import SELDOM, freeze_gc
+from flockana.base.interrupts import block_sigint, defer_sigint
 
 _END = 10.0  # seconds in which killed processes are gone
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
 def cores() -> int:
-    """Number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 class ProcessPool(ProcessPoolExecutor):
-    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent.
-
-    Parameters
-    ----------
-    jobs : int
-        Processes at most.
-    """
+    """Pool of single-threaded processes that ignore Ctrl-C and end with their parent."""
 
     def __init__(self, jobs: int) -> None:
         # spawned, not forked: a forked child inherits the locks of threads that it does not have
@@ -43,12 +37,12 @@ class ProcessPool(ProcessPoolExecutor):
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
         """Call the function in a process, which is started if there are too few."""
-        with interrupts_held(), interrupts_hidden(), single_threaded_children():
+        with defer_sigint(), block_sigint(), single_threaded_children():
             return super().submit(function, *arguments, **options)
 
     def stop(self) -> None:
         """End all processes at once and wait until they are gone."""
-        with interrupts_held():  # a second Ctrl-C must not leave half of them
+        with defer_sigint():  # a second Ctrl-C must not leave half of them
             workers = list((getattr(self, "_processes", None) or {}).values())  # Python 3.14 has a public way
             manager = getattr(self, "_executor_manager_thread", None)
             self.shutdown(wait=False, cancel_futures=True)
@@ -59,10 +53,10 @@ class ProcessPool(ProcessPoolExecutor):
 
 
 def _begin_worker() -> None:
-    """Ctrl-C goes to every process of the terminal; the parent alone answers it. And nothing outlives the parent."""
+    """Prepare a worker process: ignore Ctrl-C, and end with the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(SELDOM)
-    atexit.register(look_no_more)
+    atexit.register(freeze_gc)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()

@@ -1,4 +1,4 @@
-"""Make the runs of an ensemble, by whoever works."""
+"""Execution of an ensemble's runs on workers."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from flockana.base.errors import FlockanaError, SolverError
-from flockana.ensemble.batches import work_through
-from flockana.ensemble.executors import Crew
+from flockana.ensemble.batches import map_in_batches
+from flockana.ensemble.executors import WorkerPool
 from flockana.ensemble.work import DIED, Job, Record, Request, run_batch
 
 BATCH_SECONDS = 0.5  # runs shorter than this travel together
 _LONGEST_BATCH = 256
 
 
-def make_runs(request: Request, jobs: Sequence[Job], workers: Crew) -> Iterator[tuple[Record, ...]]:
+def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Iterator[tuple[Record, ...]]:
     """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
-        for done in work_through(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
+        for done in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
             yield tuple(_died(job) if record is None else record for job, record in done)
     except FlockanaError:
         raise

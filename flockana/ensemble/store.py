@@ -1,4 +1,4 @@
-"""A file that keeps the runs of ensembles as they arrive, and survives whatever ends the program that writes it.
+"""SQLite file of an ensemble's runs, safe against crashes of the program that writes it.
 
 It is an SQLite file with a write-ahead log: a batch of runs is either in it or not, whenever the program is killed
 (after a loss of power the last batches may be missing, none is torn), and several programs may write to it at once.
@@ -44,12 +44,7 @@ _INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UP
 
 
 class Store:
-    """Runs by key, in a file; a context manager.
-
-    Parameters
-    ----------
-    path : path-like
-        File; made, with its folders, if there is none.
+    """File of runs by key; a context manager.
 
     Examples
     --------
@@ -132,7 +127,7 @@ class Store:
             return int(self._file.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
 
     def read(self, keys: Iterable[str]) -> dict[str, Record]:
-        """The runs that are there, by key."""
+        """Return the stored runs among the keys."""
         wanted, records = list(keys), {}
         with self._explained():
             for first in range(0, len(wanted), _AT_ONCE):

@@ -1,4 +1,4 @@
-"""Execution of one run of an ensemble, from names and numbers to a plain record."""
+"""Execution of a single run of an ensemble, from plain data to a plain record."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from flockana.base.errors import ArgumentError, FileError, SolverError
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.base.seals import SEAL, digest
+from flockana.base.serialize import to_data, to_data_mapping
 from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import mathematics
 from flockana.measures.measure import measures
-from flockana.scenarios import Scenario, scenario
+from flockana.scenarios import Flock, Scenario, scenario
 from flockana.scenarios.given import SOURCE
 from flockana.theorems import Tolerances, Verdict
 
@@ -42,10 +43,25 @@ class Request:
     metrics: tuple[str, ...] = field(default_factory=lambda: tuple(measures()))
     tolerances: Tolerances = field(default_factory=Tolerances)
     mathematics: str = field(default_factory=mathematics)  # version that the runs must be computed by
+    flock: Flock | None = None  # instead of a scenario's name
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data, for the key of a run."""
-        return asdict(self)
+    def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
+        """Plain data, for the key of a run; a flock without a written form raises if `strict`."""
+        flock = None if self.flock is None else _plain(self.flock, strict=strict)
+        return {**asdict(replace(self, flock=None)), "flock": flock}
+
+
+def _plain(flock: Flock, *, strict: bool) -> Any:
+    """Return a flock as plain data; functions as their names, which tell two versions of one apart no more."""
+    try:
+        parts = [to_data(part) for part in (flock.law, flock.q0, flock.p0, flock.t_span)]
+        return [*parts, to_data_mapping(flock.options)]
+    except ArgumentError as error:
+        if strict:
+            raise ArgumentError(
+                f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
+            ) from None
+        return repr(flock)
 
 
 @dataclass(frozen=True)
@@ -69,7 +85,7 @@ class Record:
 
     @classmethod
     def from_json(cls, text: str, key: str = "") -> Record:
-        """Read what `to_json` wrote.
+        """Return the record of a JSON text from `to_json`.
 
         Examples
         --------
@@ -86,7 +102,7 @@ class Record:
 
 
 def reference(function: Callable[..., Any]) -> str:
-    """``"module:name"`` of a function that another process can import.
+    """Return ``"module:name"`` of a function that another process can import.
 
     Examples
     --------
@@ -105,7 +121,7 @@ def reference(function: Callable[..., Any]) -> str:
 
 
 def resolve(name: str) -> Any:
-    """The function of a ``"module:name"``."""
+    """Return the function of a ``"module:name"``."""
     module, _, path = name.partition(":")
     item: Any = importlib.import_module(module)
     for part in path.split("."):
@@ -114,7 +130,7 @@ def resolve(name: str) -> Any:
 
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
-    """Make some runs, one after the other, in this process."""
+    """Make runs one after the other in this process."""
     if mathematics() != request.mathematics:
         raise SolverError(
             f"a worker computes with version {mathematics()} of the mathematics, expected {request.mathematics}: "
@@ -128,8 +144,8 @@ def run_one(request: Request, job: Job) -> Record:
     """Make one run; errors become part of its record."""
     started = time.perf_counter()
     try:
-        with interrupts_recognised():
-            item = build(request.scenario, job)
+        with restore_interrupts():
+            item = build(request, job)
             run = item.run()
             if run.status == "interrupted":
                 raise KeyboardInterrupt
@@ -142,8 +158,11 @@ def run_one(request: Request, job: Job) -> Record:
     return replace(record, seconds=time.perf_counter() - started)
 
 
-def build(name: str, job: Job) -> Scenario:
-    """The scenario of a job."""
+def build(request: Request, job: Job) -> Scenario:
+    """Return the scenario of a job."""
+    if request.flock is not None:
+        return request.flock.scenario(job.seed, **dict(job.options))
+    name = request.scenario
     if ":" not in name:
         return scenario(name, job.seed, **dict(job.options))
     made = resolve(name)(job.seed, **dict(job.options))

@@ -30,7 +30,7 @@ class Kind(NamedTuple):
 
 
 class BetaLinks(NamedTuple):
-    """The pairs of agent and β-agent within range r'.
+    """Pairs of an agent and a β-agent within range r'.
 
     `agent` and `obstacle` are index arrays (L,); `q`, `p` (L, m) are the β-agents' positions and velocities, and
     `distance` (L,) the distances ‖q̂_ik − q_i‖.
@@ -45,14 +45,14 @@ class BetaLinks(NamedTuple):
 
 @dataclass(frozen=True)
 class ObstacleField:
-    """Obstacles with their interaction."""
+    """Obstacles together with their β-interaction."""
 
     obstacles: tuple[Obstacle, ...]  # any kinds, of one dimension; they may overlap
     beta: BetaInteraction  # clearance d', range r'
 
     @cached_property
     def kinds(self) -> tuple[Kind, ...]:
-        """The obstacles, kind by kind."""
+        """Obstacles grouped by kind."""
         grouped: dict[int, list[Obstacle]] = {}
         for obstacle in self.obstacles:
             grouped.setdefault(id(obstacle.kernels), []).append(obstacle)
@@ -65,14 +65,14 @@ class ObstacleField:
         return tuple(kinds)
 
     def forces(self, q: FloatArray, p: FloatArray, u: FloatArray, *, stiffness: float, damping: float) -> float:
-        """Add c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i) to u in place, unchecked (the integrators' inner loop)."""
+        """Add the forces of all β-agents, c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i), to u in place, unchecked."""
         power, par, reach = 0.0, self.beta.par, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
             power += kernels.forces(q, p, pars, starts, balls, par, reach, stiffness, damping, u)
         return power
 
     def potential_energy(self, q: FloatArray) -> float:
-        """Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
+        """Return Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
             total += kernels.potential(q, pars, starts, balls, par, panels, reach)
@@ -87,7 +87,7 @@ class ObstacleField:
         return blocks
 
     def braking_blocks(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of Σ_k b_ik (p̂_ik − p_i) in q_i and in p_i: blocks (n, m, m); agents do not see each other's."""
+        """Return derivatives of Σ_k b_ik (p̂_ik − p_i) in q_i and in p_i: diagonal blocks (n, m, m)."""
         n, m = q.shape
         by_position, by_velocity = np.zeros((n, m, m)), np.zeros((n, m, m))
         for obstacle in self.obstacles:
@@ -100,7 +100,7 @@ class ObstacleField:
         return by_position, by_velocity
 
     def links(self, q: FloatArray, p: FloatArray) -> BetaLinks:
-        """The β-neighbours of every agent: obstacles k with ‖q̂_ik − q_i‖ < r'."""
+        """Return the obstacles k with ‖q̂_ik − q_i‖ < r' of every agent i."""
         by_obstacle = []
         for k, obstacle in enumerate(self.obstacles):
             agents = obstacle.beta_agents(q, p)
@@ -113,7 +113,7 @@ class ObstacleField:
 
 
 class InsideObstacleError(ArgumentError):
-    """An agent is inside or on an obstacle, where a law is defined but no run may start."""
+    """Exception for a start inside or on an obstacle, where laws are defined but no run may begin."""
 
 
 def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
@@ -139,7 +139,7 @@ def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
 
 
 def _free_point(point: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray | None:
-    """Push a point out of the obstacles until it is outside all."""
+    """Return a point moved out of all obstacles."""
     here = point[None, :].copy()
     for _ in range(_PUSHES):
         depth = [float(obstacle.clearance(here)[0]) for obstacle in obstacles]

@@ -1,4 +1,4 @@
-"""A capsule: all points within a radius of a line segment, a rounded bar on the way."""
+"""Capsule obstacle: all points within a radius of a line segment."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _slide(q, p, par, foot, rate):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def _onto_capsule(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
-    """A sphere about the closest point of the segment, which slides with the agent along the bar."""
+    """Project onto the sphere about the closest point of the segment, which moves with the agent."""
     foot = np.empty(q.size)
     _slide(q, p, par, foot, rate)
     return project_ball(q, p, foot, par[2 * q.size], rate, gap, rate)
@@ -53,7 +53,7 @@ _CAPSULE = lift_obstacle(_onto_capsule, _turn_capsule)
 
 @dataclass(frozen=True)
 class Capsule(Obstacle):
-    """The points within `radius` of the segment from a to b.
+    """Obstacle of all points within `radius` of the segment from a to b.
 
     The velocity of its β-agents jumps where the straight part meets a cap, as the curvature does there.
 
@@ -96,11 +96,11 @@ class Capsule(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """(a, b, R)."""
+        """Parameters (a, b, R) for the kernels."""
         return np.array([*self.a, *self.b, self.radius])
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """(midpoint, half the length + R)."""
+        """Bounding ball: (midpoint, half the length + R)."""
         a, b = np.array(self.a), np.array(self.b)
         return 0.5 * (a + b), 0.5 * float(np.linalg.norm(b - a)) * (1.0 + 1e-12) + self.radius

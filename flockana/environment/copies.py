@@ -1,4 +1,4 @@
-"""Copies of a γ-agent that is a system, one for each agent, coupled to each other or not."""
+"""Copies of a γ-agent with dynamics, one for each agent, coupled to each other or not."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Copies:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, m)."""
+        """Shape (n, m) of the estimates."""
         return len(self.q), len(self.q[0])
 
     def __getstate__(self) -> dict[str, Any]:
@@ -116,6 +116,6 @@ class Copies:
         )
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """Places and velocities of all copies, two arrays (n, m)."""
+        """Return positions and velocities of all copies, two arrays (n, m)."""
         both: FloatArray = self._motion.at(float(t)).reshape(2, *self.shape)
         return both[0], both[1]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.errors import ArgumentError, SolverError, told
+from flockana.base.errors import ArgumentError, SolverError, format_value
 from flockana.base.units import rescale
 from flockana.environment.spring import Spring
 
@@ -67,7 +67,7 @@ class Motion:
 
 
 def accelerations(force: Force, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return f_r at one place or at several, calling a user's function one place at a time."""
+    """Return f_r at one position or at several, calling a user's function one position at a time."""
     if q.ndim == 1 or isinstance(force, Spring):
         return np.asarray(force(q, p), dtype=np.float64)
     return np.array([force(*each) for each in zip(q, p, strict=True)], dtype=np.float64)
@@ -78,7 +78,7 @@ def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) 
     with np.errstate(all="ignore"):
         first = acceleration(q, p)
     if first.shape != q.shape or not np.isfinite(first).all():
-        raise ArgumentError(f"force gives {told(first)} at the start: expected {q.shape[-1]} finite components")
+        raise ArgumentError(f"force gives {format_value(first)} at the start: expected {q.shape[-1]} finite components")
     sizes = [float(np.abs(x).max()) for x in (q, p, first)]
     length = max(sizes[0], sizes[1] * time, sizes[2] * (time * time)) or 1.0
     if not (isfinite(time * time * _PIECE) and 0.0 < length / time < inf and isfinite(length)):

@@ -1,4 +1,4 @@
-"""Obstacles and their β-agents: the contract of an obstacle, spheres and walls.
+"""Obstacles and their β-agents: base class, spheres and walls.
 
 An obstacle is a closed convex solid. Of an agent outside it the β-agent is the closest point q̂ of the solid, and it
 moves at p̂ = dq̂/dt. The closest-point map of a convex solid is the gradient of a convex function and contracts, so
@@ -29,7 +29,7 @@ from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, 
 
 
 class BetaAgents(NamedTuple):
-    """The β-agents of one obstacle, one per agent: positions (n, m), velocities (n, m), signed clearances (n,)."""
+    """β-agents of one obstacle, one per agent: positions (n, m), velocities (n, m), signed clearances (n,)."""
 
     q: FloatArray
     p: FloatArray
@@ -37,7 +37,7 @@ class BetaAgents(NamedTuple):
 
 
 class Obstacle(ABC):
-    """A convex solid; a subclass is a frozen dataclass with `par`, `ball` and `kernels`.
+    """Base class of convex obstacles: frozen dataclasses with `par`, `ball` and `kernels`.
 
     Inside the solid (where a law must not be started) q̂ stays the closest point of the boundary.
     """
@@ -57,17 +57,17 @@ class Obstacle(ABC):
 
     @property
     def dimension(self) -> int:
-        """m."""
+        """Dimension m of the space."""
         return int(self.ball[0].size)
 
     def _project(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(gaps q̂ − q, velocities of the β-agents, clearances), unchecked."""
+        """Return (gaps q̂ − q, velocities of the β-agents, clearances), unchecked."""
         gap, rate, clearance = np.empty_like(q), np.empty_like(q), np.empty(len(q))
         self.kernels.agents(q, p, self.par, gap, rate, clearance)
         return gap, rate, clearance
 
     def beta_agents(self, q: Any, p: Any) -> BetaAgents:
-        """The β-agent that each agent has on this obstacle, near or far.
+        """Return each agent's β-agent on this obstacle, near or far.
 
         Parameters
         ----------
@@ -85,22 +85,12 @@ class Obstacle(ABC):
         return BetaAgents(q + gap, rate, clearance)
 
     def clearance(self, q: Any) -> FloatArray:
-        """Signed distance of points from the surface, negative inside, shape (n,).
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-        """
+        """Return signed distances of points from the surface, negative inside, shape (n,)."""
         q = ensure_points("q", q)
         return self.beta_agents(q, np.zeros_like(q)).clearance
 
     def contains(self, q: Any) -> npt.NDArray[np.bool_]:
-        """Which points lie inside or on the surface, shape (n,).
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-        """
+        """Return which points lie inside or on the surface, shape (n,)."""
         inside: npt.NDArray[np.bool_] = self.clearance(q) <= 0.0
         return inside
 
@@ -109,8 +99,6 @@ class Obstacle(ABC):
 
         Parameters
         ----------
-        m : int
-            Dimension of the flock.
         name : str
             How to call it in the message.
         """
@@ -129,7 +117,7 @@ def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatA
 
 @register_jitable
 def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
-    """q̂ = μq + (1 − μ)y, p̂ = μPp with μ = R/‖q − y‖."""
+    """Project onto a sphere: q̂ = μq + (1 − μ)y, p̂ = μPp with μ = R/‖q − y‖."""
     for c in range(q.size):  # no slices: a view costs as much as all else
         rate[c] = 0.0
     return project_ball(q, p, par, par[q.size], rate, gap, rate)
@@ -143,7 +131,7 @@ def _turn_sphere(q, p, e, par, out):  # type: ignore[no-untyped-def]
 
 @register_jitable
 def _onto_wall(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
-    """q̂ = Pq + (I − P)y, p̂ = Pp with P = I − aaᵀ; par = (y, a)."""
+    """Project onto a wall: q̂ = Pq + (I − P)y, p̂ = Pp with P = I − aaᵀ; par = (y, a)."""
     m, offset, speed = q.size, 0.0, 0.0
     for c in range(m):
         offset += par[m + c] * (q[c] - par[c])
@@ -159,7 +147,7 @@ _SPHERE, _WALL = lift_obstacle(_onto_sphere, _turn_sphere), lift_obstacle(_onto_
 
 @dataclass(frozen=True)
 class Sphere(Obstacle):
-    """A ball: a disc in the plane, an interval on the line   (Olfati-Saber 2006).
+    """Ball obstacle: a disc in the plane, an interval on the line (Olfati-Saber 2006).
 
     Parameters
     ----------
@@ -193,18 +181,18 @@ class Sphere(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """(y, R)."""
+        """Parameters (y, R) for the kernels."""
         return np.array([*self.centre, self.radius])
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """(y, R)."""
+        """Bounding ball (y, R)."""
         return np.array(self.centre), self.radius
 
 
 @dataclass(frozen=True)
 class Wall(Obstacle):
-    """A half-space behind a hyperplane, in any dimension   (Olfati-Saber 2006).
+    """Half-space obstacle behind a hyperplane, in any dimension (Olfati-Saber 2006).
 
     Parameters
     ----------
@@ -239,11 +227,11 @@ class Wall(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """(y, a) with a of unit length."""
+        """Parameters (y, a) for the kernels, with a of unit length."""
         normal = np.array(self.normal) / max(map(abs, self.normal))
         return np.concatenate([self.point, normal / hypot(*normal)])
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """(y, ∞)."""
+        """Bounding ball (y, ∞)."""
         return np.array(self.point), inf

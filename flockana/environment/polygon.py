@@ -1,4 +1,4 @@
-"""Convex polygons in the plane."""
+"""Convex polygon obstacles in the plane."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 @register_jitable
 def _onto_polygon(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
-    """The closest point of the closest edge: it slides along the edge, and rests at a corner; par = vertices."""
+    """Project onto the closest edge; the β-agent slides along an edge and rests at a corner; par = vertices."""
     best, inside, count = inf, True, par.size // 2
     for k in range(count):
         x0, y0 = par[2 * k], par[2 * k + 1]
@@ -87,7 +87,7 @@ class Polygon(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """The corners, counter-clockwise."""
+        """Vertices, counter-clockwise."""
         corners = np.array(self.vertices)
         first, second = corners[1] - corners[0], corners[2] - corners[1]
         turn = first[0] * second[1] - first[1] * second[0]
@@ -95,7 +95,7 @@ class Polygon(Obstacle):
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """(mean of the corners, distance of the farthest)."""
+        """Bounding ball: (mean of the vertices, distance of the farthest)."""
         corners = np.array(self.vertices)
         centre = corners.mean(axis=0)
         return centre, float(np.linalg.norm(corners - centre, axis=1).max()) * (1.0 + 1e-12)

@@ -1,4 +1,4 @@
-"""A spring with drag, whose pull may be bounded: the force on a γ-agent that is a system."""
+"""Spring with drag, whose pull may be bounded: a force on a γ-agent with dynamics."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.base.units import Powers
 
 @dataclass(frozen=True)
 class Spring:
-    """f_r(q, p) = push − k x/√(1 + ‖x‖²/ℓ²) − b p, x = q − centre: a spring whose pull is bounded by kℓ, with drag.
+    """Force f_r(q, p) = push − k x/√(1 + ‖x‖²/ℓ²) − b p, x = q − centre: spring of pull below kℓ, with drag.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Spring:
             object.__setattr__(self, "reach", ensure_positive("reach", self.reach))
 
     def __call__(self, q: FloatArray, p: FloatArray) -> FloatArray:
-        """The acceleration, of one place or of several (…, m)."""
+        """Return the acceleration at one position or at several (…, m)."""
         x = q - np.array(self.centre)
         if self.reach is not None:
             x = x / np.sqrt(1.0 + np.sum(x * x, axis=-1, keepdims=True) / self.reach**2)

@@ -12,7 +12,7 @@ from flockana.base.checks import FloatArray
 
 
 class Harmonic(NamedTuple):
-    """The path q_r = a + bt + c cos ωt + s sin ωt, with p_r = factor · dq_r/dt + e, as compiled integrators take it."""
+    """Path q_r = a + bt + c cos ωt + s sin ωt with p_r = factor · dq_r/dt + e, for compiled integrators."""
 
     terms: FloatArray  # shape (5, m): a, b, c, s, e
     omega: float = 0.0  # omega, factor: ω and what p_r is of the true rate
@@ -20,18 +20,18 @@ class Harmonic(NamedTuple):
 
 
 class Target(ABC):
-    """A γ-agent; a subclass is a frozen dataclass with `position`, `rate` and, where p_r differs from it, `state`."""
+    """Base class of γ-agents: frozen dataclasses with `position`, `rate` and, where p_r differs, `state`."""
 
     @abstractmethod
     def position(self, t: float) -> FloatArray:
-        """q_r(t), shape (m,)."""
+        """Return q_r(t), shape (m,)."""
 
     @abstractmethod
     def rate(self, t: float) -> FloatArray:
-        """The true dq_r/dt, shape (m,)."""
+        """Return the true dq_r/dt, shape (m,)."""
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
-        """(q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,)."""
+        """Return (q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,)."""
         return self.position(t), self.rate(t)
 
     @property
@@ -40,7 +40,7 @@ class Target(ABC):
         return None
 
     def mismatch(self, times: npt.ArrayLike) -> float:
-        """Largest ‖p_r − dq_r/dt‖ over the given times: 0 for a target that is consistent.
+        """Return the largest ‖p_r − dq_r/dt‖ over given times: 0 for a consistent target.
 
         Parameters
         ----------
@@ -51,5 +51,5 @@ class Target(ABC):
 
     @property
     def dimension(self) -> int:
-        """m."""
+        """Dimension m of the space."""
         return int(self.position(0.0).size)

@@ -1,4 +1,4 @@
-"""γ-agents: the moving or fixed reference (q_r, p_r) that Algorithms 2 and 3 follow.
+"""γ-agents with given paths: the fixed or moving reference (q_r, p_r) of Algorithms 2 and 3.
 
 A target hands over the p_r that the law is given and, apart from it, the true rate dq_r/dt; sources sometimes print
 a p_r that is not that rate, which is allowed here and reported where a theorem needs it.
@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.environment.target import Harmonic, Target
 
@@ -35,12 +35,10 @@ def _freeze_vector(target: Target, name: str, m: int | None = None) -> FloatArra
 
 @dataclass(frozen=True)
 class StaticTarget(Target):
-    """A fixed γ-agent at q; a velocity p ≠ 0 may be given beside it, as Theorem 6 and one source do.
+    """Fixed γ-agent at q; a velocity p ≠ 0 may be reported with it, as Theorem 6 does.
 
     Parameters
     ----------
-    q : array_like, shape (m,)
-        Position q_d.
     p : array_like, shape (m,), or 0
         Velocity p_d handed to the law; the position stays fixed.
 
@@ -77,7 +75,7 @@ class StaticTarget(Target):
 
 @dataclass(frozen=True)
 class LinearTarget(Target):
-    """A γ-agent on a straight line: q_r = q + p t.
+    """γ-agent on a straight line: q_r = q + p t.
 
     Parameters
     ----------
@@ -113,7 +111,7 @@ class LinearTarget(Target):
 
 @dataclass(frozen=True)
 class SineTarget(Target):
-    """A γ-agent that travels on a line and swings across it: q_r = start + velocity t + A sin(2πft + φ) e_axis.
+    """γ-agent on a sine about a line: q_r = start + velocity t + A sin(2πft + φ) e_axis.
 
     Parameters
     ----------
@@ -156,7 +154,7 @@ class SineTarget(Target):
         for name in ("amplitude", "frequency", "phase"):
             object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
         if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
-            raise ArgumentError(f"axis = {told(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
+            raise ArgumentError(f"axis = {format_value(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
 
     def _swing(self, value: float) -> FloatArray:
@@ -180,7 +178,7 @@ class SineTarget(Target):
 
 @dataclass(frozen=True)
 class CircleTarget(Target):
-    """A γ-agent on a circle in the first two coordinates: centre + R (cos, sin)(2πft + φ).
+    """γ-agent on a circle in the first two coordinates: centre + R (cos, sin)(2πft + φ).
 
     Parameters
     ----------
@@ -237,7 +235,7 @@ class CircleTarget(Target):
 
 @dataclass(frozen=True)
 class RescaledVelocity(Target):
-    """A γ-agent that moves as `target` does but hands over p_r = factor · dq_r/dt (the MSN project's mistake, E12).
+    """γ-agent that moves as `target` but reports p_r = factor · dq_r/dt (the MSN project's mistake, E12).
 
     Parameters
     ----------
@@ -281,7 +279,7 @@ class RescaledVelocity(Target):
 
 @dataclass(frozen=True)
 class CallableTarget(Target):
-    """A γ-agent given by a function; it need not be consistent, and cannot be written to a file.
+    """γ-agent given by a function; it need not be consistent, and cannot be saved to a file.
 
     Parameters
     ----------
@@ -316,7 +314,7 @@ class CallableTarget(Target):
         try:
             start, end = (float(each) for each in self.span)
         except (TypeError, ValueError):
-            raise ArgumentError(f"span = {told(self.span)}: expected two times, (start, end)") from None
+            raise ArgumentError(f"span = {format_value(self.span)}: expected two times, (start, end)") from None
         if not end - start > 4.0 * _STEP * self.time:
             raise ArgumentError(f"span = {self.span}: expected a start and an end, more than 4e-5 time apart")
         object.__setattr__(self, "span", (start, end))
@@ -358,7 +356,7 @@ class CallableTarget(Target):
         return self._call(t)
 
     def rate(self, t: float) -> FloatArray:
-        """dq_r/dt by central difference; by one of three points to one side where the span ends."""
+        """Return dq_r/dt by central difference, one-sided at the ends of the span."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         if self.span[0] <= t - step and t + step <= self.span[1]:
             return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

@@ -23,7 +23,7 @@ from flockana.kernels.segments import UNSURE
 
 @dataclass(frozen=True)
 class SimplePolygon:
-    """A polygon in the plane whose boundary does not meet itself; it may be concave.
+    """Polygon in the plane whose boundary does not cross itself; may be concave.
 
     Parameters
     ----------
@@ -71,17 +71,12 @@ class SimplePolygon:
 
     @property
     def edges(self) -> FloatArray:
-        """Rows (x0, y0, x1, y1), shape (V, 4)."""
+        """Edges as rows (x0, y0, x1, y1), shape (V, 4)."""
         corners = np.array(self.vertices)
         return np.hstack([corners, np.roll(corners, -1, axis=0)])
 
     def clearance(self, q: Any) -> FloatArray:
-        """Signed distance of points from the boundary, negative inside, shape (N,).
-
-        Parameters
-        ----------
-        q : array_like, shape (N, 2)
-        """
+        """Return signed distances of points from the boundary, negative inside, shape (N,)."""
         q = ensure_points("q", q)
         if q.shape[1] != 2:
             raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
@@ -108,7 +103,7 @@ class SimplePolygon:
     def clearance_on_way(
         self, start: FloatArray, end: FloatArray, ends: tuple[FloatArray, FloatArray] | None = None
     ) -> FloatArray:
-        """Lower bound of the signed distance along straight ways, exact outside the polygon, shape (N,).
+        """Return lower bounds of the signed distance along straight paths, exact outside, shape (N,).
 
         Where a way enters, the signed distance s changes by at most the way travelled: s >= (s_a + s_b − length)/2.
 
@@ -132,7 +127,7 @@ class SimplePolygon:
         return bound
 
     def enclosing_circle(self) -> Sphere:
-        """The smallest disc that holds it: the buffer zone of the conventional method that the paper compares with."""
+        """Return the smallest enclosing disc, the buffer zone of the conventional method."""
         import shapely
 
         circle = shapely.minimum_bounding_circle(self._shape)
@@ -141,7 +136,7 @@ class SimplePolygon:
 
 
 def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Least signed distance from a ball along straight ways, exact, shape (N,).
+    """Return least signed distances from a ball along straight paths, exact, shape (N,).
 
     Examples
     --------
@@ -158,7 +153,7 @@ def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> F
 
 @dataclass(frozen=True)
 class Box:
-    """The box low <= q <= high, whose walls agents must not cross.
+    """Box low <= q <= high, whose walls agents must not cross.
 
     Parameters
     ----------
@@ -190,13 +185,9 @@ class Box:
         object.__setattr__(self, "high", tuple(high.tolist()))
 
     def clearance(self, q: Any) -> FloatArray:
-        """Distance of points from the nearest wall, negative outside the box (then from the farthest wall crossed).
+        """Return distances of points from the nearest wall; negative outside the box.
 
         On a straight way it is least at one of the ends.
-
-        Parameters
-        ----------
-        q : array_like, shape (N, m)
         """
         q = ensure_points("q", q)
         inside: FloatArray = np.minimum(q - np.array(self.low), np.array(self.high) - q).min(axis=1)

@@ -1,4 +1,4 @@
-"""The surroundings of zone-based flocking: obstacles, a box, and aliens that hunt."""
+"""Surroundings of zone-based flocking: obstacles, a box, and aliens that pursue agents."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flockana.kernels.zones import World
 
 @dataclass(frozen=True)
 class Alien:
-    """An agent that is not of the flock: it goes for the nearest flock agent that it detects, and else rests.
+    """Agent outside the flock that pursues the nearest flock agent it detects, and otherwise rests.
 
     The paper gives the range of detection, 9 m, and that it is trapped in a triangle; speed and triangle are ours.
 
@@ -122,12 +122,10 @@ class ZoneWorld:
         return np.array([alien.start for alien in self.aliens]) if self.aliens else np.empty((0, 0))
 
     def arrays(self, m: int, *, buffer: bool = False) -> World:
-        """The world as the compiled step reads it.
+        """Return the world's data as arrays for the compiled step.
 
         Parameters
         ----------
-        m : int
-            Dimension of the flock.
         buffer : bool
             Give every polygon as the smallest disc that holds it.
         """
@@ -150,24 +148,17 @@ class ZoneWorld:
         )
 
     def clearance(self, q: FloatArray) -> FloatArray:
-        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
-
-        Parameters
-        ----------
-        q : ndarray, shape (N, m)
-        """
+        """Return signed distances from all obstacles at samples, and a lower bound between some of them."""
         least: FloatArray = np.min([o.clearance(q) for o in self.obstacles] or [np.full(len(q), np.inf)], axis=0)
         return least
 
     def clearances(self, q: FloatArray, taken: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
-        """Return signed distances from all obstacles at samples, and a lower bound between some of them.
+        """Return signed distances from all obstacles at samples, and lower bounds over the given intervals.
 
         Each obstacle is measured once at each sample. The bound is exact outside the obstacles. Shapes (T, n), (K, n).
 
         Parameters
         ----------
-        q : ndarray, shape (T, n, m)
-            Positions at the samples.
         taken : ndarray of int, shape (K,)
             Samples from which a way leads to the next one.
         """
@@ -183,12 +174,7 @@ class ZoneWorld:
         return at, on_way
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if an agent begins outside the box, in an obstacle, or at an alien.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-        """
+        """Raise if an agent begins outside the box, in an obstacle, or at an alien."""
         if self.box is not None and (inside := self.box.clearance(q)).min() < 0.0:
             i = int(np.argmin(inside))
             raise ArgumentError(f"q[{i}] = {q[i]}: expected a point of {self.box}")
@@ -206,5 +192,5 @@ class ZoneWorld:
 
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
-    """Rows of all parts one after the other, and where each part begins and ends."""
+    """Return the rows of all parts concatenated, and the indices at which the parts begin and end."""
     return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

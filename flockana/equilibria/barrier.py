@@ -31,7 +31,7 @@ _LARGEST = 2_000  # agents up to which the counts are followed
 
 @dataclass(frozen=True)
 class Barrier:
-    """Lowest energies of n agents that a search came to, with and without two agents at one place."""
+    """Lowest energies found for n agents, with and without two coincident agents."""
 
     n: int
     m: int
@@ -43,7 +43,7 @@ class Barrier:
 
     @property
     def height(self) -> float:
-        """Energy needed to bring two agents of the best flock together, `together` − `ground`."""
+        """Energy needed to make two agents of the best flock coincide, `together` − `ground`."""
         return self.together - self.ground
 
 
@@ -90,7 +90,7 @@ def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> l
 
 
 def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
-    """The agent with the most neighbours, which is the cheapest to double, in front."""
+    """Return positions with the agent of most neighbours first, the cheapest one to double."""
     links = np.zeros(len(q), dtype=np.int64)
     for i, j in pair_blocks(q, alpha.r):
         links += np.bincount(i, minlength=len(q)) + np.bincount(j, minlength=len(q))
@@ -119,7 +119,7 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
 
 
 def largest_clique(ratio: float, m: int) -> int | None:
-    """An upper bound on how many points can have all distances within a factor below `ratio` of each other.
+    """Return an upper bound of the number of points whose distances agree within a factor below `ratio`.
 
     On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of it
     and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's ball.
@@ -137,7 +137,7 @@ def largest_clique(ratio: float, m: int) -> int | None:
 
 
 def turan_pairs(n: int, clique: int) -> int:
-    """Most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941).
+    """Return the most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941).
 
     Examples
     --------
@@ -150,7 +150,7 @@ def turan_pairs(n: int, clique: int) -> int:
 
 
 def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
-    """A proved lower bound of V over all configurations of n agents: pairs with ψ_α < ψ_α(r_α) form no large clique.
+    """Return a proved lower bound of V over all configurations of n agents.
 
     Examples
     --------
@@ -165,13 +165,13 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
 
 
-def none_from(alpha: AlphaInteraction, m: int = 2) -> int | None:
+def least_infeasible_size(alpha: AlphaInteraction, m: int = 2) -> int | None:
     """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown.
 
     Examples
     --------
-    >>> none_from(AlphaInteraction()), none_from(AlphaInteraction(d=15.0, r=18.0, h=0.1, a=3.0, b=3.0))
-    (23, 26)
+    >>> least_infeasible_size(AlphaInteraction())
+    23
     """
     # the floor rises with n: every agent more adds pairs outside the cliques
     return next((n for n in range(2, _LARGEST) if energy_floor(alpha, n, m) >= alpha.c_star > 0.0), None)
@@ -192,7 +192,7 @@ def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
 
 
 def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float, float]:
-    """Two bounds of min{V : two agents coincide} that need no search: a proved lower one and an attained upper one.
+    """Return a proved lower and an attained upper bound of min{V : two agents coincide}, without a search.
 
     Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
     pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
@@ -211,7 +211,7 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
 
 
 def coincident_lattice(alpha: AlphaInteraction, n: int, m: int = 2) -> FloatArray:
-    """A compact lattice of n − 1 agents with the one of most links doubled, n >= 2.
+    """Return a compact lattice of n − 1 agents with its most linked agent doubled, n >= 2.
 
     Examples
     --------

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.equilibria.curvature import Landscape, downhill
+from flockana.equilibria.curvature import Landscape, descent_direction
 from flockana.equilibria.large import LargeLandscape
 from flockana.equilibria.potential import Potential
 
@@ -19,7 +19,7 @@ MAX_SIZE = 60_000  # n m
 
 
 class Spectrum(NamedTuple):
-    """Eigenvalues off the rigid motions, rising, the number of rigid motions, of negative and of zero eigenvalues.
+    """Eigenvalues off the rigid motions, with the numbers of rigid motions, negative and zero eigenvalues.
 
     Of a large flock the eigenvalues are some only, with all negative and zero ones and the largest among them.
     """
@@ -42,7 +42,7 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
-    """The potential about a configuration, with the force that is left there.
+    """Return the potential's second-order model about a configuration, with its residual force.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def landscape(potential: Potential, q: FloatArray) -> Landscape:
 
 
 def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
-    """Eigenvalues of the Hessian on the complement of the rigid motions that leave the potential unchanged.
+    """Return eigenvalues of the Hessian on the complement of the potential's rigid motions.
 
     What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
     no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
@@ -91,16 +91,16 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
     """
     here = landscape(potential, q)
     signs = here.curvatures().signs
-    return downhill(here) if signs.size and signs[0] < 0 else None
+    return descent_direction(here) if signs.size and signs[0] < 0 else None
 
 
-def kind_of(modes: Spectrum) -> EquilibriumKind:
-    """The kind of critical point: any negative eigenvalue excludes a minimum, and else any zero one leaves it open.
+def classify_spectrum(modes: Spectrum) -> EquilibriumKind:
+    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open.
 
     Examples
     --------
-    >>> kind_of(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1)), kind_of(Spectrum(np.array([0.0, 2.0]), 3, 0, 1))
-    ('saddle', 'degenerate')
+    >>> classify_spectrum(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1))
+    'saddle'
     """
     if modes.negative:
         return "maximum" if modes.negative == modes.eigenvalues.size else "saddle"

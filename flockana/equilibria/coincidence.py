@@ -13,7 +13,7 @@ _ABOVE = 1e-9  # relative: the greatest trace is flat where it is found, so it i
 
 
 def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> FloatArray:
-    """Trace over R^m of the Hessian block of a pair at each length: φ_α' σ' ² along it, the stress m times."""
+    """Return the trace of the Hessian block of a pair in R^m at each length."""
     z, root = alpha.sigma_norm(lengths), np.sqrt(1.0 + alpha.eps * lengths**2)
     phi, slope = alpha.phi_alpha(z), alpha.phi_alpha_slope(z)
     trace: FloatArray = slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root

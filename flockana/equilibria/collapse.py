@@ -40,23 +40,23 @@ class CollapseDiagram:
         return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
 
 
-def squeezed(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
+def pulled_law(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
     """Return Algorithm 2 with c1α = 1, c1γ = ratio and a γ-agent at rest at the origin.
 
     Examples
     --------
-    >>> squeezed(AlphaInteraction(), 0.5).gains.c1_gamma
+    >>> pulled_law(AlphaInteraction(), 0.5).gains.c1_gamma
     0.5
     """
     return Algorithm2(alpha, Gains(c1_alpha=1.0, c1_gamma=ensure_positive("ratio", ratio)), StaticTarget((0.0,) * m))
 
 
-def nudged(q: FloatArray, d: float) -> FloatArray:
+def perturbed(q: FloatArray, d: float) -> FloatArray:
     """Return a configuration with a fixed perturbation of 1e-4 d, to leave symmetric saddles.
 
     Examples
     --------
-    >>> bool(0.0 < np.abs(nudged(np.zeros((3, 2)), 7.0)).max() < 7e-3)
+    >>> bool(0.0 < np.abs(perturbed(np.zeros((3, 2)), 7.0)).max() < 7e-3)
     True
     """
     disturbed: FloatArray = q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
@@ -64,18 +64,18 @@ def nudged(q: FloatArray, d: float) -> FloatArray:
 
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
-    """The minimum of U_λ that IPOPT finds from a hexagonal spiral of n agents, slightly disturbed.
+    """Return the minimum of U_λ that IPOPT finds from a slightly disturbed hexagonal spiral of n agents.
 
     Examples
     --------
     >>> relaxed(AlphaInteraction(), 7, 0.1).strain() < 0.05
     True
     """
-    return find_equilibrium(squeezed(alpha, ratio), nudged(hexagonal_spiral(n, alpha.d), alpha.d))
+    return find_equilibrium(pulled_law(alpha, ratio), perturbed(hexagonal_spiral(n, alpha.d), alpha.d))
 
 
 def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
-    """Shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
+    """Return shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
 
 
 def natural_ratio(alpha: AlphaInteraction) -> float:
-    """c1γ/c1α at which the γ-agent pulls as hard at a distance d as two agents repel each other at most.
+    """Return the c1γ/c1α at which the pull of the γ-agent at distance d equals the largest repulsion of a pair.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def natural_ratio(alpha: AlphaInteraction) -> float:
 def threshold(
     collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
 ) -> tuple[float, float]:
-    """(largest ratio seen safe, least ratio seen to collapse): raised from a safe ratio until it collapses, bisected.
+    """Return (largest ratio found safe, least ratio found to collapse), by bisection.
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).

@@ -15,7 +15,7 @@ _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in
 
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
-    """All pairwise distances in rising order: equal for congruent configurations, and rarely for others.
+    """Return all pairwise distances in rising order; configurations with the same are rarely incongruent.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
 
 def _frame(x: FloatArray) -> list[int]:
-    """Up to m agents whose positions about the centre are independent, the farthest first."""
+    """Return up to m agents with independent positions about the centre, the farthest first."""
     chosen: list[int] = []
     rest, extent = x.copy(), float(np.linalg.norm(x, axis=1).max())
     for _ in range(min(x.shape)):
@@ -73,7 +73,7 @@ def _frame(x: FloatArray) -> list[int]:
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
-    """Tuples of agents with the frame's distances to the centre and between each other."""
+    """Return tuples of agents with the frame's distances to the centre and to each other."""
     images: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
         images = [

@@ -40,22 +40,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """Potential about a configuration: its Hessian off the rigid motions, and bounds of its change nearby.
-
-    Parameters
-    ----------
-    stiffness : callable
-        q -> the Hessian, sparse, in the order of ``q.ravel()``.
-    q : ndarray, shape (n, m)
-        Positions.
-    rigid : ndarray, shape (n m, k)
-        Orthonormal basis of the rigid motions that leave the potential unchanged.
-    force : float
-        What is left of the force, Euclidean norm over all agents.
-    length : float
-        The law's own length: neighbours are about as far apart.
-    unit : float
-        The law's own force, of whose terms what is left was taken: it is known to their rounding.
+    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby.
 
     Examples
     --------
@@ -88,7 +73,7 @@ class Landscape:
 
     @cached_property
     def _matrix(self) -> FloatArray:
-        """The Hessian off the rigid motions, which are put beyond every eigenvalue."""
+        """Hessian with its rigid motions shifted beyond every other eigenvalue."""
         hessian: FloatArray = self.here.toarray()
         rigid = self.rigid
         off: Any = hessian - rigid @ (rigid.T @ hessian)
@@ -128,7 +113,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """Change of eigenvalue k on the way to the critical point; infinite if that is not near."""
+        """Return the change of eigenvalue k on the way to the critical point; infinite if that is not near."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -171,7 +156,7 @@ class Landscape:
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """The configuration scaled up, scaled down, and shifted unless the potential is invariant under translations.
+        """Return the configuration scaled up, scaled down, and shifted unless translations do not matter.
 
         Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         """
@@ -185,7 +170,7 @@ class Landscape:
 
 
 def least_curvature(landscape: Landscape) -> tuple[float, float]:
-    """Relative smallest curvature, and its error from rounding and the residual force.
+    """Return the smallest curvature relative to the largest, and its error from rounding and residual force.
 
     They are (NaN, ∞) where there is nothing but rigid motions, and (0, 0) where nothing is stiff at all.
     """
@@ -198,8 +183,8 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
     return float(values[0]) / largest, min((landscape.change(0) + 2.0 * landscape.rounding) / largest, float("inf"))
 
 
-def downhill(landscape: Landscape) -> FloatArray:
-    """The direction (n, m), of unit length, in which the potential falls most steeply to second order.
+def descent_direction(landscape: Landscape) -> FloatArray:
+    """Return the unit direction (n, m) of steepest second-order descent.
 
     The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
     """
@@ -211,5 +196,5 @@ def downhill(landscape: Landscape) -> FloatArray:
 
 
 def _row_sum(matrix: Any) -> float:
-    """Largest row sum of absolute values, which bounds the spectral norm of a symmetric matrix."""
+    """Return the largest row sum of absolute values, a bound of a symmetric matrix's norm."""
     return float(abs(matrix).sum(axis=1).max()) if matrix.shape[0] else 0.0

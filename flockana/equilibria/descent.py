@@ -1,4 +1,4 @@
-"""Minima of large flocks: damped motion on the compiled forces, annealing where the net gave way, sparse Newton steps.
+"""Minima of large flocks: damped motion, annealing where pairs collapsed, sparse Newton steps.
 
 A flock that its γ-agent presses so hard that agents slide onto each other has minima without number, and one that goes
 downhill at once stays in a poor one. So a flock whose neighbours parted on the way down is warmed up and cooled slowly
@@ -34,7 +34,7 @@ _ENOUGH = 0.1  # of the fall of energy that a Newton step promises
 
 
 class Descent(NamedTuple):
-    """Result of a descent: end, whether the force vanishes there, and a message."""
+    """Result of a descent: configuration, whether the force vanishes there, and a message."""
 
     q: FloatArray
     converged: bool
@@ -42,7 +42,7 @@ class Descent(NamedTuple):
 
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
-    """A minimum of the potential that is reached from q downhill, or a lower one if the net gives way on the way.
+    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
     """
     steps, message = 100 * max_iter, "Converged"
     best = relax(potential, q, steps, tol=_ROUGH)
-    for heat in _HEATS if gave_way(potential, q, best) else ():
+    for heat in _HEATS if pairs_collapsed(potential, q, best) else ():
         other = relax(potential, anneal(potential, best, heat), steps, tol=_ROUGH)
         if potential.energy(other) < potential.energy(best):
             best, message = other, "Converged, annealed"
@@ -94,13 +94,13 @@ def relax(potential: Potential, q: FloatArray, steps: int, *, tol: float = _COAR
     return q
 
 
-def gave_way(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
-    """Return whether neighbours at the start moved against each other by more than their distance.
+def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) -> bool:
+    """Return whether neighbours moved against each other by more than their distance.
 
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> gave_way(Potential(Algorithm1()), np.array([[0.0], [6.0]]), np.array([[9.0], [16.0]]))
+    >>> pairs_collapsed(Potential(Algorithm1()), np.array([[0.0], [6.0]]), np.array([[9.0], [16.0]]))
     False
     """
     i, j = links(start, potential.pair.range).T

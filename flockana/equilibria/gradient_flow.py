@@ -33,7 +33,7 @@ class GradientLimit:
 
 
 def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
-    """−∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m).
+    """Return −∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Decisive curvatures of a large flock: the smallest, counted by elimination, and the largest.
+"""Smallest and largest curvatures of a large flock, counted by factorisation.
 
 Lanczos' method finds eigenvalues and may miss one; the signs of an elimination's pivots count them all. So those found
 are held against the count, and more are asked for until what is not among them is surely positive.

@@ -1,4 +1,4 @@
-"""The potential whose equilibria are sought, of a law that is a sum of terms: value, force, stiffness, symmetries."""
+"""Potential of a law that is a sum of terms: value, force, stiffness, symmetries."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Potential:
 
     @property
     def pinned(self) -> bool:
-        """Return whether translations of the flock change the potential."""
+        """Whether translations of the flock change the potential."""
         return any(term.invariance != "rigid motions" for term in self.law.terms)
 
     @property
@@ -74,7 +74,7 @@ class Potential:
 
     @property
     def pairs(self) -> PairTerm:
-        """The pair term."""
+        """The pair term of the law."""
         return self.law.term(PairTerm)  # type: ignore[return-value]  # ensured
 
     @property
@@ -94,28 +94,28 @@ class Potential:
 
     @property
     def target(self) -> FloatArray | None:
-        """Return q_r(t), or None without a γ-agent."""
+        """Position q_r(t), or None without a γ-agent."""
         return None if self.law.target is None else np.asarray(self.law.target.state(self.t)[0], dtype=float)
 
     @property
     def centre(self) -> FloatArray:
-        """q_r(t) of a law that has a γ-agent."""
+        """Position q_r(t) of a law that has a γ-agent."""
         if (target := self.target) is None:
             raise ArgumentError(f"{self.law}: expected a law with a γ-agent")
         return target
 
     def energy(self, q: FloatArray) -> float:
-        """The potential energy, pairs out of range included."""
+        """Return the potential energy, pairs out of range included."""
         return float(self.law.hamiltonian(self.t, q, np.zeros_like(q)))
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
-        """The potential energy of the listed pairs, less the far potential of each: no large constant to round."""
+        """Return the energy of listed pairs less their far potential, without a large constant to round."""
         lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy_at(lengths) - self.pair.far_potential))
         return total + sum(term.energy(self.t, q) for term in self.others)
 
     def force(self, q: FloatArray) -> FloatArray:
-        """The negative gradient of the potential by the law's own kernels, shape (n, m)."""
+        """Return the negative gradient of the potential from the law's kernels, shape (n, m)."""
         push = self.law.flow(self.t, q, np.zeros_like(q))[0]
         if not self.pinned:
             return moving_frame(push)
@@ -126,15 +126,15 @@ class Potential:
         return still
 
     def residual(self, q: FloatArray) -> float:
-        """Largest force on an agent over `force_scale`."""
+        """Return the largest force on an agent over `force_scale`."""
         return float(np.linalg.norm(self.force(q), axis=1).max()) / self.force_scale
 
     def stiffness(self, q: FloatArray) -> Any:
-        """The Hessian of the potential, sparse, in the order of ``q.ravel()``."""
+        """Return the Hessian of the potential, sparse, in the order of ``q.ravel()``."""
         return self.law.stiffness(q, self.t)
 
     def symmetries(self, q: FloatArray) -> FloatArray:
-        """Orthonormal basis (n m, k) of the rigid motions that leave the potential unchanged.
+        """Return an orthonormal basis (n m, k) of the rigid motions that keep the potential.
 
         All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
         """

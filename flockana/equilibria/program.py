@@ -1,4 +1,4 @@
-"""The nonlinear program: CasADi expressions over a list of pairs, solved by IPOPT with exact derivatives.
+"""Nonlinear program for IPOPT: CasADi expressions over a list of pairs with exact derivatives.
 
 The value of ψ_α on its taper is no elementary function, so IPOPT gets the value from the kernels (a CasADi callback,
 exact to 1e-13 c*) and gradient and Hessian from the expressions generated from sympy. Nothing differentiates the
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.base.interrupts import interrupts_held
+from flockana.base.interrupts import defer_sigint
 from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.equilibria.terms import has_form, own_derivatives, pair_term
 from flockana.measures.nets import LinkArray
@@ -77,7 +77,7 @@ class _Derivatives(ca.Callback):
 
 
 class _Watch(ca.Callback):
-    """Callback after every iteration that stops the solver on Ctrl-C, which CasADi would take for a failure."""
+    """Iteration callback that stops the solver on Ctrl-C, which CasADi would take for a failure."""
 
     def __init__(self, size: int, gauge: int) -> None:
         ca.Callback.__init__(self)
@@ -105,17 +105,6 @@ class Program:
     force scale. The gauge Cᵀ(x − x⁰) = 0, C a basis of the potential's symmetries at the start, takes the directions
     out in which it is flat by construction; every configuration has a copy that satisfies it, so nothing is lost.
 
-    Parameters
-    ----------
-    potential : Potential
-        What is minimised.
-    shape : tuple of int
-        (n, m).
-    pairs : int array, shape (M, 2)
-        Pairs that may come within range.
-    gauge : int
-        Number of gauge constraints.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1
@@ -125,7 +114,7 @@ class Program:
     (True, True, 'Solve_Succeeded')
     """
 
-    @interrupts_held()
+    @defer_sigint()
     def __init__(self, potential: Potential, shape: tuple[int, int], pairs: LinkArray, gauge: int) -> None:
         self.potential, self.shape, self.pairs, self.gauge = potential, shape, pairs, gauge
         self.size = shape[0] * shape[1]
@@ -137,7 +126,7 @@ class Program:
         value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
         derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
-        self.derivatives = interrupts_held()(derivatives)
+        self.derivatives = defer_sigint()(derivatives)
         self._program: Any = {"x": x, "p": c, "f": value, "g": held}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
@@ -146,7 +135,7 @@ class Program:
         self._solvers: dict[tuple[float, int], Any] = {}
 
     def value(self, x: FloatArray) -> float:
-        """Objective at x; NaN where an agent is inside an obstacle, which makes IPOPT take a shorter step."""
+        """Return the objective at x; NaN inside an obstacle, which makes IPOPT shorten its step."""
         q = self.d * x.reshape(self.shape)
         if inside_obstacle(self.potential.law, q):
             return float("nan")
@@ -161,12 +150,12 @@ class Program:
         tol: float = 1e-10,
         max_iter: int = 3000,
     ) -> tuple[FloatArray, bool, str]:
-        """Minimise from q0: (positions, whether IPOPT succeeded, IPOPT's status)."""
+        """Minimise from q0 and return (positions, whether IPOPT succeeded, IPOPT's status)."""
         start = q0.ravel() / self.d
         basis = self.potential.symmetries(q0) if basis is None else basis
         held = basis.T @ start
         box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
-        with interrupts_held() as self._watch.came:
+        with defer_sigint() as self._watch.came:
             solver = self._solver(tol, max_iter)
             solution = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
             stats, x = solver.stats(), np.array(solution["x"])
@@ -187,7 +176,7 @@ class Program:
         return self._solvers[tol, max_iter]
 
     def _derivatives(self, x: Any) -> tuple[Any, Any]:
-        """Gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
+        """Return gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
         (n, m), (i, j) = self.shape, self.pairs.T
         rows, columns, scatter = _scatter(n, m, i, j)
         if not has_form(self.potential.pair, self.potential.others):
@@ -211,7 +200,7 @@ class Program:
         return ca.vec(slope) * (self.d / self.unit), hessian * (self.d**2 / self.unit)
 
     def _own(self, q: Any) -> tuple[Any, Any]:
-        """Gradient (m, n) and Hessian blocks (m, m n) of what depends on one agent alone."""
+        """Return gradient (m, n) and Hessian blocks (m, m n) of the terms of single agents."""
         n, m = self.shape
         slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
         for term in self.potential.others:

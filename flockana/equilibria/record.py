@@ -1,4 +1,4 @@
-"""Write an equilibrium and its law as JSON, and read it back with all its properties computed and compared."""
+"""Equilibria as JSON files, checked against recomputed properties when read."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import FileError, FlockanaError, SolverError
-from flockana.base.files import read_whole, write_whole
+from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data
 from flockana.equilibria.potential import Potential
-from flockana.equilibria.solve import Equilibrium, ensure_found, finish
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium, finish
 
 _FORMAT = "flockana equilibrium 1"
 _EXPECTED = f"expected JSON of the format {_FORMAT!r}, as 'flockana equilibrium SOURCE -o FILE' writes it"
@@ -26,7 +26,7 @@ _AGREE = 1e-6  # relative: eigenvalues written on one machine and computed on an
 
 def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
     """Write an equilibrium, its law and its Hessian spectrum as JSON; numbers read back exactly."""
-    ensure_found("equilibrium", equilibrium)
+    ensure_unedited_equilibrium("equilibrium", equilibrium)
     data = {
         "format": _FORMAT,
         "law": to_data(equilibrium.law),
@@ -38,11 +38,11 @@ def write_equilibrium(equilibrium: Equilibrium, path: str | Path) -> None:
         "rigid_modes": equilibrium.rigid_modes,
         "hessian_eigenvalues": equilibrium.hessian_eigenvalues.tolist(),
     }
-    write_whole(path, json.dumps(with_digest(data), indent=1) + "\n")
+    write_atomic(path, json.dumps(with_digest(data), indent=1) + "\n")
 
 
 def read_equilibrium(path: str | Path) -> Equilibrium:
-    """Read an equilibrium; everything is computed anew from its positions and must agree with the file."""
+    """Return an equilibrium from a file, after recomputing its properties and comparing them with the file."""
     data = _read(path)
     try:
         law, q = from_data(data["law"]), np.array(data["q"], dtype=np.float64)
@@ -59,9 +59,9 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
 
 
 def _read(path: str | Path) -> dict[str, Any]:
-    """What the file says, if it says that it is an equilibrium."""
+    """Return a file's data; raise unless it holds an equilibrium."""
     try:
-        data = read_json(read_whole(path))
+        data = read_json(read_text_file(path))
     except FlockanaError as error:
         raise _not_one(path, error) from error
     except ValueError as error:
@@ -78,7 +78,7 @@ def _not_one(path: str | Path, reason: object) -> FileError:
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
-    """Raise unless kind, links, modes, energy and spectrum are what the file says."""
+    """Raise unless kind, links, modes, energy and spectrum agree with the file."""
     exact = {"kind": equilibrium.kind, "links": len(equilibrium.links), "rigid_modes": equilibrium.rigid_modes}
     for name, value in exact.items():
         if data[name] != value:
@@ -96,7 +96,7 @@ def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
 
 
 def smallest_strained() -> Equilibrium:
-    """The smallest strict local minimum of V known to us with distinct agents that is no α-lattice, verified anew.
+    """Return the smallest known strict minimum of V with distinct agents that is no α-lattice, verified anew.
 
     Thirteen agents, 24 links of 6.849 to 7.116 for d = 7: one more than a rigid net needs, so the lengths cannot all
     be d. Found from random starts of 15, by taking away what its stress does not need; no smaller one turned up.

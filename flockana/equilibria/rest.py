@@ -1,4 +1,4 @@
-"""States of rest of laws without a potential, by Newton's method on the forces."""
+"""Resting states of laws without a potential, by Newton's method on the forces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SHORTEN = 0.5  # factor on a step, as often as the force grows by it
 
 
 def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
-    """Positions near q0 at which the force on every agent at rest vanishes, by Newton's method in least squares.
+    """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares).
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
 

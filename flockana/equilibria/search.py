@@ -25,7 +25,7 @@ _LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one eq
 
 
 def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, density: float = 1.3) -> list[FloatArray]:
-    """Starts uniform in a ball that holds n agents denser than a lattice of spacing d by the given factor.
+    """Return starts uniform in a ball, denser than a lattice of spacing d by the given factor.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, densit
 
 
 def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise: float = 0.05) -> list[FloatArray]:
-    """Starts grown agent by agent on the line, the triangular lattice or FCC, at random free places, and disturbed.
+    """Return starts grown agent by agent at random free sites of a lattice, then perturbed.
 
     Of three random free places the one with the most neighbours is taken: compact patches, but not the same each time.
 
@@ -89,7 +89,7 @@ class Distinct:
 
 @dataclass(frozen=True)
 class Search:
-    """The distinct equilibria that many starts lead to."""
+    """Distinct equilibria reached from many starts."""
 
     # distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only
     found: tuple[Distinct, ...]
@@ -98,7 +98,7 @@ class Search:
 
     @property
     def best(self) -> Equilibrium:
-        """The equilibrium of lowest energy."""
+        """Equilibrium of lowest energy."""
         if not self.found:
             raise SolverError(
                 f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}"
@@ -106,7 +106,7 @@ class Search:
         return self.found[0].equilibrium
 
     def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
-        """Strict minima that are no α-lattice."""
+        """Return strict minima that are no α-lattice."""
         return tuple(
             item.equilibrium
             for item in self.found
@@ -167,7 +167,7 @@ def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:
 
 
 def _by_energy(equilibria: Sequence[Equilibrium]) -> list[Equilibrium]:
-    """Lowest energy first; of energies that are equal but for rounding, in the order in which they were found."""
+    """Return equilibria with the lowest energy first; equal energies stay in the order of discovery."""
     if not equilibria:
         return []
     potential, n = Potential(equilibria[0].law), len(equilibria[0].q)

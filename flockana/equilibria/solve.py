@@ -1,5 +1,4 @@
-"""Equilibria of the continuous laws with a potential: minima by IPOPT or, of large flocks, by damped motion and sparse
-Newton steps; critical points of any kind by a root-finder."""
+"""Equilibria of laws with a potential, by IPOPT, damped motion with Newton steps, or a root-finder."""
 
 from __future__ import annotations
 
@@ -21,13 +20,14 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.tables import facts_html, facts_text
 from flockana.equilibria.classify import (
     DENSE_SIZE,
     MAX_SIZE,
     EquilibriumKind,
+    classify_spectrum,
     ensure_small,
     falling,
-    kind_of,
     spectrum,
 )
 from flockana.equilibria.descent import descend
@@ -98,6 +98,26 @@ class Equilibrium:
     index: int
     success: bool
     message: str
+
+    def facts(self) -> dict[str, str]:
+        """Return what a table shows."""
+        lowest = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
+        return {
+            "law": type(self.law).__name__,
+            "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
+            "kind": self.kind + (f" of index {self.index}" if self.index else ""),
+            "energy": f"{self.energy:.6g}",
+            "residual": f"{self.residual:.2g} of the law's forces",
+            "lowest curvature": lowest,
+            "rigid, soft modes": f"{self.rigid_modes}, {self.zero_modes}",
+            "success": f"{'yes' if self.success else 'no'}: {self.message}",
+        }
+
+    def __str__(self) -> str:
+        return facts_text("Equilibrium", self.facts())
+
+    def _repr_html_(self) -> str:
+        return facts_html("Equilibrium", self.facts())
 
     def strain(self) -> float:
         """Largest |link − d|/d to twelve digits; NaN without links.
@@ -218,7 +238,7 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
         energy=potential.energy(q),
         residual=residual,
         links=links(q, potential.pair.range),
-        kind=kind_of(modes),
+        kind=classify_spectrum(modes),
         hessian_eigenvalues=modes.eigenvalues,
         rigid_modes=modes.rigid,
         zero_modes=modes.zero,
@@ -229,8 +249,8 @@ def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *
     return sealed(found)
 
 
-def ensure_found(name: str, equilibrium: Equilibrium) -> None:
-    """Raise unless an equilibrium is as it was found."""
+def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
+    """Raise unless an equilibrium is unchanged since a solver returned it."""
     source = "one as find_equilibrium returned it or read it from a file"
     ensure_sealed(name, equilibrium, source, "find it anew, or give its positions alone")
 
@@ -253,7 +273,7 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Solve in a box about the start, then about each solution, until the box does not matter.
+    """Minimise in a box about the start, then about each solution, until the box is not active.
 
     The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
@@ -284,7 +304,7 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
 
 
 def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Levenberg-Marquardt on the scaled gradient with the gauge as extra equations, over all pairs."""
+    """Find a zero of the gradient by Levenberg-Marquardt, with the gauge as extra equations."""
     import casadi as ca
     from scipy.optimize import least_squares
 
@@ -307,7 +327,7 @@ def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> 
 
 
 def _polish(potential: Potential, q: FloatArray) -> FloatArray:
-    """Refine by Newton's method with the law's stiffness; rigid motions stay, a small shift keeps soft modes finite."""
+    """Refine by Newton's method with the law's stiffness; a small shift keeps soft modes finite."""
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 

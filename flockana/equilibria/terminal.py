@@ -1,4 +1,4 @@
-"""Last state of a run: distance from equilibrium, links, second-order character."""
+"""Final state of a run: distance from equilibrium, links, second-order character."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
 @dataclass(frozen=True)
 class TerminalState:
-    """The geometry and the second-order character of a configuration under Algorithm 1 or 2."""
+    """Geometry and second-order character of a configuration under Algorithm 1 or 2."""
 
     # largest force on an agent in the moving frame at zero relative velocity, over the force of the law's `scales`
     force: float
@@ -45,7 +45,7 @@ class TerminalState:
 def terminal_state(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, contact: float = 1e-9
 ) -> TerminalState:
-    """Measure a state: residual force, link lengths, Hessian off the rigid motions.
+    """Return residual force, link lengths and Hessian off the rigid motions of a state.
 
     Examples
     --------
@@ -78,13 +78,13 @@ def terminal_state(
 
 
 def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Forces in the moving frame at zero relative velocity."""
+    """Return the forces in the moving frame at zero relative velocity."""
     still = np.ascontiguousarray(np.broadcast_to(p.mean(axis=0), p.shape))
     return moving_frame(law.flow(0.0, q, still)[0])
 
 
 def rigid_motions(q: FloatArray) -> FloatArray:
-    """Orthonormal basis of the infinitesimal translations and rotations of a configuration, shape (n m, k).
+    """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k).
 
     Examples
     --------

@@ -40,7 +40,7 @@ def _compile(name: str, gradient: list[Any], symbols: Any, values: dict[Any, flo
 
 @lru_cache(maxsize=64)
 def pair_term(pair: PairInteraction, m: int) -> ca.Function:
-    """Gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i.
+    """Return gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def pair_term(pair: PairInteraction, m: int) -> ca.Function:
 
 
 def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix:
-    """F(‖Δ‖) Δ/‖Δ‖ with the numbers of a pair law put in.
+    """Return F(‖Δ‖) Δ/‖Δ‖ with a pair law's numbers inserted.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
 
 
 def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
-    """Gradient (m, n) and Hessian blocks (m, m n), piece by piece, of a term of each agent by itself."""
+    """Return gradient (m, n) and Hessian blocks (m, m n) of a term of single agents, piece by piece."""
     m, n = q.shape
     if isinstance(term, ObstacleTerm):
         for obstacle in term.field.obstacles:
@@ -107,7 +107,7 @@ def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
 
 @lru_cache(maxsize=64)
 def pull_term(m: int, unit: float = 1.0) -> ca.Function:
-    """Gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
+    """Return gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
 
     Examples
     --------
@@ -120,7 +120,7 @@ def pull_term(m: int, unit: float = 1.0) -> ca.Function:
 
 @lru_cache(maxsize=256)
 def obstacle_term(obstacle: Obstacle, beta: BetaInteraction) -> ca.Function:
-    """Gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q.
+    """Return gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q.
 
     Examples
     --------

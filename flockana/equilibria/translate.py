@@ -1,4 +1,4 @@
-"""Translate sympy expressions to CasADi ones, so that the solver uses the expressions that were derived."""
+"""Translation of sympy expressions to CasADi, so that the solver uses the derived expressions."""
 
 from __future__ import annotations
 

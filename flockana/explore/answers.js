@@ -34,15 +34,17 @@ function explorerAnswers(verdicts, poles) {
     status.textContent = found.status;
     status.className = `status ${found.status}`;
     row.querySelectorAll("p, ul").forEach((node) => node.remove());
+    if (found.summary) make("p", found.summary, row);
     make("p", found.error || found.statement, row, { class: "muted" });
     const list = (items, words) => {
       if (!items.length) return;
       const all = make("ul", "", row, { "aria-label": words });
-      for (const { status: how, name, detail, margin, rigour } of items) {
+      for (const { status: how, name, detail, margin, rigour, by } of items) {
         const item = make("li", "", all);
         make("span", how, item, { class: `status ${how}` });
         const more = [detail, margin === null || margin === undefined ? "" : `margin ${Number.isFinite(Number(margin)) ? short(margin) : margin}`, rigour || ""];
-        item.append(` ${name}: ${more.filter(Boolean).join("; ")}`);
+        const whose = by && by !== found.author ? `${found.bylines[by]}: ` : "";
+        item.append(` ${whose}${name}: ${more.filter(Boolean).join("; ")}`);
       }
     };
     list(found.hypotheses, "Hypotheses");

@@ -22,6 +22,7 @@ from flockana.player.marks import marks_of
 from flockana.scenarios.given import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify
+from flockana.theorems.headline import BYLINES
 
 Send = Callable[[str, Any], None]  # a kind, and plain data or bytes
 
@@ -94,7 +95,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
     for name in parts.theorems:
         try:
             found = verify(name, run, tolerances=parts.tolerances)
-            verdict = found.to_dict() | {"marks": marks_of(run, [found])}
+            verdict = found.to_dict() | {"marks": marks_of(run, [found]), "bylines": dict(BYLINES)}
         except FlockanaError as error:  # such as an erratum about another number of agents
             verdict = {"theorem": name, "status": "not checked", "error": str(error), "hypotheses": [], "claims": []}
         yield "verdict", {**verdict, "statement": theorem(name).statement}

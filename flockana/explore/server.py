@@ -21,7 +21,7 @@ from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from flockana.base.errors import ArgumentError
-from flockana.base.interrupts import interrupts_hidden
+from flockana.base.interrupts import block_sigint
 from flockana.ensemble.processes import single_threaded_children
 from flockana.explore.page import page
 from flockana.explore.worker import work
@@ -48,7 +48,7 @@ class Process:
         context = get_context("spawn")
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=work, args=(theirs, limit), daemon=True)
-        with interrupts_hidden(), single_threaded_children():
+        with block_sigint(), single_threaded_children():
             self.process.start()
         theirs.close()
         self.ready = False

@@ -11,7 +11,7 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
-from flockana.base.interrupts import interrupts_held, interrupts_recognised
+from flockana.base.interrupts import defer_sigint, restore_interrupts
 
 
 class Worker:
@@ -56,7 +56,7 @@ class Worker:
 
             try:
                 self._send(number, "begun", {})
-                with interrupts_recognised():
+                with restore_interrupts():
                     send, newer = partial(self._send, number), partial(self._newer_than, number)
                     answer(data, send, limit=self.limit, cancelled=newer)
                 self.done = number
@@ -67,7 +67,7 @@ class Worker:
         return self.newest[0] != number
 
     def _send(self, number: int, kind: str, content: Any) -> None:
-        with interrupts_held():  # half a message would be the end of all
+        with defer_sigint():  # half a message would be the end of all
             self.pipe.send((number, kind, content))
         self.breakable = kind not in ("begun", "form", "done")
         if self._newer_than(number):  # it came before it could break anything off

@@ -1,4 +1,4 @@
-"""Falsification: an adversarial search of initial states, and parameters, for a run that breaks a claim."""
+"""Falsification: optimisation over initial states and parameters for a run that breaks a claim."""
 
 from flockana.falsify.campaign import falsify
 from flockana.falsify.counterexample import Counterexample, replay

@@ -1,4 +1,4 @@
-"""Search the neighbourhood of a scenario for a run that refutes a claim of a theorem."""
+"""Search for a run that refutes a theorem's claim, in the neighbourhood of a scenario."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.falsification import Ending, Falsification
 from flockana.falsify.grade import FAILED
 from flockana.falsify.search import Search
-from flockana.falsify.space import STATE, law_parameter, search_space
-from flockana.scenarios import Scenario
-from flockana.scenarios import scenario as named_scenario
+from flockana.falsify.space import STATE, search_space
+from flockana.scenarios import Flock, Scenario
+from flockana.scenarios.flock import as_scenario, chosen, law_parameter
 from flockana.theorems import Claim, Theorem, Tolerances
 from flockana.theorems import theorem as named_theorem
 from flockana.theorems.theorem import Lead
@@ -27,8 +27,12 @@ from flockana.theorems.theorem import Lead
 
 def falsify(
     theorem: str | Theorem,
-    scenario: str | Scenario,
+    scenario: str | Scenario | Flock | None = None,
     *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
     budget: int,
     seed: int = 0,
     claim: str | None = None,
@@ -52,8 +56,10 @@ def falsify(
     ----------
     theorem : str or Theorem
         A theorem about runs, of the catalogue or your own.
-    scenario : str or Scenario
-        Where the search begins: a name of the catalogue, built with `seed`, or a scenario.
+    scenario : str, Scenario or Flock, optional
+        Where the search begins: a name of the catalogue or a flock, built with `seed`, or a scenario.
+    law, q0, p0, t_span : optional
+        Instead of a scenario: the parts of a `Flock`.
     budget : int
         Runs to make at most, the scenario's own start among them.
     seed : int
@@ -102,8 +108,8 @@ def falsify(
     """
     item = named_theorem(theorem) if isinstance(theorem, str) else theorem
     budget, seed = ensure_count("budget", budget), ensure_seed(seed)
-    begin = named_scenario(scenario, seed) if isinstance(scenario, str) else scenario
-    _ensure_kinds(item, begin, tolerances, surrogate)
+    _ensure_kinds(item, tolerances, surrogate)
+    begin = as_scenario(chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span), seed)
     space = search_space(begin, vary=vary, region=region, speed=speed, parameters=parameters)
     problem = Problem(space, theorem, tolerances or Tolerances(), claim, surrogate)
     problem, first = _at_the_start(problem, begin)
@@ -145,13 +151,11 @@ def falsify(
     return sealed(found)
 
 
-def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) -> None:
+def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
     if not isinstance(theorem, Theorem):
         raise ArgumentError(f"theorem = {theorem!r}: expected a name of the catalogue or a Theorem")
     if theorem.kind != "trajectory":
         raise ArgumentError(f"{theorem.id} is not about a run: expected a theorem about motion, such as os-1")
-    if not isinstance(scenario, Scenario):
-        raise ArgumentError(f"scenario = {scenario!r}: expected a name of the catalogue or a Scenario")
     if tolerances is not None and not isinstance(tolerances, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
     if surrogate is not None and not callable(surrogate):
@@ -159,7 +163,7 @@ def _ensure_kinds(theorem: Any, scenario: Any, tolerances: Any, surrogate: Any) 
 
 
 def _at_the_start(problem: Problem, begin: Scenario) -> tuple[Problem, Evaluation]:
-    """The evaluation of the scenario's own start, and the problem with units for margins from it; errors are raised."""
+    """Return the evaluation of the scenario's own start, and the problem with units for margins."""
     with np.errstate(all="ignore"):
         run = begin.run()
         if run.status == "interrupted":
@@ -190,7 +194,7 @@ class _Record:
             self.best, self.point = evaluation, point
 
     def columns(self, claim: str) -> dict[str, Any]:
-        """`margins` and `statuses` by claim; of a run that failed there is neither."""
+        """Return `margins` and `statuses` by claim, NaN and "failed" for failed runs."""
         names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
         absent = [("vacuous" if row else "failed", np.nan) for row in self.rows]
         table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}

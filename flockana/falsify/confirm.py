@@ -1,4 +1,4 @@
-"""Confirm counterexamples: a run that refutes a claim is integrated again, a thousand times more tightly."""
+"""Confirmation of counterexamples by a second run with a thousandth of the tolerance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, th
 
 
 class Case(Protocol):
-    """A law with a start and options of `simulate`: a scenario or a counterexample."""
+    """Interface of a law with a start and options of `simulate`: a scenario or a counterexample."""
 
     @property
     def law(self) -> Law | DiscreteLaw:
@@ -64,7 +64,7 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
 
 
 def tighter(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of `simulate` with a thousandth of the tolerance; a fixed step gives way to an adaptive method.
+    """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method.
 
     Examples
     --------

@@ -13,7 +13,7 @@ from typing import Any
 from flockana._version import __version__
 from flockana.base.checks import FloatArray, ensure_state, ensure_time_span
 from flockana.base.errors import FileError, FlockanaError
-from flockana.base.files import read_whole, write_whole
+from flockana.base.files import read_text_file, write_atomic
 from flockana.base.seals import ensure_sealed, sealed, with_digest, without_digest
 from flockana.base.serialize import from_data, read_json, to_data, to_data_mapping
 from flockana.dynamics.simulate import simulate
@@ -34,7 +34,7 @@ _KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Counterexample:
-    """A law, a start and the claim that a run from there refutes.
+    """Law, start and claim that a run from there refutes.
 
     Parameters
     ----------
@@ -42,12 +42,8 @@ class Counterexample:
         The claim that is refuted, and its theorem.
     scenario : str
         Where the search began.
-    law : Law or DiscreteLaw
-        The law of motion.
     q0, p0 : ndarray, shape (n, m)
         The start.
-    tolerances : Tolerances
-        Thresholds of the verdict.
     margin, error : float
         Of the claim when it was refuted; NaN if it has none.
     version : str
@@ -146,16 +142,11 @@ class Counterexample:
             "options": to_data_mapping(self.options),
             "tolerances": asdict(self.tolerances),
         }
-        return write_whole(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+        return write_atomic(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Counterexample:
         """Read a counterexample that `save` wrote.
-
-        Parameters
-        ----------
-        path : path-like
-            File to read.
 
         Raises
         ------
@@ -163,7 +154,7 @@ class Counterexample:
             If it cannot be read, is not one of ours, is of another format, or is damaged.
         """
         try:
-            data = read_json(read_whole(path))
+            data = read_json(read_text_file(path))
         except ValueError as error:
             raise FileError(f"{path} is no JSON ({error}): expected a file that `flockana falsify -o` wrote") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -199,8 +190,6 @@ def replay(path: str | os.PathLike[str], *, theorem: Theorem | None = None) -> V
 
     Parameters
     ----------
-    path : path-like
-        A file that `Falsification.save` wrote.
     theorem : Theorem, optional
         The theorem itself, if it is not one of the catalogue.
 
@@ -226,7 +215,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Keyword arguments of `simulate`, none that it does not have."""
+    """Return the known keyword arguments of `simulate` among data."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")

@@ -1,4 +1,4 @@
-"""Evaluation of a point of the search space: its run, the verdict on it, and the grade that the search minimises."""
+"""Evaluation of a point of the search space: its run, verdict and grade."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.interrupts import interrupts_recognised
+from flockana.base.interrupts import restore_interrupts
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify.confirm import confirmed
 from flockana.falsify.grade import FAILED, grade
@@ -37,7 +37,7 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A theorem to be refuted in a search space; called with a point it gives an `Evaluation`, errors included."""
+    """Theorem to be refuted in a search space; called with a point it returns an `Evaluation`."""
 
     space: Space
     theorem: str | Theorem
@@ -50,13 +50,13 @@ class Problem:
     def __call__(self, point: FloatArray) -> Evaluation:
         """Evaluate a point; an error becomes the grade of a failed run."""
         try:
-            with interrupts_recognised():
+            with restore_interrupts():
                 return self.judged(self.space.case(point))
         except Exception as error:  # a search must outlive every state that it tries
             return Evaluation(FAILED, message=f"{type(error).__name__}: {' '.join(str(error).split())}")
 
     def judged(self, case: Scenario) -> Evaluation:
-        """Run a case and grade its verdict; errors are raised."""
+        """Return the graded verdict on a case's run; errors are raised."""
         with np.errstate(all="ignore"):
             run = case.run()
             if run.status == "interrupted":
@@ -74,7 +74,7 @@ class Problem:
         return confirmed(judge(run), judge, case)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
-        """Grade a verdict."""
+        """Return the grade of a verdict."""
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
         chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]

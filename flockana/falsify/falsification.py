@@ -1,4 +1,4 @@
-"""Result of a search for a counterexample: the worst run, and the course of every claim's margin."""
+"""Result of a search for a counterexample: the worst run, and every claim's margin over the search."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")
 
 @dataclass(frozen=True, eq=False)
 class Falsification:
-    """The outcome of `falsify`.
+    """Result of `falsify`.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Falsification:
     message: str = ""
 
     def __repr__(self) -> str:
-        """A summary in one line."""
+        """Return a summary in one line."""
         what = f"{self.theorem}:{self.claim} on {self.scenario}"
         return f"<Falsification of {what}: {self.status}, margin {self.margin:.4g}, {self.evaluations} evaluations>"
 
@@ -102,7 +102,7 @@ class Falsification:
 
     @property
     def found(self) -> bool:
-        """Return whether a run refutes the claim by more than its numerical error."""
+        """Whether a run refutes the claim by more than its numerical error."""
         return self.status == "refuted"
 
     @property
@@ -121,7 +121,7 @@ class Falsification:
         return self.least(self.claim)
 
     def least(self, claim: str) -> FloatArray:
-        """Least margin of a claim up to each evaluation, shape (evaluations,).
+        """Return the least margin of a claim up to each evaluation, shape (evaluations,).
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class Falsification:
         return best
 
     def refuting(self, claim: str) -> tuple[int, ...]:
-        """Which evaluations refute a claim, counted from 0.
+        """Return the evaluations that refute a claim, counted from 0.
 
         Parameters
         ----------
@@ -143,11 +143,11 @@ class Falsification:
 
     @property
     def broken(self) -> tuple[str, ...]:
-        """Return every claim refuted by a run of the search."""
+        """Every claim refuted by a run of the search."""
         return tuple(name for name in self.statuses if self.refuting(name))
 
     def worst_status(self, claim: str) -> str:
-        """The worst status of a claim in the search: refuted, else inconclusive, verified, vacuous, failed.
+        """Return the worst status of a claim in the search: refuted, else inconclusive, verified, vacuous, failed.
 
         Parameters
         ----------

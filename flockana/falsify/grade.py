@@ -1,4 +1,4 @@
-"""The grade that the search minimises: a number for each run, lower the nearer it comes to refuting the claim.
+"""Grade that the search minimises: lower the nearer a run comes to refuting the claim.
 
 Refuted runs are graded in [-3, -2], judged ones in (-1, 1.001], vacuous ones from 2 on, failed ones 1000. So a search
 that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met. A run
@@ -43,7 +43,7 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def missing(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return how far hypotheses are from being met: the sum over the unmet ones, each below 1, or 1 without a margin.
+    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1.
 
     Examples
     --------

@@ -15,13 +15,6 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 class Search:
     """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES).
 
-    Parameters
-    ----------
-    start : ndarray, shape (D,)
-        Where the first run of the optimiser begins, in the unit cube.
-    seed : int
-        Of all its randomness.
-
     Examples
     --------
     >>> search = Search(np.full(3, 0.9), 0)
@@ -48,12 +41,12 @@ class Search:
         self._cma = kind(mean, _SIGMA, bounds, seed=int(self._rng.integers(2**31)), population_size=population)
 
     def ask(self) -> list[FloatArray]:
-        """The next generation of points, each of shape (D,)."""
+        """Return the next generation of points, each of shape (D,)."""
         self._asked = [self._cma.ask() for _ in range(self._cma.population_size)]
         return [x[: self.dimension] for x in self._asked]
 
     def tell(self, grades: list[float]) -> None:
-        """Learn from the grades of the whole generation that `ask` returned last."""
+        """Update the optimiser with the grades of the generation that `ask` returned last."""
         self._cma.tell(list(zip(self._asked, grades, strict=True)))
         if self._cma.should_stop():
             self.restarts += 1

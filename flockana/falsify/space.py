@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
 from math import log
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.scenarios import Scenario
+from flockana.scenarios.flock import law_parameter, with_parameter
 
 STATE = ("q", "p")
 _ROOM = 0.1  # by which the flock's box is widened on every side, of its longest side
@@ -21,7 +21,7 @@ _FASTER = 2.0  # the bound on velocities, over the largest component at the star
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """A unit cube whose points are initial states, and parameters of the law, within bounds.
+    """Unit cube that parametrises initial states, and parameters of the law, within bounds.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Space:
 
     @property
     def start(self) -> FloatArray:
-        """The point nearest to the scenario's own start, shape (D,)."""
+        """Point nearest to the scenario's own start, shape (D,)."""
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         own = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
@@ -57,7 +57,7 @@ class Space:
         return point
 
     def case(self, point: FloatArray) -> Scenario:
-        """The scenario with the state and the parameters of a point.
+        """Return the scenario with the state and the parameters of a point.
 
         Parameters
         ----------
@@ -74,7 +74,7 @@ class Space:
         values = np.split(x, max(1, len(self.vary)))
         state: dict[str, Any] = {f"{name}0": x.reshape(shape) for name, x in zip(self.vary, values)}  # noqa: B905  # no values for no name
         for share, (name, ends) in zip(point[k:].tolist(), self.parameters.items(), strict=True):
-            law = _with_parameter(law, name, _value(share, *ends))
+            law = with_parameter(law, name, _value(share, *ends))
         return replace(self.scenario, law=law, **state)
 
 
@@ -86,7 +86,7 @@ def search_space(
     speed: float | None = None,
     parameters: Mapping[str, tuple[float, float]] | None = None,
 ) -> Space:
-    """The space about a scenario's start (arguments as in `falsify`).
+    """Return the search space about a scenario's start (arguments as in `falsify`).
 
     Parameters
     ----------
@@ -123,22 +123,6 @@ def search_space(
     return Space(scenario, chosen, low, high, ranges)
 
 
-def law_parameter(law: Any, name: str) -> Any:
-    """Return the value of a law's parameter by its dotted name.
-
-    Parameters
-    ----------
-    name : str
-        Such as ``"gains.c1_alpha"``.
-    """
-    return reduce(getattr, name.split("."), law)
-
-
-def _with_parameter(law: Any, name: str, value: float) -> Any:
-    head, _, rest = name.partition(".")
-    return replace(law, **{head: _with_parameter(getattr(law, head), rest, value) if rest else value})
-
-
 def _share(value: float, low: float, high: float) -> float:
     return log(value / low) / log(high / low) if low > 0.0 < value else (value - low) / (high - low)
 
@@ -161,7 +145,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
     if not low < high:
         raise ArgumentError(f"{name} = ({low:g}, {high:g}): expected low < high")
     try:
-        _with_parameter(law, name, float(law_parameter(law, name)))
+        with_parameter(law, name, float(law_parameter(law, name)))
     except (AttributeError, TypeError, ValueError):
         raise ArgumentError(
             f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
@@ -170,7 +154,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
 
 
 def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Bounds of each coordinate of each agent, shape (n, m)."""
+    """Return bounds of each coordinate of each agent, shape (n, m)."""
     if isinstance(region, int | float | np.number):
         around, farthest = ensure_positive("region", region), float(np.abs(q).max())
         low, high = q - around, q + around

@@ -1,4 +1,4 @@
-"""Pair laws as frozen, validated parameters with their scalar functions, and what lifting gives each of them."""
+"""Pair laws as frozen, validated parameters with their scalar functions and sums over pairs."""
 
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.interactions.beta import BetaInteraction

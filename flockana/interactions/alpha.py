@@ -142,7 +142,7 @@ class AlphaInteraction(PairInteraction):
 
     @property
     def facts(self) -> PairFacts:
-        """Those that the formula of φ_α has for all parameters; a derived class may change it, and names its own."""
+        """Facts proved of φ_α for all parameters; a derived class that changes φ_α names its own."""
         if type(self) is not AlphaInteraction:
             return super().facts
         smooth, weight, inside = (Fact("met", text) for text in _PROOFS)
@@ -165,12 +165,12 @@ class AlphaInteraction(PairInteraction):
 
     @property
     def bend_length(self) -> float:
-        """ℓ, in which all of σ₁ counts."""
+        """Length ℓ of the bounded pull σ₁(x/ℓ) to a γ-agent."""
         return self.unit
 
     @cached_property
     def strength(self) -> float:
-        """The largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, to 1e-6: below b/√ε, far below where d is short beside ℓ."""
+        """Largest |φ_α(‖x‖_σ)| x/√(1 + εx²) up to r, within 1e-6."""
         lengths = np.linspace(0.0, self.r, _STRENGTH_GRID)
         forces = self.phi_alpha(self.sigma_norm(lengths)) * lengths / np.sqrt(1.0 + self.eps * lengths**2)
         return float(np.abs(forces).max())
@@ -188,7 +188,7 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
-        """(par, panels): ψ_α(d_α) = 0 fixes the constants of the closed piece and of the taper."""
+        """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
 
@@ -216,7 +216,7 @@ class AlphaInteraction(PairInteraction):
 
     @property
     def par(self) -> FloatArray:
-        """(ε, h, a, b, c, d_α, r_α, constant of ψ_α where ρ_h = 1, ψ_α(r_α), ℓ²)."""
+        """Parameters for the kernels: ε, h, a, b, c, d_α, r_α, constant of ψ_α on the plateau, ψ_α(r_α), ℓ²."""
         return self._parts[0]
 
     @property
@@ -266,7 +266,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI_ALPHA, z, self.par)
 
     def phi_alpha_slope(self, z: Any) -> Any:
-        """dφ_α/dz, the stiffness of a link at its length.
+        """Return dφ_α/dz, the stiffness of a link of σ-length z.
 
         Parameters
         ----------
@@ -276,7 +276,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI_ALPHA_SLOPE, z, self.par)
 
     def psi_alpha(self, z: Any) -> Any:
-        """ψ_α(z) = ∫_{d_α}^{z} φ_α, to 1e-13 c* absolute, and to rounding of itself where it is hundreds of c*.
+        """Return ψ_α(z) = ∫_{d_α}^{z} φ_α, with error 1e-13 c*, or rounding of the value where that is larger.
 
         Parameters
         ----------
@@ -286,7 +286,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PSI_ALPHA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """a_ij as a function of z = ‖q_j − q_i‖_σ.
+        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The repulsion between an agent and the β-agent of an obstacle."""
+"""Repulsion between an agent and the β-agent of an obstacle."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _PSI_BETA = lift_scalar(kernel.psi_beta)
 
 @dataclass(frozen=True)
 class BetaInteraction:
-    """The repulsion between an agent and the β-agent of an obstacle (Olfati-Saber 2006).
+    """Repulsion between an agent and the β-agent of an obstacle (Olfati-Saber 2006).
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class BetaInteraction:
         return evaluate(_PSI_BETA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """b_ik as a function of z = ‖q̂_ik − q_i‖_σ.
+        """Return the weight b_ik as a function of z = ‖q̂_ik − q_i‖_σ.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The dead-zone pair law: repulsion near, attraction far, nothing between."""
+"""The dead-zone pair law: repulsion near, attraction far, no force between."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _DEAD_ZONE = lift(
 
 
 class Jump(NamedTuple):
-    """Where the force of a pair jumps, and from what to what as the distance grows."""
+    """Jump of the pair force at a distance, with its values on both sides."""
 
     where: str
     distance: float
@@ -41,7 +41,7 @@ class Jump(NamedTuple):
 
 @dataclass(frozen=True)
 class DeadZoneInteraction(PairInteraction):
-    """The dead-zone pair law of Li, Yuan and Liu, eq. (7)-(9), made definite (errata L1-L3).
+    """The dead-zone pair law of Li, Yuan and Liu, eq. (7)-(9), with gaps filled (errata L1-L3).
 
     The force along the line from i to j is F(ρ) = f(ρ) ρ/√(1 + ηρ²) + k₁ρ within r and 0 beyond, with
     f = −(2k_r/ρ² + k_δ) below d₁ = r_b − δ, 0 on [d₁, d₂ = r_b + δ] and 2k_r/(r_d − ρ)² + k_δ above: negative repels.
@@ -145,7 +145,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def contact_force(self) -> float:
-        """(2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
+        """Force at the end of repulsion, (2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
         return (2.0 * self.k_r / self.d1**2 + self.k_delta) * self.d1 / sqrt(1.0 + self.eta * self.d1**2)
 
     @property
@@ -155,31 +155,31 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def length(self) -> float:
-        """d₁, where contacts sit."""
+        """Lattice constant d₁, the distance of agents in contact."""
         return self.d1
 
     @property
     def bond_range(self) -> float:
-        """d₁: only pairs that repel are in contact; the others within range have no length of their own."""
+        """Distance d₁ below which a pair is in contact; pairs beyond have no preferred length."""
         return self.d1
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """Both ends of the dead zone, as far as they lie within range, and the range."""
+        """Distances at which the force changes its form: ends of the dead zone within range, and the range."""
         return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
 
     @property
     def coincidence(self) -> bool:
-        """No: the repulsion is infinite at 0."""
+        """False: two agents cannot coincide, as the repulsion is infinite at 0."""
         return False
 
     @property
     def strength(self) -> float:
-        """`contact_force`."""
+        """Unit of force, `contact_force`."""
         return self.contact_force
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """`psi` at each distance.
+        """Return `psi` at each distance.
 
         Parameters
         ----------
@@ -191,12 +191,12 @@ class DeadZoneInteraction(PairInteraction):
 
     @cached_property
     def far_potential(self) -> float:
-        """ψ(r) + ½ k₁ r²: what a pair out of range keeps, so that the energy does not jump (erratum L5)."""
+        """Potential of a pair out of range, ψ(r) + ½ k₁ r²: continuous at r (erratum L5)."""
         return float(_POTENTIAL(np.array([self.r]), self.par, self.panels)[0])
 
     @cached_property
     def _parts(self) -> tuple[FloatArray, FloatArray]:
-        """(par, panels): ψ = 0 on the dead zone fixes the constants; a panel for each ramp that lies within range."""
+        """Parameters for the kernels, and Chebyshev panels of ψ on the ramps within range."""
         edges = self.d1, self.d2, self.r, self.r_d
         par = np.array([self.eta, self.k_r, self.k_delta, self.k1, *edges, self.ramp, 0.0, 0.0])
         panels = np.zeros((0, 0))
@@ -228,7 +228,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def par(self) -> FloatArray:
-        """(η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ(d₁ − ramp), ψ(d₂ + ramp))."""
+        """Parameters for the kernels: η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ(d₁ − ramp), ψ(d₂ + ramp)."""
         return self._parts[0]
 
     @property
@@ -237,7 +237,7 @@ class DeadZoneInteraction(PairInteraction):
         return self._parts[1]
 
     def action(self, s: Any) -> Any:
-        """f(ρ), the paper's φ_z without its direction: negative repels.
+        """Return f(ρ), the paper's φ_z without its direction; negative repels.
 
         Parameters
         ----------
@@ -247,7 +247,7 @@ class DeadZoneInteraction(PairInteraction):
         return evaluate(_ACTION, s, self.par)
 
     def force(self, s: Any) -> Any:
-        """F(ρ), the force between two agents along the line that joins them: negative repels.
+        """Return F(ρ), the force between two agents along their line; negative repels.
 
         Parameters
         ----------
@@ -257,7 +257,7 @@ class DeadZoneInteraction(PairInteraction):
         return evaluate(_FORCE, s, self.par)
 
     def psi(self, s: Any) -> Any:
-        """The pair's potential: ψ + ½ k₁ρ², with dψ/dρ = F, constant from r on and ∞ at 0.
+        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0.
 
         Parameters
         ----------
@@ -267,7 +267,7 @@ class DeadZoneInteraction(PairInteraction):
         return evaluate(_POTENTIAL, s, self.par, self.panels)
 
     def jumps(self) -> tuple[Jump, ...]:
-        """Where F jumps: at r, and without a ramp at both ends of the dead zone; what does not jump is left out."""
+        """Discontinuities of F: at r, and without a ramp at both ends of the dead zone."""
         s, inside = np.array([self.d1, self.d2, self.r]), np.nextafter
         par = self.par
         sides = [
@@ -283,7 +283,7 @@ class DeadZoneInteraction(PairInteraction):
         return tuple(jumps)
 
     def least_distance(self, energy: float) -> float:
-        """No pair of total energy at most `energy` is closer than this: where repulsion alone has that potential.
+        """Return a lower bound of the distance of any two agents of a flock of at most this energy.
 
         For η > 0 and no ramp 1/(√η sinh(H/2k_r + asinh(1/(√η d₁)))), for η = 0 d₁ exp(−H/2k_r): positive, but
         exponentially small. k_δ is left out, and the ramp is taken as if all of it were free of force.

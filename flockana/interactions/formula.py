@@ -1,4 +1,4 @@
-"""A pair law from its formula: what sympy derives of it is compiled as a hand-written law is."""
+"""Pair law from a formula: sympy derives potential and slopes, compiled as a hand-written law is."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SAME = 1e-9  # relative: a formula without a hidden unit changes with the units
 
 @dataclass(frozen=True)
 class FormulaInteraction(PairInteraction):
-    """A pair law that a formula gives, as text with numbers for its parameters; `pair_law` makes it of sympy too.
+    """Pair law given by a formula as text, with numbers for its parameters; `pair_law` accepts sympy too.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def kernels(self) -> PairKernels:  # type: ignore[override]  # compiled when first asked for
-        """The sums over pairs, compiled once for all laws of this formula."""
+        """Compiled sums over pairs, shared by all laws of this formula."""
         return generated_kernels(*self._parts.texts)
 
     @property
@@ -107,12 +107,12 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def length(self) -> float:
-        """The length d."""
+        """Length d, at which neighbours are held."""
         return self.d
 
     @property
     def lattice(self) -> tuple[float, float] | None:
-        """(d, r) if the force repels below d and attracts above."""
+        """(d, r) if the force repels below d and attracts above; else None."""
         return (self.d, self.r) if self._parts.holds else None
 
     @property
@@ -122,17 +122,17 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def facts(self) -> PairFacts:
-        """What is proved of the formula over its whole range, by branch and bound; decided when first asked for."""
+        """Facts proved of the formula over its whole range by branch and bound, computed at first use."""
         return self._parts.facts
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """Where it is not C¹, does not end smoothly or has no limit, each in words."""
+        """Points where the law is not C¹, does not end smoothly or has no limit, each in words."""
         none = "coincidence is excluded: the force has no limit where two agents meet"
         return (*(() if self.coincidence else (none,)), *self.facts.faults)
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
-        """Bounds of |dF/ds| and |da/ds| on parts of the range; infinite where none is known.
+        """Return bounds of |dF/ds| and |da/ds| on parts of the range; infinite where unknown.
 
         Parameters
         ----------
@@ -154,26 +154,26 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def strength(self) -> float:
-        """The largest force, on a grid; from d/2 on, and up to 0.9 r, where it is unbounded."""
+        """Largest force on a grid over (0, r), or over [d/2, 0.9 r] where it is unbounded."""
         return self._parts.strength
 
     @property
     def far_potential(self) -> float:
-        """ψ at the range; infinite at a pole."""
+        """Potential at the range; infinite at a pole."""
         return float(self._parts.par[1])
 
     @property
     def par(self) -> FloatArray:
-        """(r², ψ(r), ε, bound and coefficients of the series at 0, cuts, constants of the formula)."""
+        """Parameters for the kernels: r², ψ(r), ε, series at 0, cuts, constants of the formula."""
         return self._parts.par
 
     @property
     def panels(self) -> FloatArray:
-        """Chebyshev panels of ψ: all of it where the force was given, else near 0 where the formula would cancel."""
+        """Chebyshev panels of ψ: over the range if the force was given, else near 0 where the formula cancels."""
         return self._parts.panels
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """ψ at each distance, constant from the range on.
+        """Return ψ at each distance, constant beyond the range.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class FormulaInteraction(PairInteraction):
         return values
 
     def force(self, s: Any) -> Any:
-        """The force between two agents along the line that joins them: negative repels.
+        """Return the force between two agents along their line; negative repels.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class FormulaInteraction(PairInteraction):
         return self._of_pair(s, 0, times_distance=True)
 
     def stress(self, s: Any) -> Any:
-        """w, by which a pair's force is w (q_j − q_i).
+        """Return the weight w of the pair force w (q_j − q_i).
 
         Parameters
         ----------
@@ -205,7 +205,7 @@ class FormulaInteraction(PairInteraction):
         return self._of_pair(s, 0)
 
     def weight(self, s: Any) -> Any:
-        """The adjacency a_ij.
+        """Return the adjacency a_ij at each distance.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class FormulaInteraction(PairInteraction):
         return float(values[0]) if np.ndim(s) == 0 else values.reshape(lengths.shape)
 
     def given(self, **parameters: float) -> FormulaInteraction:
-        """The same formula with other values for some parameters; nothing is compiled again.
+        """Return the same formula with other parameter values; nothing is compiled again.
 
         Parameters
         ----------
@@ -243,7 +243,7 @@ class FormulaInteraction(PairInteraction):
         return replace(self, parameters=tuple((known | parameters).items()))
 
     def in_units(self, length: float, time: float) -> FormulaInteraction:
-        """The same law in other units, for `flockana.rescale`.
+        """Return the law in other units (`flockana.rescale`).
 
         Parameters
         ----------
@@ -280,7 +280,7 @@ class FormulaInteraction(PairInteraction):
         return other
 
     def derivation(self) -> Derivation:
-        """Potential, force, weight and adjacency between each two cuts, as sympy derives them; prints as LaTeX."""
+        """Return the derivation of potential, force, weight and adjacency, with LaTeX output."""
         from flockana.symbolic.pair_derivation import pair_derivation
 
         return pair_derivation(self._parts.cut.formula)

@@ -1,4 +1,4 @@
-"""A formula's law where two agents meet: as it stands, by a series where the formula cancels, or not at all."""
+"""Evaluation of a formula's law near 0: direct, by a power series where it cancels, or excluded."""
 
 from __future__ import annotations
 
@@ -26,19 +26,7 @@ _CLOSE, _CLOSER = 1e-40, 1e-44  # of y at the range: where limits at 0 are read
 
 @dataclass(frozen=True)
 class Near:
-    """How the weight is computed near 0: ``plain``, by a ``series`` in y below a bound, or ``excluded`` at 0.
-
-    Parameters
-    ----------
-    kind : {"plain", "series", "excluded"}
-        Which of them.
-    bound : float
-        Of y = s² or z, below which the series holds; 0 without one.
-    coefficients : ndarray, shape (12,)
-        Of the powers of y/bound; none without a series.
-    panels : ndarray
-        One panel of the potential on [0, bound], or none.
-    """
+    """Method for the weight near 0: ``plain``, ``series`` in y below a bound, or ``excluded`` at 0."""
 
     kind: Literal["plain", "series", "excluded"]
     bound: float
@@ -47,15 +35,7 @@ class Near:
 
 
 def near_zero(cut: Cut, end: float) -> Near:
-    """Look at the first piece near 0, to many digits.
-
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    end : float
-        y at the range.
-    """
+    """Return how to evaluate the first piece near 0, from its values in high precision."""
     piece, none = cut.pieces[0], np.zeros(0)
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
     closed = np.zeros((0, 0))
@@ -78,7 +58,7 @@ def near_zero(cut: Cut, end: float) -> Near:
 
 
 def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
-    """Whether the formula, in floating point, loses digits near 0 or has no value there."""
+    """Return whether floating point loses digits of the formula near 0, or has no value there."""
     import sympy as sp
 
     from flockana.symbolic import pair_formula as pf
@@ -108,7 +88,7 @@ def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
 
 
 def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
-    """Coefficients of powers of y/bound on [0, bound], and the largest error that is found."""
+    """Return coefficients of powers of y/bound on [0, bound], and the largest error found."""
     import mpmath  # type: ignore[import-untyped]
     from numpy.polynomial import chebyshev
 
@@ -124,7 +104,7 @@ def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
 
 
 def _energy_panel(cut: Cut, bound: float) -> FloatArray:
-    """The potential on [0, bound] as one panel; none where the force was given."""
+    """Return the potential on [0, bound] as a Chebyshev panel; empty where the force was given."""
     from numpy.polynomial import chebyshev
 
     potential = cut.pieces[0].potential

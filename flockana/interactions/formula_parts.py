@@ -1,4 +1,4 @@
-"""What a formula's law is made of: texts of its scalar functions, their parameters, and what it lacks."""
+"""Compiled form of a formula's law: source of its scalar functions, parameters, facts."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Texts = tuple[str, str, str, str, str | None]
 
 @dataclass(frozen=True, eq=False)
 class FormulaParts:
-    """A formula with its numbers, ready to be compiled: see `FormulaInteraction`."""
+    """Formula with its numbers, ready to be compiled (see `FormulaInteraction`)."""
 
     cut: Cut
     texts: Texts
@@ -46,13 +46,13 @@ class FormulaParts:
 
     @cached_property
     def facts(self) -> PairFacts:
-        """What is proved of the formula over its whole range."""
+        """Facts proved of the formula over its whole range."""
         from flockana.symbolic.pair_facts import pair_facts
 
         return pair_facts(self.cut, float(self.par[2]), self.strength, float(np.abs(self.looks[1]).max()) or 1.0)
 
     def slopes(self, parts: int) -> tuple[SlopeBound, ...]:
-        """Bounds of the slopes of force and adjacency on parts of the range."""
+        """Return bounds of the slopes of force and adjacency on parts of the range."""
         from flockana.symbolic.slopes import slope_bounds
 
         eps, squares = float(self.par[2]), self.par[0]
@@ -61,7 +61,7 @@ class FormulaParts:
         return slope_bounds(self.cut, eps, float(np.sqrt(squares)), places, parts)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
-        """Whether another formula's law is this one in other units: on the grid, its forces and weights scale."""
+        """Return whether another formula's law is this one in other units, compared on a grid."""
         mine, theirs = self.looks * np.array([[force], [1.0]]), other.looks
         least = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
         gap = np.abs(mine - theirs)
@@ -72,7 +72,7 @@ class FormulaParts:
 def formula_parts(
     main: str, forces: bool, adjacency: str, r: float, d: float, parameters: tuple[tuple[str, float], ...]
 ) -> FormulaParts:
-    """Everything that follows from a formula and its numbers."""
+    """Return the compiled form of a formula with its numbers."""
     import sympy as sp
 
     from flockana.symbolic import pair_formula as pf
@@ -116,12 +116,12 @@ def formula_parts(
 
 
 def _norm(x: float, eps: float) -> float:
-    """The σ-norm of a length; the length itself without ε."""
+    """Return the σ-norm of a length; the length itself without ε."""
     return x * x / (np.sqrt(1.0 + eps * x * x) + 1.0) if eps > 0.0 else x
 
 
 class _View:
-    """The force of a cut formula as a function of the Euclidean distance, to many digits."""
+    """Force of a formula as a function of the Euclidean distance, in high precision."""
 
     def __init__(self, cut: Cut, eps: float, r: float) -> None:
         self.cut, self.eps, self.r = cut, eps, r
@@ -132,37 +132,37 @@ class _View:
         self.strength, self.looks = 0.0, np.zeros((2, 0))
 
     def y(self, s: float) -> float:
-        """s² or z at a distance."""
+        """Return s² or z at a distance."""
         return float(_norm(s, self.eps)) if self.eps else s * s
 
     def of_mark(self, mark: float) -> float:
-        """s² or z where pieces meet, given in s or z."""
+        """Return s² or z at a cut that is given in s or z."""
         return mark if self.eps else mark * mark
 
     def distance(self, mark: float) -> float:
-        """Euclidean distance of a mark."""
+        """Return the Euclidean distance of a cut."""
         return float(np.sqrt(mark * (2.0 + self.eps * mark))) if self.eps else mark
 
     def piece(self, s: float) -> int:
-        """Which piece a distance is in."""
+        """Return the index of the piece that holds a distance."""
         marks = self.cut.marks[1:-1]
         return int(np.searchsorted([self.distance(mark) for mark in marks], s, side="right"))
 
     def force(self, s: float, piece: int | None = None) -> float:
-        """Of a piece at a distance, NaN where there is none."""
+        """Return the force at a distance, NaN where undefined."""
         return float(self._forces[self.piece(s) if piece is None else piece](self.y(s)) * s)
 
     def weight(self, s: float, piece: int | None = None) -> float:
-        """The adjacency there."""
+        """Return the adjacency at a distance."""
         return float(self._weights[self.piece(s) if piece is None else piece](self.y(s)))
 
     def energy(self, s: float) -> float:
-        """The potential there, 0 where the force was given."""
+        """Return the potential at a distance, 0 where the force was given."""
         energy = self._energies[self.piece(s)]
         return 0.0 if energy is None else float(energy(self.y(s)))
 
     def look(self, d: float, *, unbounded: bool) -> None:
-        """Look at the force along the range, and refuse one that is not finite there."""
+        """Return samples of the force along the range; raise where it is not finite."""
         grid = np.linspace(0.0, self.r, _GRID)[1:-1]
         self.looks = np.array([[self.force(s) for s in grid], [self.weight(s) for s in grid]])
         energies = [self.energy(s) for s in grid]
@@ -174,11 +174,11 @@ class _View:
         self.strength = float(np.abs(self.looks[0][usual]).max()) or float(np.abs(self.looks[0]).max()) or 1.0
 
     def holds(self, d: float) -> bool:
-        """Whether the force repels just below a distance and attracts just above."""
+        """Return whether the force repels just below a distance and attracts just above."""
         return d < self.r and self.force(d * (1.0 - 1e-3)) < 0.0 < self.force(min(d * (1.0 + 1e-3), 0.5 * (d + self.r)))
 
     def jumps(self) -> list[float]:
-        """Where the force jumps at cuts, beyond rounding of the parameters."""
+        """Return the cuts at which the force jumps by more than rounding of the parameters."""
         places = [self.distance(mark) for mark in self.cut.marks[1:-1]]
         return [s for k, s in enumerate(places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= self._small]
 
@@ -188,7 +188,7 @@ class _View:
 
 
 def _panels(cut: Cut, view: _View, d: float) -> FloatArray:
-    """Panels of ψ, whose derivative in the distance of the formula is given, and which vanishes at the length."""
+    """Return Chebyshev panels of ψ from its derivative, with ψ = 0 at the desired distance."""
     inner = view.y(d) if view.eps else d
     rows, edges = [cut.function(piece.force) for piece in cut.pieces], sorted({*cut.marks, inner})
 
@@ -204,7 +204,7 @@ def _panels(cut: Cut, view: _View, d: float) -> FloatArray:
 
 
 def _resolved(values: Any, left: float, right: float, scale: float, depth: int) -> list[float]:
-    """Right ends of panels on which a function is a polynomial to rounding."""
+    """Return right ends of intervals on which a function is a polynomial up to rounding."""
     found = values(0.5 * (left + right) + 0.5 * (right - left) * series_nodes())
     refused, series = not np.isfinite(found).all(), np.abs(series_of(np.nan_to_num(found)))
     tail = series[-2:].max() / max(series.max(), scale)
@@ -218,7 +218,7 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
 
 
 def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
-    """ψ at the range."""
+    """Return ψ at the range."""
     if forces:
         return float(panels[-1, 2:].sum())  # of powers of 1
     potential = cut.pieces[-1].potential
@@ -227,7 +227,7 @@ def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
 
 
 def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
-    """Texts of pair, slope, potential, adjacency slope and norm, and the constants that they read."""
+    """Return the source of pair, slope, potential, adjacency slope and norm, and their constants."""
     from flockana.symbolic import pair_formula as pf
     from flockana.symbolic.printing import Constants, function_text
 
@@ -276,7 +276,7 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
 
 
 def _horner(otherwise: str, order: int) -> str:
-    """The series of the weight near 0, or its derivative times UNIT, chosen below its bound."""
+    """Return the source of the series of the weight near 0, or of its derivative."""
     terms = [f"{float(k)}*par[{4 + k}]" if order else f"par[{4 + k}]" for k in range(order, TERMS)]
     text = terms[-1]
     for term in reversed(terms[:-1]):
@@ -285,6 +285,6 @@ def _horner(otherwise: str, order: int) -> str:
 
 
 def _integrated(in_norm: bool) -> str:
-    """Text of a potential that panels give."""
+    """Return the source of a potential given by panels."""
     at = "s2/(sqrt(1.0 + par[2]*s2) + 1.0)" if in_norm else "sqrt(s2)"
     return f"def NAME(s2, par, panels):\n    return par[1] if s2 >= par[0] else on_panels({at}, panels)"

@@ -1,11 +1,11 @@
-"""`pair_law`: a pair law from sympy expressions, text or numbers."""
+"""`pair_law`: pair law from sympy expressions, text or numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.interactions.formula import FormulaInteraction
 
@@ -20,7 +20,7 @@ def pair_law(
     parameters: Mapping[str, float] | None = None,
     units: Mapping[str, Powers] | None = None,
 ) -> FormulaInteraction:
-    """A pair law from a formula, compiled as fast as a hand-written one, for every law that takes a pair interaction.
+    """Return a pair law from a formula, compiled as fast as a hand-written one, for every law that takes one.
 
     Formulas are sympy expressions, text or numbers, in the distance s, or in the σ-norm z with a parameter ``eps``;
     r and d mean range and length, r_z and d_z their σ-norms, and every other name is a parameter. Pieces are
@@ -60,10 +60,10 @@ def pair_law(
         raise ArgumentError("expected a potential or a force, one of the two")
     for name, table in (("parameters", parameters), ("units", units)):
         if not isinstance(table, Mapping | None):
-            raise ArgumentError(f"{name} = {told(table)}: expected a dictionary by the parameters' names")
+            raise ArgumentError(f"{name} = {format_value(table)}: expected a dictionary by the parameters' names")
     for name, both in (units or {}).items():
         if not (isinstance(both, Sequence) and len(both) == 2 and all(type(power) is int for power in both)):
-            raise ArgumentError(f"units[{name!r}] = {told(both)}: expected whole powers (length, time)")
+            raise ArgumentError(f"units[{name!r}] = {format_value(both)}: expected whole powers (length, time)")
     return FormulaInteraction(
         potential=_as_text("potential", potential),
         force_formula=_as_text("force", force),
@@ -76,7 +76,7 @@ def pair_law(
 
 
 def _as_text(name: str, formula: Any) -> str:
-    """A formula as text; sympy is imported only if it is none."""
+    """Return a formula as text; sympy is imported only when needed."""
     if formula is None:
         return ""
     if isinstance(formula, str):

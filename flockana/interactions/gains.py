@@ -11,14 +11,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.units import Powers
 
 PER_AGENT = ("c1_gamma", "c2_gamma")
 
 
 def weighted(gain: Any, values: FloatArray) -> float:
-    """Σ_i gain_i values_i, for one gain or one per agent.
+    """Return Σ_i gain_i values_i, for one gain or one per agent.
 
     Examples
     --------
@@ -84,21 +84,16 @@ class Gains:
 
     @cached_property
     def pull(self) -> Any:
-        """c1γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        """Gain c1γ in the shape that multiplies (n, m): a number, or a column of n."""
         return _column(self.c1_gamma)
 
     @cached_property
     def drag(self) -> Any:
-        """c2γ as it multiplies an array of shape (n, m): a number, or a column of n."""
+        """Gain c2γ in the shape that multiplies (n, m): a number, or a column of n."""
         return _column(self.c2_gamma)
 
     def check_agents(self, n: int) -> None:
-        """Raise unless per-agent gains are as many as the agents.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
+        """Raise unless there is one per-agent gain for each agent.
 
         Raises
         ------
@@ -109,6 +104,20 @@ class Gains:
             gain = getattr(self, name)
             if isinstance(gain, tuple) and len(gain) != n:
                 raise ArgumentError(f"{name} has {len(gain)} gains but there are {n} agents: expected one per agent")
+
+
+def gains_of(values: Mapping[str, Any]) -> Gains:
+    """Return gains from a mapping; gains that it lacks keep their defaults.
+
+    Examples
+    --------
+    >>> gains_of({"c1_alpha": 2.0}).c1_alpha
+    2.0
+    """
+    names = [field.name for field in fields(Gains)]
+    if (unknown := [name for name in values if name not in names]) != []:
+        raise UnknownNameError("gain", unknown[0], names)
+    return Gains(**values)
 
 
 def _gain(name: str, value: Any) -> float:

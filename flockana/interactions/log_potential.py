@@ -1,4 +1,4 @@
-"""The potential of Tanner, Jadbabaie and Pappas: unbounded at contact, least at one distance, defined at every one."""
+"""Potential of Tanner, Jadbabaie and Pappas: infinite at contact, least at d, defined at every distance."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flockana.base.units import Powers
 
 @dataclass(frozen=True)
 class LogPotential:
-    """V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, which is 0 at s = d alone and infinite at s = 0.
+    """Potential V(s) = k (d²/s² − 1 + log(s²/d²)) >= 0, zero at s = d alone and infinite at s = 0.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class LogPotential:
         object.__setattr__(self, "d", ensure_positive("d", self.d))
 
     def energy(self, s2: Any) -> Any:
-        """V at a squared distance.
+        """Return V at a squared distance.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class LogPotential:
         return self.strength * (x - 1.0 - np.log(x))
 
     def weight(self, s2: Any) -> Any:
-        """V′(s)/s at a squared distance: the pull on i is this times q_j − q_i.
+        """Return V′(s)/s at a squared distance: agent i is pulled by this times q_j − q_i.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class LogPotential:
         return 2.0 * self.strength * (1.0 - self.d**2 / s2) / s2
 
     def weight_slope(self, s2: Any) -> Any:
-        """Derivative of `weight` in the squared distance.
+        """Return the derivative of `weight` by the squared distance.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class LogPotential:
         return 2.0 * self.strength * (2.0 * self.d**2 / s2 - 1.0) / s2**2
 
     def nearest(self, energy: float) -> float:
-        """The distance below d at which V is this energy; none of less energy is nearer.
+        """Return the distance below d at which V has this value.
 
         Parameters
         ----------
@@ -103,14 +103,14 @@ class LogPotential:
 
 
 def _height(w: float) -> float:
-    """e^w − 1 − w, to a few roundings for every w >= 0."""
+    """Return e^w − 1 − w for w >= 0, accurate to a few roundings."""
     return 0.5 * w * w * (1.0 + w / 3.0 * (1.0 + w / 4.0)) if w < 1e-4 else expm1(w) - w
 
 
 def net_forces(
     potential: LogPotential, damping: float, q: FloatArray, p: FloatArray, i: Any, j: Any, u: FloatArray
 ) -> float:
-    """Add what acts along some edges to u, unchecked, and return its power −k₂ Σ ‖p_j − p_i‖²."""
+    """Add the forces along given edges to u, unchecked, and return their power −k₂ Σ ‖p_j − p_i‖²."""
     delta, slip = q[j] - q[i], p[j] - p[i]
     pull = potential.weight(np.einsum("kc,kc->k", delta, delta))[:, None] * delta + damping * slip
     np.add.at(u, i, pull)
@@ -119,7 +119,7 @@ def net_forces(
 
 
 def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: Any, j: Any) -> tuple[Any, Any]:
-    """(∂u/∂q, ∂u/∂p) of what acts along some edges, sparse."""
+    """Return (∂u/∂q, ∂u/∂p) of the forces along given edges, sparse."""
     from scipy.sparse import coo_array
 
     (n, m), delta, axes = q.shape, q[j] - q[i], np.arange(q.shape[1])
@@ -139,5 +139,5 @@ def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: A
 
 
 def length_scale_time(potential: LogPotential) -> float:
-    """The time d/√k in which the force of the potential moves an agent by about d."""
+    """Return d/√k, the time in which the potential's force moves an agent by about d."""
     return potential.d / sqrt(potential.strength)

@@ -1,4 +1,4 @@
-"""What every pair law has once its scalar functions are given: sums over all pairs within its range."""
+"""Base class of pair laws: sums over all pairs within range from scalar functions."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ Pairs = Iterable[tuple[Any, Any]]
 
 
 def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
-    """Run a compiled scalar function (`kernels.lift.lift_scalar`) over a scalar or an array of any shape."""
+    """Return a compiled scalar function's values at a scalar or an array."""
     values = np.asarray(x, dtype=np.float64)
     out = compiled(values.ravel(), *parameters)
     return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
 
 
 class PairInteraction(ABC):
-    """What every pair law has once its scalar functions are given: sums over all pairs within its range.
+    """Base class of pair laws: sums over all pairs within range from scalar functions.
 
     A subclass is a frozen dataclass that sets `range`, `kernels`, `par` and `panels`; pairs beyond the range have the
     constant potential `far_potential` and no force.
@@ -45,7 +45,7 @@ class PairInteraction(ABC):
     @property
     @abstractmethod
     def range(self) -> float:
-        """Euclidean distance from which on the pair force vanishes."""
+        """Euclidean distance beyond which the pair force vanishes."""
 
     @property
     @abstractmethod
@@ -55,36 +55,36 @@ class PairInteraction(ABC):
     @property
     @abstractmethod
     def length(self) -> float:
-        """The distance at which it holds neighbours: the unit of lengths."""
+        """Desired distance of neighbours, the unit of lengths."""
 
     @property
     def bend_length(self) -> float:
-        """ℓ that a bounded pull σ₁(x/ℓ) to a γ-agent counts in; `length`, unless the law says otherwise."""
+        """Length ℓ of a bounded pull σ₁(x/ℓ) to a γ-agent; by default `length`."""
         return self.length
 
     @property
     def lattice(self) -> tuple[float, float] | None:
-        """(d, r) if every neighbour within range is held at d, so that lattices may be asked for; else None."""
+        """(d, r) if every neighbour within range is held at d, so that α-lattices are defined; else None."""
         return (self.length, self.range) if self.bond_range == self.range else None
 
     @property
     def bond_range(self) -> float:
-        """Pairs closer than this are held at `length`: all within range, unless the law says otherwise."""
+        """Distance below which pairs are held at `length`; by default the range."""
         return self.range
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """Distances at which the pair force begins, ends or jumps; the range alone, unless the law says otherwise."""
+        """Distances at which the pair force begins, ends or jumps; by default the range alone."""
         return (self.range,)
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What it lacks that theorems ask for, each in words: where it is not C¹, or does not end smoothly."""
+        """Properties that theorems ask for and the law lacks (C¹, smooth end), each in words."""
         return ()
 
     @property
     def facts(self) -> PairFacts:
-        """What is known of it over all distances: what `proofs` names is met, what `faults` names unmet."""
+        """Facts known over all distances: those in `proofs` are met, those in `faults` unmet."""
         open_ = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
         met = {name: Fact("met", text) for name, text in self.proofs.items()}
         smooth = Fact("unmet", "; ".join(self.faults)) if self.faults else (open_ | met)["smooth"]
@@ -93,7 +93,7 @@ class PairInteraction(ABC):
 
     @property
     def coincidence(self) -> bool:
-        """Whether two agents may stand at one place; not where their force has no limit there."""
+        """Whether two agents may coincide; False where their force has no limit there."""
         return True
 
     @property
@@ -105,11 +105,11 @@ class PairInteraction(ABC):
     @property
     @abstractmethod
     def strength(self) -> float:
-        """The unit of forces: about the strongest between two agents, that of a contact where it is unbounded."""
+        """Unit of forces: about the largest between two agents, or at contact where it is unbounded."""
 
     @abstractmethod
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Potential of a pair at each Euclidean distance.
+        """Return the potential of a pair at each Euclidean distance.
 
         Parameters
         ----------
@@ -130,12 +130,10 @@ class PairInteraction(ABC):
     def forces(
         self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float, out: FloatArray | None = None
     ) -> tuple[FloatArray, float]:
-        """Pair accelerations and their dissipation, unchecked (the integrators' inner loop).
+        """Return pair accelerations and their dissipation, unchecked (inner loop of the integrators).
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         stiffness, damping : float
             Gains c1 of the gradient term and c2 of the velocity-consensus term.
         out : ndarray, shape (n, m), optional
@@ -159,17 +157,11 @@ class PairInteraction(ABC):
 
     @cached_property
     def _constants(self) -> FloatArray:
-        """`par` as kernels take it in the inner loop."""
+        """Return `par` as kernels take it in the inner loop."""
         return thawed(self.par)  # type: ignore[no-any-return]
 
     def potential_energy(self, q: FloatArray) -> float:
-        """V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""
         near, pairs = 0.0, 0
         for i, j in pair_blocks(q, self.range):
             near += self.kernels.potential(q, i, j, self.par, self.panels)
@@ -179,12 +171,10 @@ class PairInteraction(ABC):
         return float(near + beyond * self.far_potential if beyond else near)  # it may be infinite there
 
     def hessian(self, q: FloatArray, pairs: Pairs | None = None) -> csr_array:
-        """∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
+        """Return ∇²V(q), sparse and symmetric, in the order of ``q.ravel()``.
 
         Parameters
         ----------
-        q : ndarray, shape (n, m)
-            Positions.
         pairs : iterable of (ndarray, ndarray), optional
             Blocks of pairs that interact, by default those within range.
 
@@ -195,12 +185,10 @@ class PairInteraction(ABC):
         return self._assemble(q, self._stiffness_blocks, pairs)
 
     def laplacian(self, q: FloatArray, pairs: Pairs | None = None) -> csr_array:
-        """L̂(q) = L ⊗ I_m with the weights a_ij, sparse, in the order of ``q.ravel()``.
+        """Return L̂(q) = L ⊗ I_m with the weights a_ij, sparse, in the order of ``q.ravel()``.
 
         Parameters
         ----------
-        q : ndarray, shape (n, m)
-            Positions.
         pairs : iterable of (ndarray, ndarray), optional
             As in `hessian`.
 
@@ -213,12 +201,10 @@ class PairInteraction(ABC):
     def jacobian(
         self, q: FloatArray, p: FloatArray, *, stiffness: float, damping: float, pairs: Pairs | None = None
     ) -> tuple[csr_array, csr_array]:
-        """Derivatives of the accelerations of `forces` in q and in p, sparse, in the order of ``q.ravel()``.
+        """Return derivatives of the accelerations of `forces` in q and in p, sparse, ordered as ``q.ravel()``.
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         stiffness, damping : float
             Gains c1 and c2, as in `forces`.
         pairs : iterable of (ndarray, ndarray), optional
@@ -263,7 +249,7 @@ class PairInteraction(ABC):
         return blocks
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
-        """Sum ±B over pairs: B on the two diagonal blocks, −B on the two others."""
+        """Return the matrix of ±B over pairs: B on the two diagonal blocks, −B on the two others."""
         from scipy.sparse import bsr_array
 
         n, m = q.shape
@@ -288,7 +274,7 @@ class PairInteraction(ABC):
 
 
 def _ensure_apart(i: Any, j: Any, delta: FloatArray) -> None:
-    """Raise where the square of a distance is 0: the force has no limit there, and no derivative."""
+    """Raise where two agents coincide and their force has no limit, nor a derivative."""
     met = np.flatnonzero(np.einsum("kc,kc->k", delta, delta) == 0.0)
     if met.size:
         raise ArgumentError(
@@ -301,7 +287,7 @@ _MOST_COUNTED = 1e140  # units of ℓ²: φ squares them
 
 
 def ensure_resolved(d: float, r: float, eps: float, unit: float) -> None:
-    """Raise where the parameters are so extreme that d and r have no σ-norms apart from 0, ∞ and each other."""
+    """Raise where d and r are so extreme that rounding confuses their σ-norms with 0, ∞ or each other."""
     near, far = sigma_norm(d * d, eps), sigma_norm(r * r, eps)
     area = unit * unit
     counted = 0.0 < area < inf and near / area > 0.0 and far / area < _MOST_COUNTED

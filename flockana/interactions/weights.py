@@ -1,4 +1,4 @@
-"""Weights of velocity consensus: how much agents at some distance heed each other, near or far."""
+"""Weights of velocity consensus as functions of the distance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flockana.kernels.alignment import WeightKernels, lift_weight, rational, rat
 
 
 class Weight(ABC):
-    """A weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
+    """Weight a(s) of the distance; a subclass is a frozen dataclass with `kernels`, `par` and, if finite, `range`."""
 
     kernels: ClassVar[WeightKernels]
     proof: ClassVar[str] = ""  # that it is nowhere negative
@@ -32,22 +32,16 @@ class Weight(ABC):
 
     @property
     def range(self) -> float:
-        """Distance from which on the weight is 0; infinite, unless it says otherwise."""
+        """Distance beyond which the weight is 0; infinite by default."""
         return inf
 
     @property
     def sign(self) -> Fact:
-        """Whether it is nonnegative at every distance; assumed, unless `proof` names why."""
+        """Fact whether the weight is nonnegative at every distance; assumed, unless `proof` says why."""
         return Fact("met", self.proof) if self.proof else Fact("assumed", f"{type(self).__name__} names no proof of it")
 
     def __call__(self, distance: Any) -> Any:
-        """The weight at some distances, a scalar or an array.
-
-        Parameters
-        ----------
-        distance : array_like
-            Distances >= 0.
-        """
+        """Return the weight at some distances, a scalar or an array."""
         s = np.asarray(distance, dtype=np.float64)
         values = np.where(s < self.range, evaluate(self.kernels.weight, s * s, self.par), 0.0)
         return float(values) if s.ndim == 0 else values
@@ -58,7 +52,7 @@ _RATIONAL = lift_weight(rational, rational_slope)
 
 @dataclass(frozen=True)
 class RationalWeight(Weight):
-    """a(s) = K (1 + s²/ℓ²)^−β, of Cucker and Smale, who write it K′/(σ² + s²)^β: ℓ = σ and K = K′/σ^2β.
+    """Weight a(s) = K (1 + s²/ℓ²)^−β of Cucker and Smale, written K′/(σ² + s²)^β there: ℓ = σ, K = K′/σ^2β.
 
     Parameters
     ----------
@@ -95,5 +89,5 @@ class RationalWeight(Weight):
 
     @cached_property
     def par(self) -> FloatArray:
-        """K, ℓ, β."""
+        """Parameters K, ℓ, β."""
         return np.array([self.strength, self.length, self.decay])

@@ -1,4 +1,4 @@
-"""Chance in zone-based flocking: weights that tremble and gusts, the same in every run with the same seed."""
+"""Randomness in zone-based flocking: noisy weights and gusts, reproducible by a seed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST = 2**63  # seeds are whole numbers below it
 
 @dataclass(frozen=True)
 class ZoneNoise:
-    """The stochastic elements that Jond's conclusions propose: weights and velocities that chance perturbs.
+    """Stochastic elements that Jond's conclusions propose: random perturbations of weights and velocities.
 
     Every number is a function of (seed, step, agent, whom it is about, behaviour) and of nothing else
     (`flockana.kernels.noise`): runs repeat to the bit, whatever was computed before or beside them.
@@ -58,5 +58,5 @@ class ZoneNoise:
 
     @property
     def quiet(self) -> bool:
-        """Whether nothing is left to chance."""
+        """Whether no noise is added."""
         return self.weights == 0.0 and self.velocities == 0.0

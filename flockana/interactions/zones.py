@@ -1,4 +1,4 @@
-"""Zones of repulsion, conflict, attraction and surveillance, and how much an agent heeds what is in them."""
+"""Radii of the zones of repulsion, conflict, attraction and surveillance, and weights of the behaviours."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PAIRS = ("separation", "cohesion", "alignment")
 
 
 def _each(name: str, value: Any, ensure: Any) -> PerAgent:
-    """One number, or one for each agent."""
+    """Return one validated number, or one for each agent."""
     if np.ndim(value) == 0:
         return float(ensure(name, value))
     if np.ndim(value) != 1:
@@ -41,8 +41,6 @@ class ZoneRadii:
 
     Parameters
     ----------
-    r : float or sequence of n floats
-        Of repulsion.
     a : float or sequence of n floats
         Of attraction.
     c : float or sequence of n floats, optional
@@ -71,7 +69,7 @@ class ZoneRadii:
 
     @property
     def reach(self) -> tuple[float, float, float]:
-        """(r, c, a), the largest of each."""
+        """Largest r, c and a over the agents."""
         r, c, a = (float(np.max(np.asarray(x, dtype=np.float64))) for x in (self.r, self.c, self.a))
         return r, c, a
 
@@ -91,12 +89,7 @@ class ZoneRadii:
             raise ArgumentError(f"{found}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """(r, c, a, s) of n agents, each of shape (n,).
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
+        """Return (r, c, a, s) of n agents, each of shape (n,).
 
         Raises
         ------
@@ -167,12 +160,10 @@ class ZoneWeights:
             object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
 
     def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
-        """The weights by name as arrays: (n, n) of pairs, (1, 1) if they are equal, (n, K) of aliens, (n,) of agents.
+        """Return the weights by name as arrays: (n, n) of pairs or (1, 1), (n, K) of aliens, (n,) of agents.
 
         Parameters
         ----------
-        n : int
-            Number of agents.
         aliens : int
             Number of aliens, K.
 
@@ -197,7 +188,7 @@ class ZoneWeights:
 
 
 def _table(name: str, value: Any) -> Table:
-    """One number >= 0, or a table of them."""
+    """Return one number >= 0, or a table of them."""
     if np.ndim(value) == 0:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)
@@ -211,7 +202,7 @@ def _table(name: str, value: Any) -> Table:
 
 
 def _check_sums(name: str, value: Table) -> None:
-    """Refuse weights of a mean that sum to zero over the other agents."""
+    """Raise if the weights of a mean sum to zero over the other agents."""
     remedy = f"sums to zero: its mean is not defined; switch {name} off by {name}_gain=0"
     if value == 0.0:
         raise ArgumentError(f"{name} {remedy}")

@@ -17,7 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from flockana.base.files import write_whole
+from flockana.base.files import write_atomic
 from flockana.jit import Kernel, is_modules_own, kernels_folder, sources_digest, sources_folder
 
 _COUNT = itertools.count()
@@ -112,7 +112,7 @@ def _from_file(text: str, name: str, digest: str) -> ModuleType | None:
     with suppress(OSError):
         path = sources_folder(base, digest) / f"{name}.py"
         if not path.is_file() or path.read_text("utf-8") != text:
-            write_whole(path, text)
+            write_atomic(path, text)
         spec = spec_from_file_location(name, path)
         module = module_from_spec(spec)  # type: ignore[arg-type]
         sys.modules[name] = module

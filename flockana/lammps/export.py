@@ -21,7 +21,7 @@ from flockana.base.checks import (
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import ensure_path, ensure_target, replacing
+from flockana.base.files import atomic_write, ensure_path, ensure_target
 from flockana.lammps.script import (
     DATA,
     README,
@@ -213,7 +213,7 @@ def _written(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
     except OSError as error:
         raise FileError(f"cannot make {str(folder)!r}: {error.strerror or error}; choose another folder") from error
     for name, text in texts.items():
-        with replacing(folder / name, remedy="choose another folder") as partial:
+        with atomic_write(folder / name, remedy="choose another folder") as partial:
             partial.write_text(text, encoding="utf-8")
     return tuple(folder / name for name in texts)
 

@@ -1,4 +1,4 @@
-"""Builders of α-lattices on the line, in the plane and in space, and the largest ratio at which each is one."""
+"""Builders of α-lattices on the line, in the plane and in space, with their largest ratios r/d."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
-from flockana.base.errors import told
+from flockana.base.errors import format_value
 
 _STEPS = np.array(
     [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
@@ -55,11 +55,13 @@ def max_ratio(name: str) -> float:
 
 def _ensure_fits(n: int, m: int) -> None:
     """Raise before a lattice is built that does not fit into memory."""
-    ensure_fits(f"a lattice of {told(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents")
+    ensure_fits(
+        f"a lattice of {format_value(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents"
+    )
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:
-    """The sites `basis` in each of counts[0] × counts[1] ... cells of edge vectors `cell`, in units of d."""
+    """Return the sites `basis` in each of counts[0] × counts[1] ... cells of edge vectors `cell`, in units of d."""
     sizes = [ensure_count(name, value) for name, value in counts.items()]
     _ensure_fits(len(basis) * prod(sizes), len(counts))
     corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))
@@ -70,7 +72,7 @@ def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArra
 
 
 def line(n: int, d: float) -> FloatArray:
-    """Agents on a line, d apart: n − 1 links.
+    """Return agents on a line, d apart, with n − 1 links.
 
     Examples
     --------
@@ -123,7 +125,7 @@ def hexagonal_spiral(n: int, d: float) -> FloatArray:
 
 
 def hexagonal_patch(k: int, d: float) -> FloatArray:
-    """A hexagon of the triangular lattice with k rings about its centre: 3k(k + 1) + 1 agents.
+    """Return a hexagon of the triangular lattice with k rings about its centre, 3k(k + 1) + 1 agents.
 
     Parameters
     ----------
@@ -144,7 +146,7 @@ def hexagonal_patch(k: int, d: float) -> FloatArray:
 
 
 def square(rows: int, cols: int, d: float) -> FloatArray:
-    """A rectangle of the square lattice.
+    """Return a rectangle of the square lattice.
 
     Parameters
     ----------
@@ -160,7 +162,7 @@ def square(rows: int, cols: int, d: float) -> FloatArray:
 
 
 def honeycomb(rows: int, cols: int, d: float) -> FloatArray:
-    """A parallelogram of the honeycomb: rows × cols cells of two agents.
+    """Return a parallelogram of the honeycomb: rows × cols cells of two agents.
 
     Parameters
     ----------
@@ -177,7 +179,7 @@ def honeycomb(rows: int, cols: int, d: float) -> FloatArray:
 
 
 def simple_cubic(nx: int, ny: int, nz: int, d: float) -> FloatArray:
-    """A block of the simple cubic lattice.
+    """Return a block of the simple cubic lattice.
 
     Parameters
     ----------
@@ -193,7 +195,7 @@ def simple_cubic(nx: int, ny: int, nz: int, d: float) -> FloatArray:
 
 
 def fcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
-    """A block of the face-centred cubic lattice: cubes of side √2 d with four agents each.
+    """Return a block of the face-centred cubic lattice: cubes of side √2 d with four agents each.
 
     Parameters
     ----------
@@ -211,7 +213,7 @@ def fcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
 
 
 def hcp(nx: int, ny: int, nz: int, d: float) -> FloatArray:
-    """A block of the hexagonal close packing: cells d × √3 d × √(8/3) d with four agents each.
+    """Return a block of the hexagonal close packing: cells d × √3 d × √(8/3) d with four agents each.
 
     Parameters
     ----------
@@ -229,7 +231,7 @@ def hcp(nx: int, ny: int, nz: int, d: float) -> FloatArray:
 
 
 def bcc(nx: int, ny: int, nz: int, d: float) -> FloatArray:
-    """A block of the body-centred cubic lattice: cubes of side 2d/√3 with two agents each.
+    """Return a block of the body-centred cubic lattice: cubes of side 2d/√3 with two agents each.
 
     Parameters
     ----------

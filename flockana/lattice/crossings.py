@@ -23,7 +23,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.kernels.crossings import crossing_blocks, nearest_links
 from flockana.kernels.segments import meet
 from flockana.measures.nets import LinkArray
@@ -33,11 +33,10 @@ _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
 
 
 def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
-    """Pairs of links that cross, exactly; sub-quadratic.
+    """Return the pairs of links that cross, decided exactly in sub-quadratic time.
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Pairs of different agents.
     limit : int, optional
@@ -82,8 +81,8 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
 
 
 def _squarable(q: FloatArray) -> FloatArray:
-    """The same positions in a unit, a power of two, in which no difference overflows."""
-    scaled, _, unit = near_one(q)
+    """Return positions scaled by a power of two so that no difference overflows."""
+    scaled, _, unit = scaled_near_one(q)
     if (scaled * unit == q).all():
         return scaled
     if np.abs(q).max() < _FARTHEST:  # products that underflow or overflow are left to whole numbers
@@ -94,7 +93,7 @@ def _squarable(q: FloatArray) -> FloatArray:
 
 
 class _Exact:
-    """Exact arithmetic for the kernel's decisions, with agents converted on demand."""
+    """Exact arithmetic for near-degenerate decisions, with agents converted on demand."""
 
     def __init__(self, q: FloatArray, links: LinkArray) -> None:
         self._q, self._links, self._m = q, links, q.shape[1]
@@ -102,7 +101,7 @@ class _Exact:
         self._shift = _common_exponent(q)
 
     def point(self, i: int) -> tuple[int, ...]:
-        """Position of agent i in units of the common power of two, padded to three coordinates."""
+        """Return the position of agent i as whole numbers, padded to three coordinates."""
         if i not in self._known:
             parts = [float(v).as_integer_ratio() for v in self._q[i]]
             whole = [(over << self._shift) // under for over, under in parts]
@@ -138,7 +137,7 @@ def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
 
 
 def _common_exponent(q: FloatArray) -> int:
-    """Least s >= 0 for which all of 2^s q are whole numbers, or a little more."""
+    """Return an s >= 0, nearly the least, for which 2^s q are whole numbers."""
     values = np.abs(q[q != 0.0])
     return max(0, 53 - int(np.frexp(values.min())[1])) if values.size else 0
 
@@ -155,7 +154,7 @@ def _overlap(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...]) -> bool
 
 
 def _meet_in_space(a: tuple[int, ...], b: tuple[int, ...], c: tuple[int, ...], d: tuple[int, ...]) -> bool:
-    """Coplanar, and meeting in all three projections, of which one at least is one to one on that plane."""
+    """Return whether two segments in space are coplanar and cross, by their projections."""
     u, v, w = (tuple(p[s] - d[s] for s in range(3)) for p in (a, b, c))
     if sum(u[s] * (v[s - 2] * w[s - 1] - v[s - 1] * w[s - 2]) for s in range(3)):
         return False
@@ -182,11 +181,10 @@ class Separation:
 
 
 def separation(q: Any, links: Any, *, reach: float) -> Separation:
-    """Least distance between two links that share no agent, looked for up to `reach`; in floating point.
+    """Return the least distance, up to `reach`, between two links that share no agent; in floating point.
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Pairs of different agents.
     reach : float
@@ -205,6 +203,6 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     touching = crossings(q, links, limit=1)
     if len(touching):
         return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
-    near, (within,), unit = near_one(q, reach)
+    near, (within,), unit = scaled_near_one(q, reach)
     distance, a, b = nearest_links(near, links, within)
     return Separation(distance * unit, None if a < 0 else (min(a, b), max(a, b)))

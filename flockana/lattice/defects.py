@@ -1,4 +1,4 @@
-"""Coordination numbers, and the defects of a triangular lattice: agents inside it without six neighbours."""
+"""Coordination numbers, and defects of a triangular lattice: interior agents without six neighbours."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.lattice.crossings import turns_left
 from flockana.lattice.planarity import ensure_plane
 from flockana.measures.nets import LinkArray
@@ -18,7 +18,7 @@ IntArray = npt.NDArray[np.int64]
 
 
 def coordination(n: int, links: Any) -> IntArray:
-    """Number of neighbours of each agent.
+    """Return the number of neighbours of each agent.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def coordination(n: int, links: Any) -> IntArray:
 
 @dataclass(frozen=True, eq=False)
 class Defects:
-    """Return coordination numbers of a planar net, with interior and rim agents separate.
+    """Coordination numbers of a planar net, with interior and rim agents separate.
 
     Attributes
     ----------
@@ -65,7 +65,6 @@ def defects(q: Any, links: Any) -> Defects:
 
     Parameters
     ----------
-    q : array_like, shape (n, 2)
     links : array_like, shape (M, 2)
         Links, each once; where they cross, an agent may be called interior that is in no triangulation.
 
@@ -87,7 +86,7 @@ def defects(q: Any, links: Any) -> Defects:
 def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray[np.bool_]:
     n = len(q)
     centre, other = np.concatenate([links, links[:, ::-1]]).T.astype(np.int64)
-    near = near_one(q)[0]
+    near = scaled_near_one(q)[0]
     step = near[other] - near[centre]
     angle = np.arctan2(step[:, 1], step[:, 0])
     order = np.lexsort((angle, centre))

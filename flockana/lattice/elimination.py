@@ -1,4 +1,4 @@
-"""Elimination of a sparse symmetric matrix whose rows belong to agents with places: nested dissection, dense fronts.
+"""Sparse LDLᵀ factorisation of symmetric matrices over agents by nested dissection.
 
 The agents are halved by the median of their wider coordinate again and again; those of one half that are linked to the
 other are the separator, eliminated after both. So every elimination is one of small dense matrices, at the speed of
@@ -26,7 +26,7 @@ _ZERO = 2.0 * float(np.finfo(np.float64).eps)  # of the largest entry of a front
 
 
 class _Front(NamedTuple):
-    """B⁻¹ = TᵀST of the rows that a front eliminates, X = TC with C their coupling to the `boundary`; S is ±1."""
+    """Eliminated dense front: B⁻¹ = TᵀST with S = ±1, and X = TC with its coupling C to the `boundary`."""
 
     rows: slice
     boundary: Indices
@@ -36,21 +36,7 @@ class _Front(NamedTuple):
 
 
 class Elimination:
-    """A symmetric matrix A, eliminated front by front: the signs of its eigenvalues, and A⁻¹ b.
-
-    Parameters
-    ----------
-    matrix : sparse array, shape (n m, n m)
-        Symmetric, in the order of ``q.ravel()``.
-    q : ndarray, shape (n, m)
-        Places by which the agents are halved; they decide about the time taken and nothing else.
-    keep : bool
-        Keep what `solve` needs.
-    least : float, optional
-        Replace eigenvalues of fronts by their moduli, and by `least` where these are smaller: `solve` is then that of a
-        positive definite matrix, A itself if A is positive definite enough.
-    definite : bool
-        Give up at the first front that is not positive definite: A is not either.
+    """LDLᵀ factorisation of a symmetric matrix A: the signs of its eigenvalues, and A⁻¹ b.
 
     Examples
     --------
@@ -86,7 +72,7 @@ class Elimination:
                 self._fronts.append(front)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """A⁻¹ b of a vector, or of the columns of a matrix."""
+        """Return A⁻¹ b for a vector, or for the columns of a matrix."""
         x = np.array(b[self._order], dtype=np.float64)
         for rows, boundary, t, coupling, signs in self._fronts:
             y = t @ x[rows]

@@ -1,4 +1,4 @@
-"""Classification of links against the lattice's scale: α-lattice, quasi-α-lattice, or neither."""
+"""Classification of configurations by link lengths: α-lattice, quasi-α-lattice, or neither."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import ensure_nonnegative, ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.measures import nets
 from flockana.measures.nets import LinkArray, link_lengths
 
@@ -24,7 +24,6 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     guard : float
         Relative difference from r up to which a distance counts as r; raise it for lattices far from the origin.
 
@@ -45,11 +44,7 @@ def links(q: Any, r: float, *, guard: float = GUARD) -> LinkArray:
 
 
 def edge_length_error(q: Any, d: float, r: float) -> float:
-    """δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return δ = max |‖q_j − q_i‖ − d| over the links; NaN without links.
 
     Returns
     -------
@@ -67,11 +62,7 @@ def edge_length_error(q: Any, d: float, r: float) -> float:
 
 
 def strain(q: Any, d: float, r: float) -> float:
-    """Largest relative error of a link δ/d; NaN without links.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return the largest relative error of a link, δ/d; NaN without links.
 
     Examples
     --------
@@ -86,7 +77,6 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     tol : float
         Largest |link − d|/d that counts as rounding.
 
@@ -115,7 +105,7 @@ def classify(strain: float, *, lattice: float, quasi: float) -> str:
     """
     for name, value in (("strain", strain), ("lattice", lattice), ("quasi", quasi)):
         if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
-            raise ArgumentError(f"{name} = {told(value)}: expected one real number")
+            raise ArgumentError(f"{name} = {format_value(value)}: expected one real number")
     if strain <= lattice:
         return "α-lattice"
     return "quasi-α-lattice" if strain <= quasi else "neither"

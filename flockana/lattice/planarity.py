@@ -1,4 +1,4 @@
-"""Planar graphs and their bounds: 3n − 6, Harborth's, completeness, and a Kuratowski subgraph as witness."""
+"""Planar graphs: bounds on their links, tests, and a Kuratowski subgraph as witness."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _COMPILED = 3000  # links from which on the compiled search for an embedding is 
 
 
 def harborth(n: int) -> int:
-    """Largest number of links of a planar α-lattice of n agents: ⌊3n − √(12n − 3)⌋   (Harborth 1974).
+    """Return the largest number of links of a planar α-lattice of n agents, ⌊3n − √(12n − 3)⌋ (Harborth 1974).
 
     Examples
     --------
@@ -30,7 +30,7 @@ def harborth(n: int) -> int:
 
 
 def planar_bound(n: int) -> int:
-    """Largest number of links of a planar graph of n >= 3 agents, 3n − 6; for fewer, all there are (erratum E6).
+    """Return the largest number of links of a planar graph, 3n − 6 from n = 3 on (erratum E6).
 
     Examples
     --------
@@ -82,7 +82,7 @@ def is_planar(n: int, links: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Kuratowski:
-    """A subgraph that no plane holds.
+    """Subdivision of K5 or K3,3: a subgraph that proves a graph not planar.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def _name(links: LinkArray) -> Kuratowski:
 
 
 def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]:
-    """The corners that paths from this one reach through agents of degree 2."""
+    """Return the corners that paths from this one reach through agents of degree 2."""
     near: dict[int, list[int]] = {}
     for i, j in links.tolist():
         near.setdefault(i, []).append(j)
@@ -163,7 +163,7 @@ def _distinct(n: int, links: Any) -> LinkArray:
 
 
 def _planar(n: int, links: LinkArray) -> bool:
-    """Few links are planar and many are not; between, an embedding whose faces are counted, or networkx."""
+    """Return whether a graph is planar, by its number of links, an embedding, or networkx."""
     if len(links) < 9:  # K3,3 has nine; K5 ten
         return True
     agents = len(np.unique(links))

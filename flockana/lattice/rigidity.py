@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import SolverError
-from flockana.base.vectors import near_one
+from flockana.base.vectors import scaled_near_one
 from flockana.lattice.elimination import Elimination
 
 if TYPE_CHECKING:
@@ -45,16 +45,15 @@ class Rigidity:
 
     @property
     def infinitesimally_rigid(self) -> bool:
-        """Return whether only translations and rotations keep all lengths to first order."""
+        """Whether only translations and rotations keep all lengths to first order."""
         return self.flexes == 0
 
 
 def rigidity_matrix(q: Any, links: Any) -> csr_array:
-    """Rows (…, −u, …, u, …) with u the direction of each link: the rate of each length, from the velocities.
+    """Return the matrix with rows (…, −u, …, u, …), u the direction of each link: velocities to length rates.
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
         Links; one of length zero has no direction, and a row of zeros.
 
@@ -69,7 +68,7 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
     """
     from scipy.sparse import csr_array
 
-    q = near_one(ensure_points("q", q))[0]
+    q = scaled_near_one(ensure_points("q", q))[0]
     links = ensure_links(links, len(q))
     m = q.shape[1]
     step = q[links[:, 1]] - q[links[:, 0]]
@@ -82,7 +81,7 @@ def rigidity_matrix(q: Any, links: Any) -> csr_array:
 
 
 def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None) -> Rigidity:
-    """Rank of the rigidity matrix and what follows from it.
+    """Return the rank of the rigidity matrix with its flexes and self-stresses.
 
     Small nets by singular values. Large ones by the inertia of RᵀR − (tol σ_max)² I from a sparse factorisation, which
     counts the motions that stretch less than the threshold without computing any of them; there σ_max is bounded by the
@@ -90,7 +89,6 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     links : array_like, shape (M, 2)
     tol : float
         Singular values below tol times the largest count as zero. Squared in the sparse way, so not below 1e-7. The
@@ -109,7 +107,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
     >>> rigidity(square, sides).flexes, rigidity(square, [*sides, [0, 2]]).infinitesimally_rigid
     (1, True)
     """
-    q, tol = near_one(ensure_points("q", q))[0], ensure_positive("tol", tol)
+    q, tol = scaled_near_one(ensure_points("q", q))[0], ensure_positive("tol", tol)
     matrix = rigidity_matrix(q, links)
     if dense is None:
         dense = q.size <= DENSE_MAX
@@ -120,7 +118,7 @@ def rigidity(q: Any, links: Any, *, tol: float = 1e-5, dense: bool | None = None
 
 
 def rigid_motion_count(q: FloatArray) -> int:
-    """Number of independent infinitesimal translations and rotations of a configuration.
+    """Return the number of independent infinitesimal translations and rotations of a configuration.
 
     Examples
     --------
@@ -153,7 +151,7 @@ def _by_inertia(matrix: csr_array, tol: float, q: FloatArray, rigid: int) -> tup
 
 
 def eigenvalues_below(gram: Any, shift: float, q: FloatArray) -> int:
-    """Sylvester's law: the negative pivots of a symmetric elimination count the eigenvalues below the shift."""
+    """Return the number of eigenvalues below a shift, by Sylvester's law of inertia."""
     from scipy.sparse import eye_array
 
     try:

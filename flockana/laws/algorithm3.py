@@ -14,7 +14,7 @@ from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
 from flockana.laws.gained import GainedLaw
-from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, alpha_scales, ensure_part
+from flockana.laws.olfati_saber import PAIR, TARGET, alpha_scales, ensure_gains, ensure_part
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
@@ -85,7 +85,7 @@ class Algorithm3(GainedLaw):
 
     def __post_init__(self) -> None:
         ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
         ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         ensure_part("target", self.target, Target, TARGET)
         obstacles = ensure_obstacles(self.obstacles)

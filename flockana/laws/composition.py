@@ -27,14 +27,26 @@ from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
 from flockana.laws.gained import GainedLaw
-from flockana.laws.olfati_saber import GAINS, PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_part
+from flockana.laws.olfati_saber import PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_gains, ensure_part
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
 
 _PARTS = ("pair", "consensus", "navigation", "obstacles", "drag", "speed")
-_OPTIONS = ("gradient", "net", "pull", "match", "informed", "agents", "bounded", "told", "repulsion", "braking", "beta")
+_OPTIONS = (
+    "gradient",
+    "net",
+    "pull",
+    "match",
+    "informed",
+    "agents",
+    "bounded",
+    "feedforward",
+    "repulsion",
+    "braking",
+    "beta",
+)
 _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -42,7 +54,7 @@ _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 class Composition(GainedLaw):
     """A law of which `compose` puts the terms together; what it lacks is None, empty or has the gain 0.
 
-    u_i = c1α Σ_j φ n_ij + c2α Σ_j a_ij (p_j − p_i) + β-agents + γ-feedback + d²q_r/dt² (if told) + (α − β‖p_i‖²) p_i.
+    u_i = c1α Σ_j φ n_ij + c2α Σ_j a_ij (p_j − p_i) + β-agents + γ-feedback + feedforward d²q_r/dt² + (α − β‖p_i‖²) p_i.
 
     Parameters
     ----------
@@ -56,7 +68,7 @@ class Composition(GainedLaw):
         The γ-agent.
     unit : float, optional
         ℓ of a bounded pull −c1γ ℓ σ₁((q_i − q_r)/ℓ); None for the linear one.
-    told : bool
+    feedforward : bool
         Whether every agent is told the γ-agent's acceleration.
     obstacles : sequence of Obstacle
         What agents keep off.
@@ -83,7 +95,7 @@ class Composition(GainedLaw):
     net: PairInteraction | Weight | None = None
     target: Target | None = None
     unit: float | None = None
-    told: bool = False
+    feedforward: bool = False
     obstacles: tuple[Obstacle, ...] = ()
     beta: BetaInteraction = field(default_factory=BetaInteraction)
     thrust: float = 0.0
@@ -97,7 +109,7 @@ class Composition(GainedLaw):
         for name, kind, example in optional:
             if getattr(self, name) is not None:
                 ensure_part(name, getattr(self, name), kind, example)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
         ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
         object.__setattr__(self, "obstacles", ensure_obstacles(self.obstacles))
         for name, ensure in (
@@ -111,10 +123,10 @@ class Composition(GainedLaw):
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        object.__setattr__(self, "told", ensure_flag("told", self.told))
-        if self.told and (self.target is None or self.target.harmonic is None):
+        object.__setattr__(self, "feedforward", ensure_flag("feedforward", self.feedforward))
+        if self.feedforward and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
-                f"told = True, target = {self.target!r}: expected a γ-agent whose acceleration is known, such as "
+                f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "
                 "SineTarget(...) or CircleTarget(...)"
             )
         if not self.terms:
@@ -159,7 +171,7 @@ class Composition(GainedLaw):
             field=self.obstacle_field,
             target=self.target,
             unit=self.unit,
-            told=self.told,
+            feedforward=self.feedforward,
             thrust=self.thrust,
             brake=self.brake,
         )
@@ -189,7 +201,7 @@ def compose(
     informed: Iterable[int] | None = None,
     agents: int | None = None,
     bounded: bool | float = False,
-    told: bool = False,
+    feedforward: bool = False,
     obstacles: Iterable[Obstacle] = (),
     repulsion: float | None = None,
     braking: float | None = None,
@@ -221,7 +233,7 @@ def compose(
         How many there are, needed with `informed`.
     bounded : bool or float
         A pull −c1 ℓ σ₁((q_i − q_r)/ℓ) instead, as under Algorithm 3: ℓ, or True for that of the pair.
-    told : bool
+    feedforward : bool
         Whether all agents are told the γ-agent's acceleration.
     obstacles : sequence of Obstacle
         What agents keep off by β-agents.
@@ -263,10 +275,12 @@ def compose(
         if net is not None:
             raise ArgumentError(f"net = {net!r} beside consensus = {consensus!r}: expected one of the two weights")
         net, consensus = consensus, 1.0
-    obstacles, told = ensure_obstacles(obstacles), ensure_flag("told", told)
+    obstacles, feedforward = ensure_obstacles(obstacles), ensure_flag("feedforward", feedforward)
     _ensure_parts("pair", pair, gradient=gradient)
     _ensure_parts("consensus", consensus, net=net)
-    _ensure_parts("navigation", navigation, pull=pull, match=match, informed=informed, bounded=bounded, told=told)
+    _ensure_parts(
+        "navigation", navigation, pull=pull, match=match, informed=informed, bounded=bounded, feedforward=feedforward
+    )
     _ensure_parts("informed", informed, agents=agents)
     _ensure_parts("obstacles", obstacles or None, repulsion=repulsion, braking=braking, beta=beta)
     if consensus is not None and pair is None and net is None:
@@ -282,7 +296,7 @@ def compose(
     own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
     unit = _bend(bounded, pair)
     thrust, brake = _along(drag, speed)
-    plain = net is None and pair is not None and not (told or thrust or brake)
+    plain = net is None and pair is not None and not (feedforward or thrust or brake)
     if plain and navigation is None and not obstacles:
         return Algorithm1(pair, Gains(**own))  # type: ignore[arg-type]  # validated there
     if plain and navigation is not None and not obstacles and unit is None:
@@ -291,7 +305,7 @@ def compose(
     if plain and navigation is not None and pair is not None and unit == pair.bend_length:
         return Algorithm3(pair, Gains(**own), navigation, beta, obstacles)
     gains = Gains(**(dict.fromkeys(given, 0.0) | own))
-    rest = {"told": told, "obstacles": obstacles, "beta": beta, "thrust": thrust, "brake": brake}
+    rest = {"feedforward": feedforward, "obstacles": obstacles, "beta": beta, "thrust": thrust, "brake": brake}
     return Composition(pair, gains, net=net, target=navigation, unit=unit, **rest)  # type: ignore[arg-type]
 
 

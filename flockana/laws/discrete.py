@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,9 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.laws.law import Law, LawOfMotion
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
 IndexArray = npt.NDArray[np.int64]
 
 
@@ -26,7 +29,18 @@ class DiscreteLaw(LawOfMotion):
     names to arrays, is passed along, and is recorded over time in `Trajectory.extra`. A run holds the state at
     t0 + k dt and the input that brought it there; between its steps a map has no state. `extra_units` tells the powers
     of length and time of what is remembered, where it is no pure number.
+
+    Attributes
+    ----------
+    position_factor : float or None
+        f of a map q' = q + dt p + f dt² u, p' = p + dt u, u the input of `continuous` at the start of the step: what
+        `linearise` needs to know. None of any other map.
+    in_place : bool
+        Whether agents move one after the other, and each sees those before it already moved.
     """
+
+    position_factor: float | None = None
+    in_place: bool = False
 
     dt: float
     approximates: ClassVar[bool] = False  # whether it is a scheme that integrates `law`, and no law of its own
@@ -38,6 +52,18 @@ class DiscreteLaw(LawOfMotion):
         """The law that is stepped, where the map steps one: its parameter `law`."""
         own = vars(self).get("law")
         return own if isinstance(own, Law) else None
+
+    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> csr_array | None:
+        """Derivative of the next headings in the headings, shape (n, n), of a map of headings; None of another.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, 2)
+            Positions.
+        heading : ndarray, shape (n,)
+            Headings, in radians.
+        """
+        return None
 
     @property
     def scales(self) -> Scales | None:

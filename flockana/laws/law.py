@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_given, ensure_state
-from flockana.base.errors import ArgumentError, told
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_fits, ensure_returned_array, ensure_state
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.scales import Scales
 from flockana.interactions.pair import PairInteraction
 
@@ -269,10 +269,10 @@ class Law(LawOfMotion):
         given: Any = self.flow(t, q, p)
         name, at = type(self).__name__, f"at t = {t:g}"
         if not isinstance(given, tuple) or len(given) != 2:
-            raise ArgumentError(f"{name} gives {told(given)} {at}: expected (u, dH/dt)")
-        ensure_given(f"{name} gives u", given[0], q.shape, at)
+            raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (u, dH/dt)")
+        ensure_returned_array(f"{name} gives u", given[0], q.shape, at)
         if np.ndim(given[1]) != 0 or np.asarray(given[1]).dtype.kind not in "fiu":
-            raise ArgumentError(f"{name} gives dH/dt = {told(given[1])} {at}: expected a real number, or NaN")
+            raise ArgumentError(f"{name} gives dH/dt = {format_value(given[1])} {at}: expected a real number, or NaN")
         return given
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:

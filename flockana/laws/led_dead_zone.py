@@ -48,7 +48,7 @@ class LedDeadZoneFlocking(SumOfTerms):
         The agents that feel their leader.
     c1, c2 : float
         Gains ≥ 0 of the pinned.
-    told : bool
+    feedforward : bool
         Whether the leaders' accelerations are known to their agents, as the paper assumes.
 
     Raises
@@ -75,7 +75,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     pinned: Any = ()
     c1: float = 1.0
     c2: float = 2.0
-    told: bool = True
+    feedforward: bool = True
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1), "c1": (0, -2), "c2": (0, -1)}
 
@@ -130,7 +130,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Pairs without consensus, and what ties agents to their leaders."""
-        ties = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.told)
+        ties = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
         return PairTerm(self.interaction, 1.0, 0.0), Leaders(self.interaction, self.k2, *ties)
 
     @property

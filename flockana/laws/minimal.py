@@ -11,7 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_points
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import speaks_for
+from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
 from flockana.base.units import times
 from flockana.base.vectors import lengths
@@ -240,7 +240,7 @@ class MinimalFlocking(Law):
         n : int
             Number of agents.
         """
-        return self._one_weight and n <= AT_ONCE and speaks_for(type(self), "semi_implicit", ("flow",))
+        return self._one_weight and n <= AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
 
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
@@ -415,7 +415,7 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
     def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        if self.law.steps_many(len(q)) and speaks_for(type(self), "iterate", ("step", "start")):
+        if self.law.steps_many(len(q)) and overrides_consistently(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 

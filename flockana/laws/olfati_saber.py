@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -9,10 +10,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from flockana.base.checks import ensure_state
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
+from flockana.interactions.gains import gains_of
 from flockana.laws.gained import GainedLaw
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
@@ -22,7 +24,7 @@ from flockana.measures.frame import moving_frame
 def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
     """Raise unless a parameter is of its kind."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {told(value)}: expected {example}")
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
 
 
 PAIR, GAINS, TARGET = (
@@ -30,6 +32,19 @@ PAIR, GAINS, TARGET = (
     "Gains(...)",
     "a γ-agent such as StaticTarget((0.0, 0.0))",
 )
+
+
+def ensure_gains(law: Any) -> None:
+    """Check the gains of a law; a dictionary of gains becomes `Gains`.
+
+    Examples
+    --------
+    >>> Algorithm1(gains={"c1_alpha": 2.0}).gains.c1_alpha
+    2.0
+    """
+    if isinstance(law.gains, Mapping):
+        object.__setattr__(law, "gains", gains_of(law.gains))
+    ensure_part("gains", law.gains, Gains, GAINS)
 
 
 def ensure_one_gain(gains: Gains) -> None:
@@ -105,7 +120,7 @@ class Algorithm1(GainedLaw):
 
     def __post_init__(self) -> None:
         ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
 
     @property
     def scales(self) -> Scales:  # noqa: D102
@@ -162,7 +177,7 @@ class Algorithm2(GainedLaw):
 
     def __post_init__(self) -> None:
         ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
         ensure_part("target", self.target, Target, TARGET)
 
     @property

@@ -14,7 +14,7 @@ from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
 from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.laws.olfati_saber import GAINS, PAIR, alpha_scales, ensure_part
+from flockana.laws.olfati_saber import PAIR, alpha_scales, ensure_gains, ensure_part
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.copies import CopiesTerm
 from flockana.laws.terms.pairs import PairTerm
@@ -59,7 +59,7 @@ class PeerToPeer(SumOfTerms):
     def __post_init__(self) -> None:
         ensure_part("copies", self.copies, Copies, "Copies(q, p, force)")
         ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_part("gains", self.gains, Gains, GAINS)
+        ensure_gains(self)
 
     @property
     def scales(self) -> Scales:  # noqa: D102

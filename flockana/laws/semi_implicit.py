@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeGuard
 
 from flockana.base.checks import FloatArray
-from flockana.base.overrides import speaks_for
+from flockana.base.overrides import overrides_consistently
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import IndexArray
@@ -44,6 +44,7 @@ class SemiImplicitEuler(Scheme):
     True
     """
 
+    position_factor = 1.0
     steps_at_once = 2000  # of the dead-zone law, whose loop is compiled: 2 µs a step of 50 agents
 
     def step(  # noqa: D102
@@ -59,14 +60,14 @@ class SemiImplicitEuler(Scheme):
     def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        if _is_compiled(self.law) and speaks_for(type(self), "iterate", ("step", "start")):
+        if _is_compiled(self.law) and overrides_consistently(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 
     def visit(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
-        if _is_compiled(self.law) and speaks_for(type(self), "visit", ("iterate", "step", "start")):
+        if _is_compiled(self.law) and overrides_consistently(type(self), "visit", ("iterate", "step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, int(wanted[-1]), wanted), {})
         return super().visit(t, q, p, memory, wanted)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
-from flockana.base.overrides import speaks_for
+from flockana.base.overrides import overrides_consistently
 from flockana.laws.law import Law, block_diagonal
 from flockana.laws.terms.term import Compiled, Term, TermKernel
 from flockana.measures.frame import moving_frame
@@ -70,11 +70,11 @@ class SumOfTerms(Law):
         m : int
             Dimension of the flock.
         """
-        if not speaks_for(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
+        if not overrides_consistently(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels: list[TermKernel] = []
         for term in self.terms:
-            known = term.compiled(m) if speaks_for(type(term), "compiled", ("act", "energy")) else None
+            known = term.compiled(m) if overrides_consistently(type(term), "compiled", ("act", "energy")) else None
             if known is None:
                 return None
             kernels += [known] if isinstance(known, TermKernel) else known

@@ -42,6 +42,8 @@ class TaylorStep(Scheme):
     (0.25, 1.0, 2.0)
     """
 
+    position_factor = 0.5
+
     def step(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from math import pi
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from flockana.kernels.neighbours import pair_list
 from flockana.kernels.noise import noise as random_number
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.nets import LinkArray, components
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 AVERAGES = ("headings", "vectors")
 _TURN = 2.0 * pi
@@ -169,6 +172,43 @@ class HeadingAveraging(DiscreteLaw):
             after["step"] = memory["step"] + 1.0
         before, velocities = self.velocities(heading), self.velocities(turned)
         return q + self.dt * before, velocities, (velocities - before) / self.dt, after | {"heading": turned}
+
+    def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> csr_array:
+        """Derivative of the next headings in the headings: each averages its own and its neighbours'.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, 2)
+            Positions.
+        heading : ndarray, shape (n,)
+            Headings, in radians.
+
+        Raises
+        ------
+        ArgumentError
+            If two agents are at the edge of each other's circle, where the map jumps.
+
+        Examples
+        --------
+        >>> matrix = HeadingAveraging(range=1.0).averaging_matrix(np.array([[0.0, 0.0], [0.5, 0.0]]), np.zeros(2))
+        >>> matrix.toarray().tolist()
+        [[0.5, 0.5], [0.5, 0.5]]
+        """
+        from scipy.sparse import coo_array
+
+        near = np.column_stack(pair_list(q, _SEARCH * self.range))
+        away = np.abs(np.linalg.norm(q[near[:, 1]] - q[near[:, 0]], axis=1) - self.range)
+        if near.size and away.min() <= (_SEARCH - 1.0) * self.range:
+            i, j = near[int(np.argmin(away))]
+            raise ArgumentError(f"agents {i} and {j} are at the edge of each other's circle: the map jumps there")
+        n, pairs = len(q), self.links(q)
+        rows = np.concatenate([np.arange(n), pairs[:, 0], pairs[:, 1]])
+        columns = np.concatenate([np.arange(n), pairs[:, 1], pairs[:, 0]])
+        weights = np.ones(rows.size)
+        if self.average == "vectors":
+            weights = np.cos(heading[columns] - _mean_vectors(heading, pairs)[rows])
+        sums = np.bincount(rows, weights, n)
+        return coo_array((weights / sums[rows], (rows, columns)), shape=(n, n)).tocsr()
 
     def measures(  # noqa: D102
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]

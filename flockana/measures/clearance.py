@@ -32,7 +32,7 @@ _CHUNK = 50_000  # agent-intervals handled at once
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """The least clearance of a run."""
+    """Least clearance of a run from its obstacles."""
 
     # lower bound of every agent's signed distance from every obstacle at every time, given the integrator's accuracy
     # and steps that resolve the motion (`flockana.kernels.paths`); ∞ without obstacles
@@ -116,7 +116,7 @@ class _Bound(NamedTuple):
 
 
 class _Least:
-    """The least clearance from one obstacle, so far; it begins with the samples."""
+    """Running minimum of the clearance from one obstacle, starting with the samples."""
 
     def __init__(self, t: FloatArray, at_samples: FloatArray) -> None:
         k, self.agent = divmod(int(np.argmin(at_samples)), at_samples.shape[1])
@@ -140,7 +140,7 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
             break
         left, right = _halves(curves)
         middle = np.ascontiguousarray(left[:, 5])
-        here, bound = at_once(obstacle, curves, middle, tol)
+        here, bound = bounds_over_hull(obstacle, curves, middle, tol)
         bound -= allowance
         lowest = int(np.argmin(here))
         if here[lowest] < value:
@@ -157,7 +157,9 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
     return _Bound(proven, value, where, which)
 
 
-def at_once(obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float) -> tuple[FloatArray, FloatArray]:
+def bounds_over_hull(
+    obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float
+) -> tuple[FloatArray, FloatArray]:
     """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
     gap, _, here = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]

@@ -1,4 +1,4 @@
-"""The frame that moves with the flock's centre of mass."""
+"""Moving frame of the flock's centre of mass."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from flockana.base.checks import FloatArray
 
 
 def moving_frame(x: FloatArray) -> FloatArray:
-    """Deviations from the mean over agents, x_i − x_c.
+    """Return the deviations from the mean over agents, x_i − x_c.
 
     Examples
     --------

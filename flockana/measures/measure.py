@@ -58,7 +58,7 @@ def has_lattice(law: Any) -> bool:
 
 @dataclass(frozen=True)
 class Measure:
-    """One measure of runs."""
+    """Measure of runs, such as connectivity, with its text, unit and functions."""
 
     name: str  # its name in `Trajectory.metrics` and in ensembles
     text: str  # what it is, for people
@@ -74,16 +74,16 @@ class Measure:
 
     @property
     def label(self) -> str:
-        """Text and unit, for an axis."""
+        """Axis label: text and unit."""
         return self.text if self.unit in ("", "1") else f"{self.text} ({self.unit})"
 
     @property
     def summary(self) -> str:
-        """Description of `number`."""
+        """Text for `number`."""
         return self.of_run_text or f"{self.text}, at the end"
 
     def number(self, run: Any) -> float:
-        """The number that an ensemble keeps of a run; NaN where the measure makes no sense for the law."""
+        """Return the number that an ensemble keeps of a run; NaN where it is not defined for the law."""
         if not self.defined(run.law):
             return nan
         if self.of_run is not None:

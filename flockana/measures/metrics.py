@@ -1,4 +1,4 @@
-"""Measures of one instant of a flock: the quantities of Olfati-Saber (2006), section on what constitutes flocking."""
+"""Metrics of one instant of a flock: the quantities of Olfati-Saber (2006)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
-from flockana.base.vectors import centres, lengths, near_one
+from flockana.base.vectors import centres, lengths, scaled_near_one
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
 from flockana.kernels.neighbours import pair_blocks
@@ -17,11 +17,7 @@ _SQUARED = 1e-140, 1e150  # between which the square of a speed is a number of f
 
 
 def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
-    """(C, C*, E) of one net: `connectivity`, `giant_share` and `deviation_energy` for one neighbour search.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return (C, C*, E) of one net (`connectivity`, `giant_share`, `deviation_energy`) by one neighbour search.
 
     Examples
     --------
@@ -33,7 +29,7 @@ def net_measures(q: Any, d: float, r: float) -> tuple[float, float, float]:
 
 
 def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, float]:
-    q, (d, r), unit = near_one(q, d, r)
+    q, (d, r), unit = scaled_near_one(q, d, r)
     n, known, count, excess = len(q), np.arange(len(q)), 0, 0.0
     for first, second in pair_blocks(q, r):
         unite(known, first, second)
@@ -44,11 +40,7 @@ def _net_measures(q: FloatArray, d: float, r: float) -> tuple[float, float, floa
 
 
 def connectivity(q: Any, r: float) -> float:
-    """Relative connectivity C = rank(L)/(n − 1) = (n − number of components)/(n − 1); 1 for a single agent.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return the relative connectivity C = rank(L)/(n − 1), from the number of components; 1 for one agent.
 
     Returns
     -------
@@ -64,11 +56,7 @@ def connectivity(q: Any, r: float) -> float:
 
 
 def giant_share(q: Any, r: float) -> float:
-    """C*: the share of *nodes* in the largest component (E7: the slides print a share of edges and mean this).
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return C*, the share of *nodes* in the largest component (E7: the slides print a share of edges).
 
     Examples
     --------
@@ -79,11 +67,7 @@ def giant_share(q: Any, r: float) -> float:
 
 
 def cohesion_radius(q: Any) -> float:
-    """R = max_i ‖q_i − q_c‖ about the centre of mass.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return R = max_i ‖q_i − q_c‖ about the centre of mass.
 
     Examples
     --------
@@ -94,11 +78,7 @@ def cohesion_radius(q: Any) -> float:
 
 
 def deviation_energy(q: Any, d: float, r: float) -> float:
-    """E(q) = Σ over ordered neighbour pairs of (‖q_j − q_i‖ − d)², divided by |E| + 1 (ordered count).
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return E(q) = Σ over ordered neighbour pairs of (‖q_j − q_i‖ − d)², over their number + 1.
 
     Returns
     -------
@@ -114,11 +94,7 @@ def deviation_energy(q: Any, d: float, r: float) -> float:
 
 
 def velocity_mismatch(p: Any) -> float:
-    """K = ½ Σ‖p_i − p_c‖².
-
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
+    """Return K = ½ Σ‖p_i − p_c‖².
 
     Examples
     --------
@@ -129,11 +105,7 @@ def velocity_mismatch(p: Any) -> float:
 
 
 def inertia(q: Any) -> float:
-    """J = ½ Σ‖q_i − q_c‖².
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return J = ½ Σ‖q_i − q_c‖².
 
     Examples
     --------
@@ -144,11 +116,7 @@ def inertia(q: Any) -> float:
 
 
 def min_distance(q: Any) -> float:
-    """Least distance between two agents, ∞ for one agent.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
+    """Return the least distance between two agents, ∞ for one agent.
 
     Examples
     --------
@@ -159,7 +127,7 @@ def min_distance(q: Any) -> float:
 
 
 def diameter(x: Any) -> float:
-    """Greatest distance between two rows: the flock's diameter of positions, the velocity diameter of velocities.
+    """Return the greatest distance between two rows: the diameter of positions or of velocities.
 
     Parameters
     ----------
@@ -180,11 +148,7 @@ def diameter(x: Any) -> float:
 
 
 def order(p: Any) -> float:
-    """Polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
-
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
+    """Return the polar order ‖Σ p_i/‖p_i‖‖/n: 1 when all move the same way; agents at rest count as 0.
 
     Examples
     --------
@@ -199,10 +163,6 @@ def coordination(p: Any) -> float:
 
     NaN if fewer than two agents move.
 
-    Parameters
-    ----------
-    p : array_like, shape (n, m)
-
     Examples
     --------
     >>> coordination([[1.0, 0.0], [3.0, 0.0], [0.0, 2.0]])  # cosines 1, 0, 0
@@ -216,7 +176,6 @@ def coincident_pairs(q: Any, tol: float) -> int:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     tol : float
         Distance below which two agents count as coincident.
 
@@ -226,16 +185,12 @@ def coincident_pairs(q: Any, tol: float) -> int:
     3
     """
     q = ensure_points("q", q)
-    q, (tol,), _ = near_one(q, ensure_positive("tol", tol))
+    q, (tol,), _ = scaled_near_one(q, ensure_positive("tol", tol))
     return sum(i.size for i, _ in pair_blocks(q, tol))
 
 
 def pairs_at_one_place(q: Any) -> int:
     """Return the number of unordered pairs of coincident agents.
-
-    Parameters
-    ----------
-    q : array_like, shape (n, m)
 
     Examples
     --------
@@ -250,29 +205,19 @@ def pairs_at_one_place(q: Any) -> int:
 
 
 def nets(q: FloatArray, d: float, r: float) -> FloatArray:
-    """`net_measures` over time, unchecked: C, C* and E, shape (3, T).
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
+    """Return `net_measures` over time, unchecked: C, C* and E, shape (3, T)."""
     return np.array([_net_measures(x, d, r) for x in q]).T
 
 
 def cohesion_radii(q: FloatArray) -> FloatArray:
-    """`cohesion_radius` over time, unchecked.
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
-    q, _, unit = near_one(q)
+    """Return `cohesion_radius` over time, unchecked."""
+    q, _, unit = scaled_near_one(q)
     radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
     return radii
 
 
 def spreads(x: FloatArray) -> FloatArray:
-    """½ Σ‖x_i − x_c‖² over time, unchecked: `inertia` of positions, `velocity_mismatch` of velocities.
+    """Return ½ Σ‖x_i − x_c‖² over time, unchecked: `inertia` of positions, `velocity_mismatch` of velocities.
 
     Parameters
     ----------
@@ -284,13 +229,8 @@ def spreads(x: FloatArray) -> FloatArray:
 
 
 def min_distances(q: FloatArray) -> FloatArray:
-    """`min_distance` over time, unchecked.
-
-    Parameters
-    ----------
-    q : ndarray, shape (T, n, m)
-    """
-    q, _, unit = near_one(q)
+    """Return `min_distance` over time, unchecked."""
+    q, _, unit = scaled_near_one(q)
     if q.shape[1] < _TREE:
         distances: FloatArray = least_distances(q) * unit
         return distances
@@ -307,28 +247,18 @@ def diameters(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    x, _, unit = near_one(x)
+    x, _, unit = scaled_near_one(x)
     distances: FloatArray = greatest_distances(np.ascontiguousarray(x)) * unit
     return distances
 
 
 def orders(p: FloatArray) -> FloatArray:
-    """`order` over time, unchecked.
-
-    Parameters
-    ----------
-    p : ndarray, shape (T, n, m)
-    """
+    """Return `order` over time, unchecked."""
     return lengths(centres(_headings(p)))
 
 
 def coordinations(p: FloatArray) -> FloatArray:
-    """`coordination` over time, unchecked.
-
-    Parameters
-    ----------
-    p : ndarray, shape (T, n, m)
-    """
+    """Return `coordination` over time, unchecked."""
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
@@ -342,7 +272,7 @@ def _centred(x: FloatArray) -> FloatArray:
 
 
 def _headings(p: FloatArray) -> FloatArray:
-    """Directions of motion; 0 of agents at rest."""
+    """Return directions of motion; 0 for agents at rest."""
     with np.errstate(over="ignore"):
         speed = lengths(p)
     far = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_links, ensure_points, ensure_positive, ensure_series
-from flockana.base.vectors import lengths, near_one
+from flockana.base.vectors import lengths, scaled_near_one
 from flockana.kernels.components import labelled, unite
 from flockana.kernels.neighbours import pair_list
 
@@ -28,7 +28,6 @@ def links(q: Any, r: float) -> LinkArray:
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
     r : float
         Interaction range; strict.
 
@@ -41,24 +40,24 @@ def links(q: Any, r: float) -> LinkArray:
     >>> links([[0.0], [1.0], [2.5]], 1.2).tolist()
     [[0, 1]]
     """
-    q, (r,), _ = near_one(ensure_points("q", q), ensure_positive("r", r))
+    q, (r,), _ = scaled_near_one(ensure_points("q", q), ensure_positive("r", r))
     return np.column_stack(pair_list(q, r))
 
 
 def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
-    """Euclidean length of each link.
+    """Return the Euclidean length of each link.
 
     Examples
     --------
     >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
     [5.0]
     """
-    q, _, unit = near_one(q)
+    q, _, unit = scaled_near_one(q)
     return lengths(q[pairs[:, 1]] - q[pairs[:, 0]]) * unit
 
 
 def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
-    """Label of the connected component of each of n agents; labels count from 0.
+    """Return the component label of each of n agents, counted from 0.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
 
 
 def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> csr_array:
-    """Graph Laplacian L = Δ(A) − A, sparse.
+    """Return the graph Laplacian L = Δ(A) − A, sparse.
 
     Parameters
     ----------
@@ -101,7 +100,7 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
 
 
 def printed_edge_share(n: int, pairs: LinkArray) -> float:
-    """The slides' C* = |E(Γ*)|/|E(G)| as printed: share of *links* in the largest component (erratum E7).
+    """Return C* = |E(Γ*)|/|E(G)| as the slides print it: share of *links* in the largest component (E7).
 
     With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
     for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
@@ -121,7 +120,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
-    """The MSN project's C = rank(A)/n of the adjacency matrix, as printed (erratum E8).
+    """Return C = rank(A)/n of the adjacency matrix as the MSN project prints it (erratum E8).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Closest approaches, contacts and the cohesion radius along sampled paths, between the samples too.
+"""Closest approach, contacts and cohesion radius along sampled paths, bounded between samples.
 
 What is bounded are the motions themselves, given the integrator's accuracy at the samples, wherever the samples resolve
 them (`flockana.kernels.paths` says when that is): those of the solver's own steps do, samples of one's own choice need
@@ -23,7 +23,7 @@ RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance
 
 @dataclass(frozen=True, eq=False)
 class ClosestApproach:
-    """The closest two agents come over a run."""
+    """Closest approach of two agents over a run."""
 
     # lower bound of every pair's distance at every time of the run, given the integrator's accuracy and samples that
     # resolve the motion
@@ -37,7 +37,7 @@ class ClosestApproach:
 def closest_approach(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
 ) -> ClosestApproach:
-    """Bound all pair distances from below over all times, from samples of position, velocity and acceleration.
+    """Return lower bounds of all pair distances over all times, from samples of position, velocity, acceleration.
 
     Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
     samples are too sparse to resolve the motion.
@@ -85,7 +85,7 @@ def closest_approach(
 
 
 def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
-    """A pair at the given least distance of a configuration."""
+    """Return a pair at the given least distance of a configuration."""
     for i, j in pair_blocks(q, np.nextafter(distance * (1.0 + 1e-12), np.inf)):
         if i.size:
             return int(min(i[0], j[0])), int(max(i[0], j[0]))
@@ -119,7 +119,7 @@ def cohesion_bound(
 
 @dataclass(frozen=True)
 class Contact:
-    """Two agents within the contact tolerance of each other at a time."""
+    """Pair of agents within the contact tolerance of each other, and when."""
 
     i: int  # i, j: the agents, i < j
     j: int

@@ -1,4 +1,4 @@
-"""Directed perception graphs: an edge (j, i) says that i perceives j; trees, matrices, random trees."""
+"""Directed perception graphs, where an edge (j, i) means that i perceives j: trees and matrices."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def ensure_edges(edges: Any) -> Edges:
 
 
 def both_ways(links: Iterable[tuple[int, int]]) -> Edges:
-    """The directed edges of an undirected graph: each link in both directions.
+    """Return the directed edges of an undirected graph: each link in both directions.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def both_ways(links: Iterable[tuple[int, int]]) -> Edges:
 
 
 def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
-    """A random rooted out-tree: agent 0 is the root, and each other perceives one that comes before it.
+    """Return a random rooted out-tree: agent 0 is the root, and each other agent perceives an earlier one.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
 
 
 def out_tree_root(n: int, edges: Edges) -> int | None:
-    """Return the root of a rooted out-tree, or None if the graph is none.
+    """Return the root of a rooted out-tree, or None for any other graph.
 
     Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
     "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
@@ -89,7 +89,7 @@ def is_connected(n: int, edges: Edges) -> bool:
 
 
 def incidence(n: int, edges: Edges) -> FloatArray:
-    """D of the paper, shape (n, M): +1 where the agent receives along the edge, −1 where it sends.
+    """Return the incidence matrix D, shape (n, M): +1 where an agent receives along an edge, −1 where it sends.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def receivers(n: int, edges: Edges) -> FloatArray:
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
-    """x_e = q_j − q_i of each edge (j, i), shape (..., M, m): x = (−Dᵀ ⊗ I) q.
+    """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m).
 
     Examples
     --------

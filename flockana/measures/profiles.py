@@ -15,7 +15,7 @@ QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
-    """Quantiles of the distances of all pairs at each instant, shape (T, number of shares); NaN for one agent.
+    """Return quantiles of all pair distances at each instant, shape (T, number of shares); NaN for one agent.
 
     Examples
     --------

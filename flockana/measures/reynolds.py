@@ -23,7 +23,7 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Reynolds:
-    """Algorithm 1's input, rule by rule.
+    """Input of Algorithm 1 split into Reynolds' rules.
 
     Attributes
     ----------
@@ -50,11 +50,11 @@ class Reynolds:
 
     @property
     def total(self) -> FloatArray:
-        """The three rules together: u of Algorithm 1, shape (n, m)."""
+        """Sum of the three rules, the input u of Algorithm 1, shape (n, m)."""
         return self.centring + self.avoidance + self.matching
 
     def friends(self, agent: int) -> tuple[IndexArray, IndexArray, IndexArray]:
-        """(F⁺, F⁻, F⁰): the positive, negative and neutral friends of an agent, each in rising order.
+        """Return (F⁺, F⁻, F⁰): the positive, negative and neutral friends of an agent, in rising order.
 
         Parameters
         ----------
@@ -83,11 +83,10 @@ class Reynolds:
 
 
 def reynolds(q: Any, p: Any, *, alpha: AlphaInteraction | None = None, gains: Gains | None = None) -> Reynolds:
-    """Part the input of Algorithm 1 into Reynolds' three rules (Olfati-Saber 2006).
+    """Return the input of Algorithm 1 split into Reynolds' three rules (Olfati-Saber 2006).
 
     Parameters
     ----------
-    q, p : array_like, shape (n, m)
     alpha : AlphaInteraction, optional
         The pair law; the paper's by default.
     gains : Gains, optional

@@ -1,4 +1,4 @@
-"""The measures of any flock: of its net, its extent and its velocities."""
+"""Measures defined for any flock: of its net, its extent and its velocities."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flockana.measures.nets import components, link_lengths, links
 
 
 def _mismatch(flock: Flock) -> FloatArray:
-    """K̃ = K/n."""
+    """Return K̃ = K/n."""
     mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
     return mismatch
 

@@ -1,4 +1,4 @@
-"""Joint connectivity: spans of time over which the nets, taken together, connect all agents."""
+"""Joint connectivity: time windows over which the nets, taken together, connect all agents."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flockana.measures.nets import LinkArray, links
 
 
 def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], ...]:
-    """The shortest contiguous windows [start, stop) of a series of nets, each with a connected union, from the first.
+    """Return the shortest consecutive windows [start, stop) of a series of nets with connected unions.
 
     A window ends as soon as the links seen in it connect all agents, and the next begins there: no other division into
     contiguous windows has more of them. What is left over at the end is in none.
@@ -73,8 +73,8 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
 
 
-def _tells_its_links(law: Any) -> bool:
-    """Laws whose theorems ask for windows; of others `windows_of` finds them, at the cost of a net for each sample."""
+def _gives_links(law: Any) -> bool:
+    """Return whether the law gives its own links, so that no neighbour search is needed."""
     return hasattr(law, "links")
 
 
@@ -84,6 +84,6 @@ MEASURES = (
         "windows of time over which the net is jointly connected",
         of_run=lambda run: len(windows_of(run)),
         of_run_text="contiguous windows of samples, each with a connected union of its nets",
-        defined=_tells_its_links,
+        defined=_gives_links,
     ),
 )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import replacing
+from flockana.base.files import atomic_write
 from flockana.player.marks import marks_of
 from flockana.player.page import page, script, style
 from flockana.player.scene import scene
@@ -50,7 +50,7 @@ class Player:
     def save(self, path: str) -> Path:
         """Write the player as a page; an existing file is replaced only once the new one is complete."""
         target = Path(path)
-        with replacing(target, remedy="choose another file") as partial:
+        with atomic_write(target, remedy="choose another file") as partial:
             partial.write_text(self.html(), encoding="utf-8")
         return target
 

@@ -1,4 +1,4 @@
-"""Figures: each function draws what it is given on an Axes, or on a new one, and returns it; it computes nothing."""
+"""Figures: each function draws its data on given or new Axes, and returns them."""
 
 from collections import deque
 

@@ -32,6 +32,7 @@ from .obstacles import obstacles as obstacles
 from .pair import action as action
 from .pair import deviation as deviation
 from .pair import potential as potential
+from .paper import save as save
 from .phase import phase_portrait as phase_portrait
 from .rank import rank_connectivity as rank_connectivity
 from .reynolds import rules as rules

@@ -1,4 +1,4 @@
-"""A run as a film: frames at equal spacing in time, in a view that holds still."""
+"""Films of runs: frames at equal spacing in time, in a fixed view."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.files import ensure_path, ensure_target, replacing
-from flockana.base.interrupts import interrupts_held
+from flockana.base.files import atomic_write, ensure_path, ensure_target
+from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
+from flockana.scenarios.flock import chosen
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -34,7 +35,7 @@ _SUFFIXES = ".gif", ".mp4"
 
 
 def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
-    """The run at equally spaced times, between samples by cubics that match values and slopes.
+    """Return the run at equally spaced times, interpolated by cubics.
 
     Of a map, which has no state between its steps, the nearest ones, with all that its memory holds of them, each once:
     fewer than asked for where it has fewer. So of a run of one sample, that sample.
@@ -59,7 +60,7 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
 def animation(
     trajectory: Trajectory, *, seconds: float = 10.0, fps: float = 15.0, velocities: bool = False, ranges: bool = False
 ) -> FuncAnimation:
-    """Make a film of a run: `snapshot` after `snapshot`; in a notebook show it by its ``to_jshtml()``.
+    """Return a matplotlib animation of `snapshot`s; in a notebook show it by ``to_jshtml()``.
 
     Parameters
     ----------
@@ -99,9 +100,13 @@ def animation(
 
 
 def animate(
-    trajectory: Trajectory,
-    path: str | os.PathLike[str],
+    trajectory: Trajectory | None = None,
+    path: str | os.PathLike[str] = "",
     *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
     seconds: float = 10.0,
     fps: float = 15.0,
     velocities: bool = False,
@@ -112,10 +117,14 @@ def animate(
 
     Parameters
     ----------
+    trajectory : Trajectory, optional
+        The run.
+    law, q0, p0, t_span : optional
+        Instead of a run: the parts of a `Flock`, which is simulated.
     path : path-like
         File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
     fps : float
-        Frames per second; a GIF rounds the time of a frame to hundredths of a second.
+        Frames per second.
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
     progress : callable
@@ -128,14 +137,17 @@ def animate(
     FileError
         If the file cannot be written, or ffmpeg is missing.
     """
-    from matplotlib.animation import FFMpegWriter, PillowWriter
+    from matplotlib.animation import FFMpegWriter
+
+    from flockana.plots.gif import GifWriter
 
     target = ensure_film(path, seconds=seconds, fps=fps)
-    film = animation(trajectory, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
-    writer = PillowWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+    run = chosen(law=law, q0=q0, p0=p0, t_span=t_span).run() if trajectory is None else trajectory
+    film = animation(run, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
+    writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.
     # Saving a figure asks for a layout anew, and one that fits each frame by itself makes the view tremble.
-    with replacing(target) as partial, interrupts_held() as came, style(), mpl.rc_context(_STILL):
+    with atomic_write(target) as partial, defer_sigint() as came, style(), mpl.rc_context(_STILL):
 
         def drawn(k: int, total: int) -> None:
             if came:
@@ -168,7 +180,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
 
 
 def frame_count(seconds: float, fps: float) -> int:
-    """Number of frames of a film, at least 1.
+    """Return the number of frames of a film, at least 1.
 
     Examples
     --------
@@ -184,7 +196,7 @@ def frame_count(seconds: float, fps: float) -> int:
 
 
 def film_view(trajectory: Trajectory) -> FloatArray:
-    """Two opposite corners of a box about all that the film shows, with a margin."""
+    """Return opposite corners of a box about all that the film shows, with a margin."""
     points = in_view(drawn_law(trajectory), trajectory)
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max()) or 1.0

@@ -1,4 +1,4 @@
-"""The certified radius of a basin beside what sampling finds of the true one."""
+"""Certified radius of a basin beside the sampled share of returning starts."""
 
 from __future__ import annotations
 

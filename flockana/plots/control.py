@@ -1,4 +1,4 @@
-"""Pictures that control engineers know: Bode plot, root locus, gain sweep, norms against size, delay margins."""
+"""Control-engineering plots: Bode, root locus, gain sweep, norms against size, delay margins."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -19,7 +19,7 @@ from flockana.plots.style import (
     VERMILLION,
     ensure_axes,
     finish,
-    hairline,
+    line_width_and_opacity,
     style,
 )
 from flockana.plots.symbols import typeset
@@ -53,11 +53,11 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
     if not isinstance(responses, Mapping):
-        raise ArgumentError(f"responses = {told(responses)}: expected frequency responses by label")
+        raise ArgumentError(f"responses = {format_value(responses)}: expected frequency responses by label")
     for label, response in responses.items():
         if not (hasattr(response, "omega") and hasattr(response, "complex")):
             raise ArgumentError(
-                f"responses[{label!r}] = {told(response)}: expected a frequency response, such as that of CentreOfMass"
+                f"responses[{label!r}] = {format_value(response)}: expected a frequency response, as of CentreOfMass"
             )
     if ax is None:
         import matplotlib.pyplot as plt
@@ -82,7 +82,7 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
 
 
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw the branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
+    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     roots = sweep.eigenvalues
-    width, alpha = hairline(roots.shape[1])
+    width, alpha = line_width_and_opacity(roots.shape[1])
     ax.plot(roots.real, roots.imag, color=BLUE, linestyle="-", linewidth=max(0.7, width), alpha=max(0.6, alpha))
     name = _NAMES[sweep.name]
     first, last = f"{name} = {sweep.values[0]:.4g}", f"{name} = {sweep.values[-1]:.4g}"
@@ -111,7 +111,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     decay = sweep.eigenvalues.real[:, sweep.neutral :]
-    width, alpha = hairline(decay.shape[1])
+    width, alpha = line_width_and_opacity(decay.shape[1])
     ax.plot(sweep.values, decay, color=MUTED, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=MUTED, linestyle="-", linewidth=0.8, label="every mode")
     ax.plot(sweep.values, sweep.abscissa, color=VERMILLION, linestyle="-", linewidth=2.0, label="the slowest")

@@ -1,4 +1,4 @@
-"""The force of the dead-zone law with its jumps, the two energies of a run, and a flock with its leaders."""
+"""Force of the dead-zone law with its jumps, energies of a run, and a flock with its leaders."""
 
 from __future__ import annotations
 

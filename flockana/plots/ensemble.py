@@ -1,4 +1,4 @@
-"""Ensembles: shares with their intervals, distributions over runs, phase diagrams."""
+"""Ensembles: shares with confidence intervals, distributions over runs, phase diagrams."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def share_against(
         If the table has other parameters, no such claim, or too many claims.
     """
     chosen = _ensure_table(table, {parameter}, claims, of)
-    if len(chosen) > _MOST:
+    if len(_alike(table, chosen, of)) > _MOST:
         raise ArgumentError(
             f"{len(chosen)} claims: expected at most {_MOST} in one picture; choose some by claims=[...]"
         )
@@ -70,9 +70,10 @@ def share_against(
     logarithmic = numbers and _geometric(place)
     scaled = np.log(place) if logarithmic else place
     spread = float(np.ptp(scaled)) or 1.0
-    for k, claim in enumerate(chosen):
+    curves = _alike(table, chosen, of)
+    for k, (claim, label) in enumerate(curves.items()):
         part = table.sel(claim=claim, of=of)
-        shift = _DODGE * spread * (k - 0.5 * (len(chosen) - 1))
+        shift = _DODGE * spread * (k - 0.5 * (len(curves) - 1))
         at = np.exp(scaled + shift) if logarithmic else place + shift
         share = part.share.values
         bars = np.abs(np.stack([share - part.low.values, part.high.values - share]))
@@ -84,7 +85,7 @@ def share_against(
             markersize=4,
             capsize=2,
             elinewidth=0.9,
-            label=claim,
+            label=label,
         )
     if logarithmic:
         axes.set_xscale("log")
@@ -97,10 +98,21 @@ def share_against(
     return _finish(axes, title)
 
 
+def _alike(table: xarray.Dataset, claims: Sequence[str], of: str) -> dict[str, str]:
+    """Return the first of the claims that share a curve, with the names of all: drawn apart they would hide another."""
+    groups: dict[bytes, list[str]] = {}
+    for claim in claims:
+        part = table.sel(claim=claim, of=of)
+        groups.setdefault(b"".join(part[name].values.tobytes() for name in ("share", "low", "high")), []).append(claim)
+    return {names[0]: ", ".join(names) for names in groups.values()}
+
+
 def _geometric(places: FloatArray) -> bool:
     """Return whether positive numbers are spaced geometrically, over a decade or more."""
-    if len(places) < 3 or not (places > 0.0).all() or places.max() < 10.0 * places.min():
+    if len(places) < 2 or not (places > 0.0).all() or places.max() < 10.0 * places.min():
         return False
+    if len(places) == 2:
+        return True
     even, ratios = np.diff(np.sort(places)), np.diff(np.log(np.sort(places)))
     return bool(even.max() * ratios.min() > ratios.max() * even.min())
 
@@ -160,7 +172,7 @@ def distribution(
     ax: Axes | None = None,
     title: str = "",
 ) -> Axes:
-    """Draw how a measure is distributed over runs: for each value, the share of runs that stay at or below it.
+    """Draw the cumulative distribution of a measure over runs.
 
     A cumulative curve, unlike a histogram, hides nothing in bins and lets groups be compared. Each run is a tick below.
 
@@ -219,7 +231,7 @@ def phase_diagram(
     title: str = "",
     labels: Sequence[str] = ("", ""),
 ) -> Axes:
-    """Draw the phases in which runs ended over two parameters; each cell shows the shares of its seeds.
+    """Draw the phases in which runs ended over two parameters; cells show the shares of their seeds.
 
     Parameters
     ----------
@@ -277,7 +289,7 @@ def phase_diagram(
 
 
 def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[str] | None, of: str) -> list[str]:
-    """The claims to draw, of a table of shares over these parameters and no others."""
+    """Return the claims to draw; raise unless a table of shares has these parameters and no others."""
     if of not in ("verified", "refuted"):
         raise ArgumentError(f"of = {of!r}: expected 'verified' or 'refuted'")
     others = {str(name) for name in table.runs.dims} - {"claim"}

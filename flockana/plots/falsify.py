@@ -1,4 +1,4 @@
-"""A search for a counterexample: the margin in each run, and the least so far."""
+"""Course of a search for a counterexample: the margin of each run, and the least so far."""
 
 from __future__ import annotations
 

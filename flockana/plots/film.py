@@ -1,4 +1,4 @@
-"""A film that shows itself in a notebook and saves itself to a file."""
+"""Film of a run that plays in a notebook and saves to a file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """A run as a film: a player where a notebook shows it, a GIF or MP4 where it is saved.
+    """Film of a run: played in a notebook, saved as GIF or MP4.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Film:
         )
 
     def _repr_html_(self) -> str:
-        """The player, with the frames inside it."""
+        """Return the HTML player with its frames."""
         film = animation(
             self.trajectory, seconds=self.seconds, fps=self.fps, velocities=self.velocities, ranges=self.ranges
         )

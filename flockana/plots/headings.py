@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.errors import ArgumentError
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.plots.snapshot import configuration, draw_sample
-from flockana.plots.style import INK, ensure_axes, finish_over_time, hairline
+from flockana.plots.style import INK, ensure_axes, finish_over_time, line_width_and_opacity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,12 +18,7 @@ if TYPE_CHECKING:
 
 
 def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-    """Draw every agent's heading over time, as the number that is averaged.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of `HeadingAveraging`.
+    """Draw every agent's heading over time, the angle that the law averages.
 
     Raises
     ------
@@ -33,7 +28,7 @@ def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     if "heading" not in trajectory.extra or trajectory.extra["heading"].ndim != 2:
         raise ArgumentError(f"a run of {type(trajectory.law).__name__} has no headings: expected HeadingAveraging")
     axes: Any = ensure_axes(ax)
-    width, opacity = hairline(trajectory.n)
+    width, opacity = line_width_and_opacity(trajectory.n)
     axes.plot(trajectory.t, trajectory.extra["heading"], color=INK, linestyle="-", linewidth=width, alpha=opacity)
     return finish_over_time(axes, trajectory.t, "heading (radians)")
 

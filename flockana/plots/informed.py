@@ -9,7 +9,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.binomial import clopper_pearson
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, head, legend_above
+from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, head, place_legend
 
 if TYPE_CHECKING:
     import xarray
@@ -64,5 +64,5 @@ def informed_shares(
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(PercentFormatter(1.0))
     head(axes, title)
-    legend_above(axes)
+    place_legend(axes)
     return finish(axes, "share of agents that are informed", "share")

@@ -1,4 +1,4 @@
-"""Lattices by their neighbours, the collapse of Algorithm 2, and the barrier against collisions."""
+"""Lattices by coordination number, the collapse of Algorithm 2, and the collision barrier."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
 
 
 def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | None = None) -> Axes:
-    """Draw between which two ratios c1γ/c1α a flock begins to collapse, against its size.
+    """Draw brackets of the ratio c1γ/c1α at which a flock collapses, against its size.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def barrier(
 
 
 def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool = True) -> Axes:
-    """Frame axes over the number of agents; few sizes are all named."""
+    """Label axes over the number of agents; few sizes are all named."""
     if logarithmic:
         ax.set_yscale("log")
         ax.yaxis.set_major_formatter(ScalarFormatter())

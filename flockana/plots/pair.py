@@ -1,4 +1,4 @@
-"""The curves of a pair law over the Euclidean distance."""
+"""Curves of a pair law over the Euclidean distance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.measures.metrics import deviation_energy
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, legend_above
+from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, place_legend
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ _SAMPLES = 600
 
 
 def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw φ_α over the distance of a pair: below zero it repels, above it attracts, beyond r nothing."""
+    """Draw φ_α over the distance of a pair: negative repels, positive attracts, 0 beyond r."""
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.phi_alpha(interaction.sigma_norm(x)), color=BLUE, linestyle="-")
@@ -28,7 +28,7 @@ def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
 
 
 def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* where two agents coincide."""
+    """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* at 0."""
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
@@ -62,7 +62,7 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     _frame(ax, interaction, "energy, in its value at 0")
     ax.set_xlim(x[0], x[-1])
     ax.set_xlabel("place of one agent, seen from the other (length)")
-    legend_above(ax)
+    place_legend(ax)
     return ax
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, hairline
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, line_width_and_opacity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def phase_portrait(
         axes.contour(*energy, levels=[separatrix], colors=VERMILLION, linewidths=1.3)
         axes.plot([], [], color=VERMILLION, linestyle="-", linewidth=1.3, label="separatrix")
     axes.axhline(0.0, color=INK, linewidth=0.6, linestyle="-")
-    width, alpha = hairline(x.shape[1])
+    width, alpha = line_width_and_opacity(x.shape[1])
     axes.plot(x, v, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     axes.scatter(x[0], v[0], s=14, facecolors="white", edgecolors=BLUE, zorder=3)
     axes.scatter(x[-1], v[-1], s=14, color=BLUE, zorder=3)

@@ -26,7 +26,7 @@ _OUTSIDE = 0.5  # pixels by which a tick may lie outside the axes, from rounding
 
 
 def plain(text: str) -> str:
-    r"""Write a typeset number as plain text.
+    r"""Return a typeset number as plain text.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def _typeset(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Ticks:
-    """The ticks of one kind, major or minor."""
+    """Ticks of one kind, major or minor."""
 
     at: FloatArray  # pixels along the scale
     numbers: tuple[str, ...]  # as many; empty texts where there is none
@@ -63,17 +63,7 @@ class Ticks:
 
 
 class PlainScale(Artist):
-    """Scale of one axis of two-dimensional axes, in place of matplotlib's own drawing.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        The axes.
-    name : {"x", "y"}
-        Which scale; where its ticks are and how they look is what matplotlib would have drawn.
-    sizes : dict, optional
-        Sizes of texts that are known, for scales that share them.
-    """
+    """Fast replacement for matplotlib's drawing of one axis of two-dimensional axes."""
 
     def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size] | None = None) -> None:
         super().__init__()
@@ -90,7 +80,7 @@ class PlainScale(Artist):
         self.set_clip_on(False)
 
     def ticks(self, which: str) -> Ticks:
-        """The major or minor ticks within the limits."""
+        """Return the major or minor ticks within the limits."""
         scale, look, pixel = self.scale, self.scale.get_tick_params(which), self.ax.figure.dpi / 72.0
         values = np.asarray(getattr(scale, f"get_{which}ticklocs")(), dtype=np.float64)
         formatter = getattr(scale, f"get_{which}_formatter")()
@@ -170,7 +160,7 @@ class PlainScale(Artist):
         return width, max(height, own_height), max(descent, own_descent)
 
     def _depth(self, renderer: Any, kinds: tuple[Ticks, ...]) -> float:
-        """Pixels from the axes to the far side of marks and numbers."""
+        """Return the pixels from the axes to the far side of marks and numbers."""
         sizes, depth = self._sizes(renderer), 0.0
         for ticks in kinds:
             if not ticks.at.size:
@@ -202,7 +192,7 @@ class PlainScale(Artist):
             self._stroke(renderer, ticks.at, ends, self._look("color"), ticks.width)
 
     def _stroke(self, renderer: Any, at: FloatArray, ends: tuple[float, float], colour: str, width: float) -> None:
-        """Parallel lines across the scale at these places, between these two ends."""
+        """Draw parallel lines across the axis at the given places, between two ends."""
         vertices = np.empty((2 * at.size, 2))
         k = 0 if self.name == "x" else 1
         vertices[:, k] = np.repeat(at, 2)

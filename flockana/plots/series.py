@@ -1,4 +1,4 @@
-"""Quantities of a run over time."""
+"""Plots of quantities of a run over time."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
 from flockana.plots.style import (
     BLUE,
+    FAINT,
     GREEN,
     INK,
     MUTED,
@@ -23,8 +24,8 @@ from flockana.plots.style import (
     ensure_axes,
     finish_empty,
     finish_over_time,
-    hairline,
     levels,
+    line_width_and_opacity,
     over_time,
     subplots,
 )
@@ -42,11 +43,6 @@ PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "norm
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
     """Draw one metric of a run over time; empty axes say why where the law does not define it.
 
-    Parameters
-    ----------
-    name : str
-        A variable of ``trajectory.metrics()``.
-
     Raises
     ------
     UnknownNameError
@@ -58,13 +54,35 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     except UnknownNameError:
         return finish_empty(ax, drawn.label, "not defined for this law")
     ax.plot(trajectory.t, values, color=BLUE, linestyle="-")
-    if drawn.logarithmic and (values > 0.0).any():
+    logarithmic = drawn.logarithmic or _spans_decades(values)
+    if logarithmic and (values > 0.0).any():
         ax.set_yscale("log")
+        _shade_floor(trajectory, name, values, ax)
     if drawn.at_most_one:
         ax.set_ylim(float(np.nanmin(values, initial=0.0)) - 0.03, 1.05)
-    elif not drawn.logarithmic and not (values < 0.0).any():
+    elif not logarithmic and not (values < 0.0).any():
         ax.set_ylim(bottom=0.0)
     return finish_over_time(ax, trajectory.t, drawn.label)
+
+
+def _spans_decades(values: Any) -> bool:
+    """Return whether values that are not negative span three decades or more."""
+    positive = values[values > 0.0]
+    return bool(positive.size > 1 and not (values < 0.0).any() and positive.max() > 1e3 * positive.min())
+
+
+def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
+    """Shade what lies below the error that one step of the solver may carry, where the curve reaches that far down."""
+    place, speed, _ = trajectory.floors
+    d = trajectory.scales.length
+    floor = {
+        "normalised_velocity_mismatch": 0.5 * speed**2,
+        "velocity_diameter": 2.0 * speed,
+        "normalised_deviation_energy": (2.0 * place / d) ** 2,
+    }.get(name, 0.0)
+    positive = values[values > 0.0]
+    if floor > 0.0 and positive.min() < floor:
+        ax.axhspan(positive.min(), floor, color=FAINT, alpha=0.6, linewidth=0.0, label="noise floor")
 
 
 def has_metric(trajectory: Trajectory, name: str) -> bool:
@@ -166,7 +184,7 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
     if not solids:
         return "there are no obstacles"
     t, q = trajectory.t, trajectory.q
-    width, alpha = hairline(2 * len(solids))
+    width, alpha = line_width_and_opacity(2 * len(solids))
     for k, solid in enumerate(solids):
         least = solid.clearance(q.reshape(-1, trajectory.m)).reshape(len(t), -1).min(axis=1)
         name = "each obstacle, at the samples" if k == 0 else None
@@ -187,7 +205,7 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
 def speeds(trajectory: Trajectory, ax: Any) -> None:
     """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law."""
     (t, p), target = velocities_between(trajectory), trajectory.law.target
-    width, alpha = hairline(trajectory.n)
+    width, alpha = line_width_and_opacity(trajectory.n)
     ax.plot(t, lengths(p), color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
     curves(ax, t, [(np.linalg.norm(p.mean(axis=1), axis=1), "centre of mass", INK, "-")])

@@ -1,4 +1,4 @@
-"""One instant of a flock: agents, velocities, links coloured by strain, the γ-agent, obstacles with β-agents.
+"""Snapshots of a flock: agents, velocities, links coloured by strain, the γ-agent, obstacles.
 
 A law with a world of its own registers how it is drawn (`draw_sample`) and what a film of it must show (`in_view`);
 snapshots, films and the report then show it so. Of a map that steps another law, that law is drawn.
@@ -132,7 +132,7 @@ def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
 
 
 def drawn_law(trajectory: Trajectory) -> Any:
-    """The law of a run; of a map that steps another law, that one."""
+    """Return the law of a run, or of a map the law that it steps."""
     return trajectory.law.continuous or trajectory.law
 
 
@@ -157,7 +157,7 @@ def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, ve
 
 @singledispatch
 def in_view(law: Any, trajectory: Trajectory) -> FloatArray:
-    """Points that a film of a run must show, shape (N, m); to be registered with `draw_sample`."""
+    """Return points that a film of a run must show, shape (N, m); register it with `draw_sample`."""
     shown = [trajectory.q.reshape(-1, trajectory.m)]
     if law.target is not None:
         shown.append(np.array([law.target.position(t) for t in trajectory.t.tolist()]))
@@ -236,7 +236,7 @@ def configuration(
 
 
 def _lengths(d: Any, pairs: Any) -> Any:
-    """Desired distances: one number > 0, or as many as there are edges."""
+    """Return desired distances: one number > 0, or one for each edge."""
     if pairs is None or np.isscalar(d):
         return ensure_positive("d", d)
     lengths = ensure_series("d", d, len(pairs))

@@ -1,4 +1,4 @@
-"""Linearised stability in pictures: poles, mode shapes on the flock, modes as films."""
+"""Linearised stability: poles, mode shapes on the flock, films of modes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import ensure_links, ensure_points
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.plots.animation import animate
 from flockana.plots.style import (
     BLUE,
@@ -56,10 +56,12 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     try:
         values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"poles = {told(poles)}: expected complex numbers, or groups of them by label") from None
+        raise ArgumentError(
+            f"poles = {format_value(poles)}: expected complex numbers, or groups of them by label"
+        ) from None
     whole = np.concatenate([*values.values(), np.empty(0)])
     if whole.size == 0:
-        raise ArgumentError(f"poles = {told(poles)}: expected at least one eigenvalue")
+        raise ArgumentError(f"poles = {format_value(poles)}: expected at least one eigenvalue")
     axes = ensure_axes(ax)
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
@@ -85,7 +87,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
 
 
 def _damping_rays(ax: Any) -> None:
-    """Rays of constant damping ratio into the left half-plane, named at the edge of the axes."""
+    """Draw rays of constant damping ratio in the left half-plane, labelled at the edge of the axes."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     if left >= 0.0:
         return
@@ -107,7 +109,7 @@ def _damping_rays(ax: Any) -> None:
 
 
 def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a mode on the flock: an arrow from each agent, and the ellipse that it runs through where it swings.
+    """Draw a mode on the flock: an arrow from each agent, and the ellipse of its oscillation.
 
     Parameters
     ----------

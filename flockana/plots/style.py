@@ -1,4 +1,4 @@
-"""Figure style as a context; matplotlib's global settings are never changed."""
+"""Figure style as a context, without changes to matplotlib's global settings."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_count
+from flockana.plots.paper import column_size
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -62,6 +63,8 @@ _STYLE = {
     "figure.constrained_layout.use": True,
     "font.size": 9,
     "svg.hashsalt": "flockana",
+    "pdf.fonttype": 42,  # TrueType: publishers refuse Type 3
+    "ps.fonttype": 42,
 }
 
 
@@ -92,11 +95,12 @@ def style() -> Iterator[None]:
 
 
 _WIDER = 1.15  # than the axes may a legend be, for the names of their ticks stand beside them
+_MOST_LINES = 2  # of a label
 _EM = 0.55  # width of a letter, over its size
 
 
 def ensure_axes(ax: Any, *, m: int = 2) -> Any:
-    """Return `ax`, or new axes in flockana's look: flat ones, or three-dimensional ones for m = 3."""
+    """Return `ax`, or new axes in flockana's style: flat ones, or three-dimensional ones for m = 3."""
     if ax is not None:
         return ax
     import matplotlib.pyplot as plt
@@ -107,16 +111,17 @@ def ensure_axes(ax: Any, *, m: int = 2) -> Any:
 
 
 def subplots(
-    rows: int = 1, columns: int = 1, *, size: tuple[float, float] | None = None, m: int = 2
+    rows: int = 1, columns: int = 1, *, size: tuple[float, float] | str | None = None, m: int = 2
 ) -> tuple[Any, Any]:
-    """A new figure in flockana's look, as ``pyplot.subplots`` makes one: (figure, Axes or array of Axes).
+    """Return a new figure in flockana's style, as ``pyplot.subplots``: (figure, Axes or array of Axes).
 
     Parameters
     ----------
     rows, columns : int
         Of the grid.
-    size : (float, float), optional
-        Width and height in inches; by default 4.4 by 3.4 for each Axes.
+    size : (float, float) or str, optional
+        Width and height in inches, or a journal's column by its name in `flockana.plots.paper.COLUMNS`, such as
+        ``"ieee"``; by default 4.4 by 3.4 for each Axes.
     m : int
         Dimension of what will be drawn: 3 for three-dimensional axes.
 
@@ -131,31 +136,36 @@ def subplots(
     rows, columns = ensure_count("rows", rows), ensure_count("columns", columns)
     with style():
         kind = {"projection": "3d"} if m == 3 else {}
-        return plt.subplots(rows, columns, figsize=size or (4.4 * columns, 3.4 * rows), subplot_kw=kind)
+        wanted = column_size(size, rows, columns) if isinstance(size, str) else size or (4.4 * columns, 3.4 * rows)
+        return plt.subplots(rows, columns, figsize=wanted, subplot_kw=kind)
 
 
 def finish(ax: Any, x: str = "", y: str = "") -> Axes:
-    """Label the axes and add a legend above them if something has a label; return the axes."""
+    """Label the axes, add a legend above them if there are labels, and return the axes."""
     if x:
         ax.set_xlabel(typeset(x))
     if y:
         letters = ax.get_window_extent().height / ax.figure.dpi * 72.0 / (_EM * ax.yaxis.label.get_size())
-        lines = [y] if "$" in y else wrap(y, max(int(1.1 * letters), 12))
+        room = max(int(1.1 * letters), 12)
+        lines = [y] if "$" in y else wrap(y, room, break_long_words=False)
+        if len(lines) > _MOST_LINES and "," in y:  # the symbol and its unit alone
+            unit = y.rpartition(" (")
+            lines = [y.partition(",")[0] + (f" ({unit[2]}" if unit[1] else "")]
         ax.set_ylabel("\n".join(map(typeset, lines)))
     if ax.get_legend_handles_labels()[0]:
-        legend_above(ax)
+        place_legend(ax)
     return ax  # type: ignore[no-any-return]
 
 
 def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
-    """Finish a drawing over time: from the first of the times to the last."""
+    """Label axes over time, limited to the first and last time, and return them."""
     if len(t) > 1:
         ax.set_xlim(t[0], t[-1])
     return finish(ax, "t (time)", y)
 
 
 class OverTime(Protocol):
-    """A plot of a run over time."""
+    """Plot function of a run over time."""
 
     def __call__(self, trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         """Draw on axes, or on new ones."""
@@ -190,7 +200,7 @@ def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
 
 
 def finish_empty(ax: Any, y: str, reason: str) -> Axes:
-    """Show a reason in the middle of empty axes."""
+    """Show a reason in the middle of empty axes, and return them."""
     ax.set_xticks([])
     ax.set_yticks([])
     ax.text(0.5, 0.5, typeset(reason), ha="center", va="center", transform=ax.transAxes, color=MUTED)
@@ -198,13 +208,13 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
 
 
 def head(ax: Any, title: str, **look: Any) -> None:
-    """Write the title at the left above the axes, in flockana's look wherever they were made."""
+    """Write the title at the left above the axes."""
     look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
     ax.set_title(typeset(title), loc="left", **look)
 
 
-def legend_above(ax: Any) -> None:
-    """Put the legend above the axes, where it hides no data, in as many columns as are no wider than these."""
+def place_legend(ax: Any) -> None:
+    """Put the legend above the axes, in as many columns as fit their width."""
     handles, labels = ax.get_legend_handles_labels()
     for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
         legend = ax.legend(
@@ -223,7 +233,7 @@ def legend_above(ax: Any) -> None:
 
 
 def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", share: float = 0.75) -> Any:
-    """Add a colour bar as a part of axes, a little to the right of them."""
+    """Add a colour bar to the right of axes, as a part of them."""
     beside = ax.inset_axes((1.03, 0.5 - 0.5 * share, 0.03, share))
     scale = ax.get_figure().colorbar(colours, cax=beside, extend=extend, label=typeset(label))
     scale.outline.set_visible(False)
@@ -232,12 +242,12 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
     return scale
 
 
-def hairline(n: int) -> tuple[float, float]:
-    """Width and opacity of one of n lines that share axes: the more there are, the fainter.
+def line_width_and_opacity(n: int) -> tuple[float, float]:
+    """Return width and opacity of one of n lines on the same axes: fainter the more there are.
 
     Examples
     --------
-    >>> hairline(3), hairline(150)
+    >>> line_width_and_opacity(3), line_width_and_opacity(150)
     ((1.2, 0.9), (0.4, 0.4))
     """
     return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)
@@ -249,12 +259,12 @@ def in_plane(points: FloatArray) -> FloatArray:
 
 
 def lines(segments: Any, **look: Any) -> Any:
-    """A collection of lines to add to axes, of the plane or of space: each a sequence of as many points."""
+    """Return a collection of lines in the plane or in space, from arrays of their points."""
     return (Line3DCollection if np.shape(segments)[-1] == 3 else LineCollection)(segments, **look)
 
 
 def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
-    """Label the axes of space and scale them equally: a cube about the points where m = 3; a line has no y."""
+    """Label the axes of space and scale them equally."""
     if m == 1:
         ax.set(xlabel=typeset("x (length)"), yticks=[], ylim=(-1.0, 1.0))
         return ax  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""Paths through space: of every agent, and of the centre of mass against the γ-agent."""
+"""Paths in space: of every agent, and of the centre of mass against the γ-agent."""
 
 from __future__ import annotations
 
@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, frame_space, hairline, lines
+from flockana.plots.style import (
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    ensure_axes,
+    finish,
+    frame_space,
+    line_width_and_opacity,
+    lines,
+)
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -22,7 +32,7 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time."""
     axes = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
-    width, alpha = hairline(trajectory.n)
+    width, alpha = line_width_and_opacity(trajectory.n)
     axes.add_collection(lines(list(paths), colors=BLUE, linewidths=width, alpha=alpha))
     axes.scatter(*paths[:, 0].T, s=7, facecolors="none", edgecolors=MUTED, linewidths=0.6, label="start", zorder=3)
     axes.scatter(*paths[:, -1].T, s=7, color=INK, linewidths=0, label="end", zorder=3)
@@ -55,7 +65,7 @@ def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
-    """A path as points to draw: (t, x) where space is a line."""
+    """Return a path as points to draw: (t, x) on a line."""
     return np.column_stack([t, x]) if x.shape[1] == 1 else x
 
 

@@ -33,9 +33,9 @@ from flockana.plots.style import (
     curves,
     ensure_axes,
     frame_space,
-    hairline,
     head,
     levels,
+    line_width_and_opacity,
     lines,
     over_time,
 )
@@ -115,7 +115,7 @@ def _(law: Any, trajectory: Trajectory) -> FloatArray:
 
 
 def _corners(world: ZoneWorld, m: int) -> FloatArray:
-    """Points that must be in view: obstacles and box."""
+    """Return points that must be in view: obstacles and box."""
     seen = [np.empty((0, m))]
     for solid in world.obstacles:
         seen.append(bounds([solid]) if isinstance(solid, Sphere) else np.array(solid.vertices))
@@ -125,7 +125,7 @@ def _corners(world: ZoneWorld, m: int) -> FloatArray:
 
 
 def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: ZoneFlocking) -> None:
-    """The obstacle zone ahead of every agent that has a heading."""
+    """Draw the obstacle zone ahead of every agent that has a heading."""
     _, c, _, _ = law.radii.arrays(len(q))
     ahead = heading * law.altitudes(p)[:, None]
     aside = law.base * c[:, None] * np.column_stack([heading[:, 1], -heading[:, 0]])
@@ -235,6 +235,6 @@ def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, oth
 
 def _hairlines(ax: Any, t: FloatArray, values: FloatArray, label: str) -> None:
     """Draw a faint line for each column, and one entry of the legend."""
-    width, alpha = hairline(2 * max(1, values.shape[1]))
+    width, alpha = line_width_and_opacity(2 * max(1, values.shape[1]))
     ax.plot(t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
     ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label=label)

@@ -21,7 +21,7 @@ from markupsafe import Markup
 
 from flockana._version import __version__
 from flockana.base.errors import FileError
-from flockana.base.files import ensure_path, replacing
+from flockana.base.files import atomic_write, ensure_path
 from flockana.player.page import script, style
 from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
@@ -33,6 +33,8 @@ from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, Sc
 from flockana.report.stability import LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
+from flockana.theorems.errata import FOREWORD, SORTS, errata, erratum_of
+from flockana.theorems.headline import BYLINES
 
 FOLDER, HTML, JSON = Path("report"), "index.html", "verdicts.json"
 UNFINISHED = "unfinished"  # folder within that of a complete report, for one that was broken off
@@ -114,7 +116,7 @@ def write_report(
     run = _run_facts(seed, seconds, complete) | {"of": of}
     texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison, flocks)}
     with ExitStack() as both:  # neither takes its place before both are whole
-        partials = {name: both.enter_context(replacing(folder / name, remedy=_REMEDY)) for name in texts}
+        partials = {name: both.enter_context(atomic_write(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
             partials[name].write_text(text, encoding="utf-8")
     return folder / HTML
@@ -171,8 +173,8 @@ def page_environment() -> Environment:
         return Markup(named(picture.source, picture.caption, next(numbers)))
 
     environment.filters |= {"show": show, "markup": markup, "deciding": deciding_claim, "figure": figure}
-    environment.filters |= {"source_name": source_name}
-    environment.globals |= {"scenario_id": scenario_id, "verdict_id": verdict_id}
+    environment.filters |= {"source_name": source_name, "erratum": erratum_of}
+    environment.globals |= {"scenario_id": scenario_id, "verdict_id": verdict_id, "bylines": BYLINES}
     return environment
 
 
@@ -196,6 +198,10 @@ def _html(
             statistics=statistics,
             comparison=comparison,
             stability=stability_section(pages, flocks),
+            errata=errata(),
+            sorts=SORTS,
+            foreword=FOREWORD,
+            checked=_checked(pages),
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_surprises(pages),
@@ -208,6 +214,16 @@ def _html(
             tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
         )
     )
+
+
+def _checked(pages: list[Page]) -> dict[str, str]:
+    """Where in the page each theorem is checked first."""
+    found: dict[str, str] = {}
+    for each in pages:
+        subject = each.name if isinstance(each, ScenarioPage) else "fixed"
+        for finding in each.findings:
+            found.setdefault(finding.verdict.theorem, verdict_id(subject, finding.verdict.theorem))
+    return found
 
 
 def _surprises(pages: list[Page]) -> list[tuple[str, str]]:

@@ -72,7 +72,7 @@ def _row(outcome: Outcome) -> Row:
 
 def _reason(verdict: Verdict) -> str:
     """Return why a verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
-    found = [claim for claim in verdict.claims if claim.status == verdict.status]
+    found = [claim for claim in verdict.main_claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
         return f"{', '.join(claim.name for claim in found)}: {found[0].detail}"
     missed = unmet(verdict.hypotheses)

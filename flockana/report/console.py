@@ -14,9 +14,11 @@ from rich.text import Text
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
-from flockana.report.tables import WholeTable, column, fact_table, headed_table
-from flockana.report.text import MARKS, deciding_claim, show
-from flockana.theorems import Verdict, theorem, theorems
+from flockana.report.tables import WholeTable, column, headed_table
+from flockana.report.text import MARKS, show
+from flockana.theorems import Verdict
+from flockana.theorems.errata import SORTS, errata, erratum_of
+from flockana.theorems.headline import BYLINES
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
@@ -36,32 +38,44 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
     """Return a table of verdicts grouped by run; names are never cut."""
     pages = list(pages)
     longest = max((len(f.verdict.theorem) for page in pages for f in page.findings), default=0) + 2
-    widths = {"theorem": longest, "status": 14, "rigour": 8, "decided by": None, "expected": 8}
+    widths = {"theorem": longest, "status": 14, "claims": 8, "rigour": 8, "expected": 8}
     if width < _NARROW:
-        del widths["rigour"], widths["decided by"]
+        del widths["claims"], widths["rigour"]
     columns = (column(heading, width=width, wraps=width is None) for heading, width in widths.items())
     table = headed_table(*columns, collapse_padding=True)
     for page in pages:
         if isinstance(page, ScenarioPage):
             table.add_row(Text(page.name, style="bold"))
         for finding in page.findings:
-            verdict, claim = finding.verdict, deciding_claim(finding.verdict)
+            verdict = finding.verdict
             indent = "  " if isinstance(page, ScenarioPage) else ""
             cells = {
                 "theorem": Text(indent + verdict.theorem),
                 "status": _status(verdict.status),
                 "rigour": Text(verdict.rigour),
-                "decided by": Text("" if claim is None else claim.name, style="bright_black"),
+                "claims": Text(_share(verdict), style="bright_black"),
                 "expected": _expectation(finding),
             }
             table.add_row(*(cells[heading] for heading in widths))
     return table
 
 
-def titles(pages: Iterable[Page]) -> Table:
-    """Return the titles of the theorems checked, by name."""
-    names = dict.fromkeys(finding.verdict.theorem for page in pages for finding in page.findings)
-    return fact_table((name, theorem(name).title) for name in names if name in theorems())
+def _share(verdict: Verdict) -> str:
+    """Return how many of the author's claims have the verdict's status."""
+    claims = verdict.main_claims
+    return f"{sum(claim.status == verdict.status for claim in claims)} of {len(claims)}" if claims else ""
+
+
+def errata_table(pages: Iterable[Page]) -> Table:
+    """Return what is printed and what is right of the errata checked, by sort."""
+    checked = {finding.verdict.theorem for page in pages for finding in page.findings}
+    table = headed_table(column("erratum"), column("printed, and right", wraps=True))
+    for sort, meaning in SORTS.items():
+        table.add_row(Text(sort, style="bold"), Text(meaning, style="bright_black"))
+        for item in (item for item in errata() if item.sort == sort and item.id in checked):
+            table.add_row(Text(f"  {item.id}"), f"{item.mark} {item.printer}: {item.printed}")
+            table.add_row("", f"{item.right_mark} right: {item.right}")
+    return table
 
 
 def statistics_table(section: StatisticsSection) -> Table:
@@ -79,14 +93,19 @@ def details(verdict: Verdict) -> Group:
     """Return the hypotheses and claims of a verdict, each with its finding in words."""
     on = f" on {verdict.subject}" if verdict.subject else ""
     title = Text.assemble((verdict.theorem, "bold"), on, ": ", _status(verdict.status))
+    pair = erratum_of(verdict.theorem)
+    lines = [*([] if pair is None else [str(pair)]), verdict.summary]
     columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
     table = WholeTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
-    for c in verdict.claims:
+    whose = verdict.author
+    for c in sorted(verdict.claims, key=lambda claim: (claim.by != verdict.author, claim.by)):
+        if c.by != whose:
+            table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
         table.add_row(Text(c.name), _status(c.status), Text(c.detail + margin))
-    return Group(title, Padding(table, (0, 0, 1, 2)))
+    return Group(title, *(Padding(Text(line), (0, 0, 0, 2)) for line in lines), Padding(table, (0, 0, 1, 2)))
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:

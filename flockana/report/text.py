@@ -87,8 +87,8 @@ def _inner(value: Any) -> str:
 
 
 def deciding_claim(verdict: Verdict) -> Claim | None:
-    """Return the first claim with the verdict's own status, or None."""
-    return next((claim for claim in verdict.claims if claim.status == verdict.status), None)
+    """Return the first of the author's claims with the verdict's own status, or None."""
+    return next((claim for claim in verdict.main_claims if claim.status == verdict.status), None)
 
 
 def parameters(law: Any) -> tuple[tuple[str, str], ...]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from flockana.base.errors import ArgumentError, FlockanaError, SolverError, UnknownNameError
-from flockana.base.interrupts import interrupts_recognised
-from flockana.ensemble.batches import work_through
-from flockana.ensemble.executors import crew
+from flockana.base.interrupts import restore_interrupts
+from flockana.ensemble.batches import map_in_batches
+from flockana.ensemble.executors import worker_pool
 from flockana.laws.discrete import DiscreteLaw
 from flockana.report.pages import FixedResult, Page, ScenarioResult, page
 from flockana.report.section import MANY_LAWS, Section
@@ -75,7 +75,7 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
 def check(task: Work) -> Done:
     """Run and verify one task in this process; an error names the task."""
     try:
-        with interrupts_recognised():
+        with restore_interrupts():
             if isinstance(task, Survey):
                 return make_survey(task)
             if isinstance(task, Section):
@@ -113,8 +113,8 @@ def check_all(
     if not tasks:
         return
     lost: list[str] = []
-    with crew(jobs=min(jobs, len(tasks))) as workers:
-        for done in work_through(_begun_apart(tasks), _check_batch, workers, watch=watch):
+    with worker_pool(jobs=min(jobs, len(tasks))) as workers:
+        for done in map_in_batches(_begun_apart(tasks), _check_batch, workers, watch=watch):
             yield from (result for _, result in done if result is not None)
             lost += [task.name for task, result in done if result is None]
     if lost:

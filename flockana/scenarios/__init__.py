@@ -1,5 +1,6 @@
-"""The catalogue of the sources' simulations: each file of this package that defines `SCENARIOS` is found by itself."""
+"""Catalogue of the sources' simulations; files that define `SCENARIOS` are found automatically."""
 
+from flockana.scenarios.flock import Flock
 from flockana.scenarios.scenario import Report, Scenario, scenario, scenarios
 
-__all__ = ["Report", "Scenario", "scenario", "scenarios"]
+__all__ = ["Flock", "Report", "Scenario", "scenario", "scenarios"]

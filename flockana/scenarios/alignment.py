@@ -1,4 +1,4 @@
-"""The Cucker-Smale law: flocks that velocity consensus alone makes, and two agents on both sides of a threshold."""
+"""Scenarios of the Cucker-Smale law: flocking by velocity consensus, and pairs at the critical speed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) ->
 
 
 def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
-    """Two agents on a line, 1 apart; π/4 is the critical relative speed."""
+    """Return two agents on a line, 1 apart; π/4 is the critical relative speed."""
 
     def build(seed: int = 0) -> Scenario:
         return Scenario(

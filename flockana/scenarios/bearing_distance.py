@@ -25,7 +25,7 @@ from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import zone_start
 from flockana.theorems.theorem import Status
@@ -45,7 +45,7 @@ GAP = ZoneWorld((_SLAB,), BOX)
 
 
 def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
-    """The values of a series from a time on; a NaN, judged as inconclusive, for a run that ended before."""
+    """Return the values of a series after a time; NaN for a run that ended before."""
     kept = values[run.t > since - 0.5 * run.law.dt]
     return kept if kept.size else np.array([np.nan])
 
@@ -169,12 +169,12 @@ _BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked)
 
 
 def apart(seed: int) -> tuple[FloatArray, FloatArray]:
-    """The printed start, but with all agents more than 2 m apart and the net within a connected."""
-    return drawn_later((N, 2), lambda: _drawn_apart(seed))
+    """Return the printed start, redrawn until all agents are over 2 m apart and the net within a is connected."""
+    return lazy_state((N, 2), lambda: _drawn_apart(seed))
 
 
 def _drawn_apart(seed: int, least: float = 2.0) -> tuple[FloatArray, FloatArray]:
-    """The printed start, drawn until all agents are more than `least` apart and the net within a is connected."""
+    """Return the printed start, redrawn until agents are over `least` apart and the net is connected."""
     rng = np.random.default_rng(seed)
     while True:
         q = rng.uniform(0.0, AREA, (1, 2))

@@ -1,4 +1,4 @@
-"""Links that a tension keeps: a chain that is thrown apart, and two pairs that nothing joins."""
+"""Scenarios of links kept by tension: a chain thrown apart, and two unlinked pairs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
 
 
 def _chain(seed: int = 0) -> Scenario:
-    """Six agents in a chain, the outer ones flung outwards."""
+    """Return six agents in a chain, the outer ones moving outwards."""
     q = np.array([[0.0, 0.0], [0.6, 0.1], [1.2, 0.0], [1.8, 0.1], [2.4, 0.0], [3.0, 0.1]])
     p = np.array([[-1.5, 0.4], [0.0, -0.6], [0.2, 0.5], [0.1, -0.5], [-0.3, 0.6], [1.5, -0.4]])
     return Scenario(

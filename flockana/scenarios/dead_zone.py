@@ -57,7 +57,7 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
 
 
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """All velocities agree in the limit: certain where a flock is held together, impossible where components part."""
+    """Claim that all velocities agree in the limit."""
     seen = Observed.alone(run)
     return velocities_match(seen, final_components(seen, _law(run)), [], name="consensus")
 
@@ -77,7 +77,7 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Distances are safe all the time: more than half of the distance below which agents repel."""
+    """Claim that distances stay above half of the distance below which agents repel."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
     ever = at if isinstance(run.law, DiscreteLaw) else run.closest_approach().lower
     seen = ever > 0.5 * d1 and not thinned(run)
@@ -88,7 +88,7 @@ def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The end is an α-lattice, within a quasi-lattice's tolerance: every nearest neighbour is at one distance."""
+    """Claim that the end is an α-lattice within a quasi-lattice's tolerance."""
     from scipy.spatial import KDTree
 
     if run.n == 1:
@@ -110,7 +110,7 @@ def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _rounding(run: Trajectory, length: float) -> float:
-    """Rounding error of the distance of two agents, as a share of a length."""
+    """Return the rounding error of the distance of two agents, as a share of a length."""
     return 8.0 * EPS * (float(np.abs(run.q).max()) / length + 1.0)
 
 

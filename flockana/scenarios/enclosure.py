@@ -1,4 +1,4 @@
-"""Verdicts of a scenario that are decided rigorously: from a tube, and the certified basin that it ends in."""
+"""Rigorous verdicts on a scenario, from a tube and the certified basin that it ends in."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flockana.theorems import Tolerances, Verdict, verify
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Settings for rigorous decisions about a run: a tube from its start over its time.
+    """Settings for rigorous verdicts on a run: a tube from its start over its time.
 
     Examples
     --------
@@ -29,8 +29,8 @@ class Enclosure:
     options: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments of `flockana.enclose`
 
     def verdict(self, name: str, run: Trajectory, *, tolerances: Tolerances | None, subject: str) -> Verdict:
-        """Check a theorem on all that starts where a run does."""
-        tube, basin = run.remembered("enclosed", lambda: self._enclosed(run))
+        """Return the verdict of a theorem on all starts of a run's enclosure."""
+        tube, basin = run.cached("enclosed", lambda: self._enclosed(run))
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:

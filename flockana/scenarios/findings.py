@@ -51,14 +51,14 @@ def finding(
     )
 
 
-def in_the_end(
+def limit_report(
     name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
 ) -> Claim:
     """Return a report on a limit: verified by a certificate, else open, never refuted.
 
     Examples
     --------
-    >>> in_the_end("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
+    >>> limit_report("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
     'inconclusive'
     """
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
@@ -79,19 +79,19 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
     return tuple(replace(report, check=converted(report.check)) for report in reports)
 
 
-def as_tightly(run: Trajectory) -> dict[str, Any]:
-    """Options of `simulate` for a run beside another one, to be integrated as tightly as that."""
+def same_accuracy(run: Trajectory) -> dict[str, Any]:
+    """Return options of `simulate` that integrate a second run as accurately as the first."""
     return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:
-    """Number of components of the net at sample k of a run."""
+    """Return the number of components of the net at sample k of a run."""
     pair = run.law.pair
     assert pair is not None
     return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
-    """Number of components of the net at each sample of a run, shape (T,)."""
+    """Return the number of components of the net at each sample of a run, shape (T,)."""
     counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
     return counts

@@ -1,4 +1,4 @@
-"""Explicit Euler with the paper's steps of 0.01 to 0.03, and the effect of the step."""
+"""Scenarios of explicit Euler with the paper's steps of 0.01 to 0.03."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _settles(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """K̃ at the end over that at the start, beside the flow's from the same start."""
+    """Claim that K̃ falls as much as that of the continuous flow from the same start."""
     start, end = (velocity_mismatch(run.p[k]) / run.n for k in (0, -1))
     law = run.law.continuous
     assert law is not None

@@ -1,4 +1,4 @@
-"""γ-agents with dynamics of their own: one leader, and peers that each follow a copy."""
+"""Scenarios of γ-agents with dynamics: one leader, and peers that each follow a copy."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The centre of mass against the mean of the copies: a critically damped pair of poles, whatever the flock does."""
+    """Claim that the centre of mass follows the mean of the copies as a critically damped system."""
     law = run.law
     places, speeds = (x.mean(axis=0) for x in law.copies.state(float(run.t[0])))
     away, slip = run.q[0].mean(axis=0) - places, run.p[0].mean(axis=0) - speeds
@@ -113,7 +113,7 @@ def _system(seed: int = 0) -> Scenario:
 
 
 def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenario]:
-    """Copies that agree about the place and, the two halves of the flock, not about the velocity."""
+    """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
     parted = coupling == 0.0
 
     def build(seed: int = 0) -> Scenario:

@@ -18,7 +18,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.laws.discrete import ensure_law
-from flockana.scenarios.start import is_later
+from flockana.scenarios.start import is_lazy
 from flockana.theorems import theorems
 from flockana.theorems.theorem import Status
 
@@ -27,13 +27,13 @@ _SAMPLES = 4  # of q, p and u in three dimensions: the least that a run takes
 
 
 def ensure_parts(parts: Mapping[str, Any]) -> None:
-    """Raise unless the fields of a scenario are a law, a start, a time span and statuses to expect; draw no start."""
+    """Raise unless a scenario's fields have the right kinds; no start is drawn."""
     if not isinstance(parts["name"], str) or not parts["name"]:
         raise ArgumentError(f"name = {parts['name']!r}: expected the scenario's name in the catalogue")
     ensure_law(parts["law"])
     ensure_time_span(parts["t_span"])
     ensure_seed(parts["seed"])
-    shapes = {key: v.shape if is_later(v := parts[key]) else ensure_points(key, v).shape for key in ("q0", "p0")}
+    shapes = {key: v.shape if is_lazy(v := parts[key]) else ensure_points(key, v).shape for key in ("q0", "p0")}
     if shapes["q0"] != shapes["p0"]:
         raise ArgumentError(
             f"q0 has shape {shapes['q0']} but p0 has shape {shapes['p0']}: expected equal shapes (n, m)"

@@ -1,4 +1,4 @@
-"""Jadbabaie, Lin and Morse's agents: two groups that meet and agree, and two that part and never do."""
+"""Scenarios of Jadbabaie, Lin and Morse: two groups that meet and agree, and two that part."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.scenarios.findings import finding, in_the_end
+from flockana.scenarios.findings import finding, limit_report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.classics.averaging import permanently_connected, permanently_separated
@@ -21,14 +21,14 @@ _SHAKEN = 0.05  # of r and of a radian: what chance adds to each coordinate and 
 
 
 def _group(centre: float, heading: float, generator: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """Two by three agents, _SIZE r apart, near one heading; r = 1."""
+    """Return two by three agents, _SIZE r apart, near one heading; r = 1."""
     grid = _SIZE * np.array([[x, y] for x in (-0.5, 0.5) for y in (-1.0, 0.0, 1.0)]) + (centre, 0.0)
     shaken = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
     return grid + shaken[:, :2], heading + shaken[:, 2]
 
 
 def _two_groups(heading: float, seed: int) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
-    """A group on the left that heads so, and one on the right that heads to the mirror image."""
+    """Return a group on the left with a heading, and one on the right with the mirrored heading."""
     generator, law = np.random.default_rng(seed), HeadingAveraging(range=1.0, speed=0.05, dt=1.0)
     left, right = _group(-1.5, heading, generator), _group(1.5, np.pi - heading, generator)
     return law, np.vstack([left[0], right[0]]), law.velocities(np.concatenate([left[1], right[1]]))
@@ -47,13 +47,13 @@ def _apart_at_first(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     end = float(np.ptp(run.extra["heading"][-1]))
     text = f"headings differ by {end:.2g} at the end"
-    return in_the_end("one-flock", permanently_connected(*_last(run)), text, computed=end, stated="one heading")
+    return limit_report("one-flock", permanently_connected(*_last(run)), text, computed=end, stated="one heading")
 
 
 def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     heading = run.extra["heading"][-1]
     text = f"headings differ by {np.ptp(heading):.3g} radians at the end"
-    return in_the_end("two-flocks", permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
+    return limit_report("two-flocks", permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
 
 
 def _build(

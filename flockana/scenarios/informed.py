@@ -1,4 +1,4 @@
-"""Su, Wang and Lin (2009): few informed agents, and a virtual leader of varying velocity. Numbers are ours."""
+"""Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArr
 
 
 def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the four agents out of everybody's reach keep their mean velocity."""
+    """Report that the four isolated agents keep their mean velocity."""
     mean = run.p[:, -4:].mean(axis=1)
     change = float(np.abs(mean[-1] - mean[0]).max()) / run.scales.speed
     text = f"the mean velocity of the four agents out of reach changes by {change:.2g} of the law's speed"
@@ -81,7 +81,7 @@ def _few(seed: int = 0) -> Scenario:
 
 
 def _through(seed: int = 0) -> Scenario:
-    """Erratum E13 with one informed agent, seen from a leader that moves as the centre of mass does at the start."""
+    """Return erratum E13 with one informed agent, in the frame of a leader that moves with the flock."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
     gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
@@ -118,9 +118,9 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("lag", 1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
 
 
-def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
+def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Scenario]:
     expected: dict[str, Status] = {"energy": "verified", "cohesion": "verified"}
-    if told:
+    if feedforward:
         expected |= dict.fromkeys(("su-varying", "su-varying:centre", "su-varying:velocities"), "verified")
         expected |= {"su-varying:distance": "verified", "collision-energy:below": "verified"}
     else:
@@ -129,19 +129,27 @@ def _varying(name: str, title: str, *, told: bool) -> Callable[[int], Scenario]:
     def build(seed: int = 0) -> Scenario:
         q, p = _near_lattice(seed, 12, 0.2)
         plain = Algorithm2(target=_CIRCLE)
-        law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, told=True) if told else plain
+        law = (
+            compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, feedforward=True)
+            if feedforward
+            else plain
+        )
         return Scenario(
             name,
             title,
             "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
-            + ("radius 20 and are told its acceleration." if told else "radius 20; its acceleration is not told."),
+            + (
+                "radius 20 and are told its acceleration."
+                if feedforward
+                else "radius 20; its acceleration is not told."
+            ),
             law,
             q,
             p,
             (0.0, 40.0),
             seed,
             expected,
-            () if told else (Report("lag", "the centre of mass does not come to the leader", _lag),),
+            () if feedforward else (Report("lag", "the centre of mass does not come to the leader", _lag),),
             references=_REFERENCES,
         )
 
@@ -166,7 +174,7 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
-    """n agents strewn over a square, of which some, the first, feel a leader of constant velocity.
+    """Return n agents in a square, of which the first few follow a leader of constant velocity.
 
     Examples
     --------
@@ -206,9 +214,9 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "leader-told": _varying(
         "leader-told",
         "A leader that circles, and tells its acceleration: the centre of mass converges to it",
-        told=True,
+        feedforward=True,
     ),
     "leader-untold": _varying(
-        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", told=False
+        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", feedforward=False
     ),
 }

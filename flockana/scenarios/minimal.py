@@ -1,4 +1,4 @@
-"""Minimal model of the bearing-distance paper: its two runs of 60 agents, and frozen trees for Theorem 1.
+"""Scenarios of the minimal bearing-distance model: two runs of 60 agents, and trees of Theorem 1.
 
 As printed the spacing an agent wants, as many metres as it sees agents, jumps whenever one comes or goes, and few
 agree about it. The recommended settings have one spacing, equal for all, and velocity differences that are summed, not

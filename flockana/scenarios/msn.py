@@ -1,4 +1,4 @@
-"""The four cases of the MSN project: as the continuous systems it meant, and as the maps it ran.
+"""Scenarios of the MSN project's four cases, as the continuous systems meant and as the maps run.
 
 Its γ-agent moves by iteration i at t = 0.009 i, and the p_r that it hands over is per iteration: 0.009 of the true
 rate (erratum E12). What the project reports (`msn_reports`) is judged on one random start.

@@ -17,7 +17,7 @@ from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.measures.metrics import coincident_pairs, connectivity, giant_share
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.scenarios.findings import as_tightly, component_count, finding
+from flockana.scenarios.findings import component_count, finding, same_accuracy
 from flockana.scenarios.scenario import Report
 from flockana.theorems import Claim, Tolerances
 
@@ -40,7 +40,7 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _about(name: str, measured: float, stated: float, scatter: float, text: str) -> Claim:
-    """Agreement with a figure read to one decimal from a run with another random start."""
+    """Return a report of agreement with a published figure from a run with another random start."""
     margin = 0.05 + scatter - abs(measured - stated)
     return finding(name, margin, text, computed=measured, stated=f"about {stated:g}")
 
@@ -62,7 +62,7 @@ def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     was = run.law
     printed = isinstance(was, MSNDiscretisation)
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
-    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **as_tightly(run)))
+    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **same_accuracy(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
     return _about("unit-gains", rank, 0.7, _SCATTER[1.0], text)
 
@@ -78,7 +78,7 @@ def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _last_apart(run: Trajectory) -> float:
-    """Iteration of the last sample at which the net is not connected; -1 if it always is."""
+    """Return the iteration of the last sample with a disconnected net; -1 if there is none."""
     apart = run.t[run.metric("connectivity") < 1.0]
     return float(apart[-1]) / DT if apart.size else -1.0
 
@@ -125,7 +125,7 @@ def _smaller(name: str) -> Callable[[Trajectory, Tolerances], Claim]:
 
 
 def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Outliers in speed after iteration 50, when the net has long been connected."""
+    """Report outliers in speed after iteration 50, when the net has long been connected."""
     late = run.window(50 * DT, float(run.t[-1]))
     own = lengths(late.p).max(axis=1)
     flock = float(np.linalg.norm(late.p.mean(axis=1), axis=1).mean())
@@ -148,7 +148,7 @@ def _anticlockwise(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The project's own measure at every sample."""
+    """Report that the project's connectivity is 1 at every sample."""
     ranks = [_rank(run, k) for k in range(len(run.t))]
     below = sum(rank < _FULL for rank in ranks)
     text = f"rank(A)/n with a zero diagonal is {min(ranks):.3g} or more at all {len(ranks)} samples"
@@ -185,7 +185,7 @@ def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
 
 
 def _works(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Algorithm 2 works: at the least no two agents end in one place."""
+    """Report that Algorithm 2 works, at least that no two agents coincide at the end."""
     pairs = coincident_pairs(run.q[-1], tolerances.contact * run.law.alpha.d)
     text = f"c1α : c1γ = 100 : 70, and {pairs} pairs of agents coincide at t = {run.t[-1]:g} (erratum E16)"
     return finding("alpha-exceeds-gamma", 0.5 - pairs, text, computed=pairs, stated="no pair of agents coincides")

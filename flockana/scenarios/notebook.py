@@ -1,4 +1,4 @@
-"""Runs of the R² notebook, with its tenfold push below 0.05 as an option."""
+"""Scenarios of the R² notebook, with its tenfold push below 0.05 as an option."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
-from flockana.scenarios.findings import ROUNDING, as_tightly, component_count, finding, in_source_units, in_the_end
+from flockana.scenarios.findings import ROUNDING, component_count, finding, in_source_units, limit_report, same_accuracy
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
@@ -47,7 +47,7 @@ def _other(run: Trajectory) -> Trajectory:
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
-    how = _integrator(other) or as_tightly(run)
+    how = _integrator(other) or same_accuracy(run)
     return simulate(other, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **how)
 
 
@@ -82,7 +82,7 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     middle = float(np.median(pull))
     certificate = Certificate(max(-1.0, 1.0 - middle / _FOLLOWS), "that is what counts as following")
     detail = f"‖u_γ‖ at the end is {middle:.2g} in the median and {pull.max():.2g} at most"
-    return in_the_end("follows", certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
+    return limit_report("follows", certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
 
 
 def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:

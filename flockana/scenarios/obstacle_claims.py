@@ -12,7 +12,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
-from flockana.scenarios.findings import ROUNDING, component_counts, finding, in_the_end
+from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 
@@ -34,7 +34,7 @@ def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The net is connected at first, and in several components later."""
+    """Claim that the net is connected at first, and disconnected later."""
     counts = component_counts(run)
     whole = np.flatnonzero(counts == 1)
     if whole.size == 0:
@@ -55,7 +55,7 @@ def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     if counts[-1] == 1 and apart.size:
         detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
     certificate = Certificate(-1.0, "the net at one instant of a motion that forgets its start is no limit")
-    return in_the_end("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
+    return limit_report("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
 
 
 def _passed_between(run: Trajectory) -> int:
@@ -70,7 +70,7 @@ def _passed_between(run: Trajectory) -> int:
 
 
 def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """All agents are beyond both spheres of the gap at the end."""
+    """Claim that all agents are beyond both spheres of the gap at the end."""
     x = run.q[-1, :, 0]
     detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
     margin = float(np.clip(x.min() - 175.0, -25.0, 25.0))  # a sphere's radius is enough: how far agents get varies
@@ -78,7 +78,7 @@ def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """More than half of the agents go through the gap between the two spheres."""
+    """Claim that more than half of the agents pass the gap between the two spheres."""
     through = _passed_between(run)
     detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
     margin = float(np.clip(through - 0.5 * run.n, -0.1 * run.n, 0.1 * run.n))  # a tenth is enough: the number varies
@@ -86,7 +86,7 @@ def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
-    """Which agents have an obstacle on the straight way to the γ-agent, shape (n,).
+    """Return which agents have an obstacle on the straight path to the γ-agent, shape (n,).
 
     Examples
     --------
@@ -103,7 +103,7 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
 
 
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Held back: behind an obstacle at the end, and slower than what counts as a standstill for the last tenth."""
+    """Claim that agents stand still behind an obstacle at the end."""
     held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
     last = run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0])
     limit = tolerances.agreement * run.law.gains.c1_gamma * run.law.alpha.unit / run.law.gains.c2_gamma
@@ -114,7 +114,7 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
     )
     certificate = Certificate(1.0 if count else -1.0, "that is a count" if count else "none does, as yet")
-    return in_the_end("trapped", certificate, detail, computed=count, stated="more than 0")
+    return limit_report("trapped", certificate, detail, computed=count, stated="more than 0")
 
 
 def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -136,7 +136,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     none = Certificate(-1.0, "without damping by the γ-agent it may never")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
     certificate = damped if law.gains.c2_gamma > 0.0 else none
-    return in_the_end("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
+    return limit_report("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
@@ -152,14 +152,14 @@ def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
 
 
 def touches(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Some agent rests within the range of an obstacle, at d' from it."""
+    """Claim that an agent rests within the range of an obstacle, at distance d'."""
     end, _, detail = _measured(run)
     return finding("in-touch", end.beta_links - 0.5, detail, computed=end.beta_links, stated="β-neighbours")
 
 
 def constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """The end is a quasi constrained α-lattice."""
+    """Claim that the end is a quasi constrained α-lattice."""
     _, strain, detail = _measured(run)
     margin = (tolerances.quasi - strain) / tolerances.quasi
     certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")
-    return in_the_end("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")
+    return limit_report("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")

@@ -1,4 +1,4 @@
-"""Figures 9 and 14 to 17 of Olfati-Saber (2006): flocks among obstacles, and runs of our own for Theorem 6."""
+"""Scenarios of Olfati-Saber (2006), Figures 9 and 14 to 17, and more runs for Theorem 6."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from flockana.scenarios.obstacle_claims import (
     traps,
 )
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems.theorem import Status
 
 # The pull on an agent saturates at c1γ, so that it nears the γ-agent at c1γ/c2γ at most. With Algorithm 2's 1.1 and
@@ -114,7 +114,7 @@ def _entry(
 
     def build(seed: int = 0) -> Scenario:
         room = BetaInteraction().d
-        start = drawn_later((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
+        start = lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
         text = f"{source} {_OURS}"
         options = _large(end) if n > 100 else {}
         in_units = in_source_units(lambda: law.scales, (_CLEAR, *reports))

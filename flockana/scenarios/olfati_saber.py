@@ -1,4 +1,4 @@
-"""Figures 10 to 13 of Olfati-Saber (2006), and three runs of our own on the same parameters."""
+"""Scenarios of Olfati-Saber (2006), Figures 10 to 13, and three more with the same parameters."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_share
 from flockana.measures.nets import components, link_lengths, links
-from flockana.scenarios.findings import ROUNDING, component_count, finding, in_the_end
+from flockana.scenarios.findings import ROUNDING, component_count, finding, limit_report
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import later
+from flockana.scenarios.start import lazy_array
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 from flockana.theorems.olfati_saber.attraction import attraction
@@ -67,7 +67,7 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
     series, basin = run.metric("normalised_velocity_mismatch"), attraction(run.law, run.q[-1], run.p[-1])
     detail = f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}"
-    return in_the_end("matched", basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
+    return limit_report("matched", basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
 
 
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -134,7 +134,7 @@ def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
     certificate = Certificate(1.0, exact) if uniform and damped else Certificate(-1.0, "the γ-agent accelerates")
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
     stated = "both -> 0"
-    return in_the_end("meets", certificate, detail, computed=float(away[-1]), stated=stated)
+    return limit_report("meets", certificate, detail, computed=float(away[-1]), stated=stated)
 
 
 def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -151,7 +151,7 @@ _MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_
 
 
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
-    """The paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
+    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
 
     Examples
     --------
@@ -242,6 +242,8 @@ def _collapse(seed: int = 0) -> Scenario:
             "alpha-flocking-strict:flock": "verified",
             "os-5-terminal:i": "vacuous",
             "E11": "refuted",
+            "E11:printed": "refuted",
+            "E11:minimum": "verified",
             "source": "verified",
         },
         (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
@@ -282,10 +284,10 @@ def _hexagon(seed: int = 0) -> Scenario:
 
 
 def _three_agents(seed: int = 0) -> Scenario:
-    """Erratum E13: energy for one coincident pair at a time, and two pairs that coincide, one after the other."""
+    """Return erratum E13: enough energy for one coincident pair, and two that coincide in turn."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
-    p0 = later((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
+    p0 = lazy_array((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
     return Scenario(
         "three-agents-1d",
         "Three agents on a line: one agent runs through both others",
@@ -307,6 +309,8 @@ def _three_agents(seed: int = 0) -> Scenario:
             "os-3:iv-none": "vacuous",
             "os-5-terminal:i": "vacuous",
             "E13": "refuted",
+            "E13:printed": "refuted",
+            "E13:corrected": "verified",
         },
         references=("olfati-saber-2006", "flockana"),
     )

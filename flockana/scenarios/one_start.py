@@ -1,4 +1,4 @@
-"""One start under many laws: the theorem on each law, and the outcome.
+"""One common start under many laws, with the theorem on each law and the outcome.
 
 A further law is one more `Entry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
 its runs, and what that promises in a few words.
@@ -72,7 +72,7 @@ class Outcome:
 
     @property
     def groups(self) -> int:
-        """Components of the net within the common range at the end."""
+        """Number of components of the net within the common range at the end."""
         return int(components(self.run.n, links(self.run.q[-1], RANGE)).max()) + 1
 
     @property
@@ -82,7 +82,7 @@ class Outcome:
 
 
 def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
-    """Ten agents near a patch of a lattice, at one speed, with headings about one direction: (q0, p0).
+    """Return (q0, p0) of ten agents near a lattice patch, at one speed, with similar headings.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def _follower(q: FloatArray, p: FloatArray) -> LinearTarget:
 
 
 def _net(q: FloatArray) -> tuple[tuple[int, int], ...]:
-    """The links within the common range at the start."""
+    """Return the links within the common range at the start."""
     return tuple((i, j) for i, j in links(q, RANGE).tolist())
 
 

@@ -1,4 +1,4 @@
-"""Starts whose verdicts no rounding can touch: a flock that provably forms, and two agents that provably collide."""
+"""Scenarios with rigorous verdicts: a flock that provably forms, and a proved collision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scenario is: a law, a start, a time span, where it was published, and what is expected of it."""
+"""Scenarios: a law, a start, a time span, a source, and expected statuses."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
-from flockana.scenarios.start import given_later
+from flockana.scenarios.start import accepts_lazy
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_doubt
 from flockana.theorems.theorem import Status
@@ -24,21 +24,21 @@ from flockana.theorems.theorem import Status
 
 @dataclass(frozen=True)
 class Report:
-    """Something that the source reports of its run, and the function that judges whether it is so."""
+    """Statement that a source makes about its run, with a function that judges it."""
 
     name: str  # short name
     text: str  # what the source reports, in our words
     check: Callable[[Trajectory, Tolerances], Claim]  # ``check(trajectory, tolerances) -> Claim``
 
     def judge(self, seen: Observed, tolerances: Tolerances) -> Claim:
-        """Return the claim on a run, its margin enclosed by the difference between the run and its second one."""
+        """Return the claim on a run, with an error from the difference to a second run."""
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
-@given_later("q0", "p0")
+@accepts_lazy("q0", "p0")
 @dataclass(frozen=True)
 class Scenario:
-    """One published simulation, ready to run.
+    """Published simulation, ready to run.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Scenario:
     source : str
         Where it was published, and what is ours.
     q0, p0 : ndarray, shape (n, m)
-        Start; what takes long to draw may be given as `flockana.scenarios.start.later`.
+        Start; what takes long to draw may be given as `flockana.scenarios.start.lazy_array`.
     expected : mapping of str to str
         Expected status by theorem id, and by ``"id:claim"`` where one claim matters.
     reports : tuple of Report
@@ -101,18 +101,18 @@ class Scenario:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, m), known before the start is."""
+        """Shape (n, m), known before the start is drawn."""
         n, m = vars(self)["q0"].shape
         return n, m
 
     @property
     def theorems(self) -> tuple[str, ...]:
-        """Ids of the theorems that are checked on it."""
+        """Ids of the theorems that are checked on the scenario."""
         named = (key.split(":")[0] for key in {**self.expected, **self.shipped})
         return tuple(name for name in dict.fromkeys(named) if name != SOURCE)
 
     def run(self, *, progress: bool = False) -> Trajectory:
-        """Simulate it.
+        """Simulate the scenario.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Scenario:
         return simulate(self.law, self.q0, self.p0, self.t_span, progress=progress, **self.options)
 
     def verify(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Check every theorem that applies, and what the source reports, on a run of this scenario.
+        """Return verdicts of every applicable theorem, and of the source's reports, on a run of this scenario.
 
         Parameters
         ----------
@@ -139,12 +139,10 @@ class Scenario:
         return verdicts + self.reported(trajectory, tolerances=tolerances)
 
     def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
-        """Check one theorem on a run of this scenario, rigorously if it is one of those `enclosed`.
+        """Return one theorem's verdict on a run of this scenario, rigorous if it is one of those `enclosed`.
 
         Parameters
         ----------
-        name : str
-            Its id.
         trajectory : Trajectory
             What `run` returned, or a saved copy of it.
         """
@@ -153,7 +151,7 @@ class Scenario:
         return verify(name, trajectory, tolerances=tolerances, subject=self.name)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Check what the source reports, as one verdict; none if it reports nothing.
+        """Return the source's reports as one verdict; None if it reports nothing.
 
         Parameters
         ----------
@@ -168,7 +166,7 @@ class Scenario:
         return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
-        """The same in other units (`flockana.rescale`); reports ask in their source's own units.
+        """Return the scenario in other units (`flockana.rescale`); reports keep their source's units.
 
         Parameters
         ----------
@@ -189,7 +187,7 @@ class Scenario:
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:
-        """What in a verdict differs from the expected, one line each; empty if nothing does.
+        """Return how a verdict differs from the expected one, one line each.
 
         Parameters
         ----------
@@ -216,7 +214,7 @@ def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, 
 
 @cache
 def catalogue() -> dict[str, Callable[..., Scenario]]:
-    """How to build each scenario, by its name: the `SCENARIOS` of every module of this package."""
+    """Return the builder of each scenario by name, from the `SCENARIOS` of every module of this package."""
     builders: dict[str, Callable[..., Scenario]] = {}
     for module in modules("flockana.scenarios"):
         builders |= getattr(module, "SCENARIOS", {})
@@ -224,7 +222,7 @@ def catalogue() -> dict[str, Callable[..., Scenario]]:
 
 
 def scenarios() -> tuple[str, ...]:
-    """Names of the catalogue.
+    """Return the names of the catalogue.
 
     Examples
     --------
@@ -235,12 +233,10 @@ def scenarios() -> tuple[str, ...]:
 
 
 def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
-    """Build a scenario of the catalogue.
+    """Return a scenario of the catalogue.
 
     Parameters
     ----------
-    name : str
-        One of `scenarios`.
     seed : int
         Seed of its random start, >= 0.
     **options

@@ -1,4 +1,4 @@
-"""Small starts that keep a claim, or just break it: where a search for counterexamples begins."""
+"""Small scenarios at the edge of a claim, from which a search for counterexamples begins."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.scenarios.scenario import Scenario
-from flockana.scenarios.start import later
+from flockana.scenarios.start import lazy_array
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Status
 
@@ -39,7 +39,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
             "Algorithm 1 with the default gains. The start is fixed.",
             law,
             q,
-            later((2, 1), velocities),
+            lazy_array((2, 1), velocities),
             (0.0, 3.0),
             seed,
             {"energy": "verified", **expected},
@@ -50,7 +50,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 
 
 def _five_agents(seed: int = 0) -> Scenario:
-    """Erratum E3: next to the basin of the smallest strained minimum that we know."""
+    """Return erratum E3: a start next to the basin of the smallest known strained minimum."""
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
     q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)

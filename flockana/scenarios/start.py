@@ -13,35 +13,35 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class _Later:
-    """An array of a known shape, and how to compute it."""
+class _LazyArray:
+    """Array of known shape with a function that computes it."""
 
     shape: tuple[int, int]
     compute: Callable[[], FloatArray]
 
 
-def later(shape: tuple[int, int], compute: Callable[[], FloatArray]) -> FloatArray:
+def lazy_array(shape: tuple[int, int], compute: Callable[[], FloatArray]) -> FloatArray:
     """Return positions or velocities for a `Scenario` that are computed on first access."""
-    return cast("FloatArray", _Later(shape, compute))  # an array to whoever asks the scenario
+    return cast("FloatArray", _LazyArray(shape, compute))  # an array to whoever asks the scenario
 
 
-def drawn_later(
+def lazy_state(
     shape: tuple[int, int], draw: Callable[[], tuple[FloatArray, FloatArray]]
 ) -> tuple[FloatArray, FloatArray]:
     """Return positions and velocities for a `Scenario` that are drawn together on first access."""
     drawn = cache(draw)
-    return later(shape, lambda: drawn()[0]), later(shape, lambda: drawn()[1])
+    return lazy_array(shape, lambda: drawn()[0]), lazy_array(shape, lambda: drawn()[1])
 
 
-def is_later(start: Any) -> bool:
+def is_lazy(start: Any) -> bool:
     """Return whether positions or velocities are lazy.
 
     Examples
     --------
-    >>> is_later(later((2, 1), lambda: None))
+    >>> is_lazy(lazy_array((2, 1), lambda: None))
     True
     """
-    return isinstance(start, _Later)
+    return isinstance(start, _LazyArray)
 
 
 class _Field:
@@ -54,7 +54,7 @@ class _Field:
         if item is None:
             return self
         value = vars(item)[self.name]
-        if isinstance(value, _Later):
+        if isinstance(value, _LazyArray):
             value = vars(item)[self.name] = value.compute()
         return value
 
@@ -62,17 +62,17 @@ class _Field:
         vars(item)[self.name] = value
 
 
-def given_later(*names: str) -> Callable[[type[T]], type[T]]:
-    """Let fields of a dataclass be given by `later`.
+def accepts_lazy(*names: str) -> Callable[[type[T]], type[T]]:
+    """Decorate a dataclass so that fields may be given by `lazy_array`.
 
     Examples
     --------
     >>> import numpy as np
-    >>> @given_later("q")
+    >>> @accepts_lazy("q")
     ... @dataclass(frozen=True)
     ... class Flock:
     ...     q: FloatArray
-    >>> flock = Flock(later((2, 1), lambda: np.array([[0.0], [7.0]])))
+    >>> flock = Flock(lazy_array((2, 1), lambda: np.array([[0.0], [7.0]])))
     >>> flock.q.ravel().tolist(), flock.q is flock.q
     ([0.0, 7.0], True)
     """

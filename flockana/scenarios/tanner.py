@@ -1,4 +1,4 @@
-"""The laws of Tanner, Jadbabaie and Pappas: a fixed wheel, a net of proximity that stays whole, and one that parts."""
+"""Scenarios of Tanner, Jadbabaie and Pappas: a fixed wheel, and proximity nets that hold or part."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ from flockana.scenarios.bearing_distance import (
 )
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
-from flockana.scenarios.start import drawn_later
+from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.random_starts import crowd_start, zone_start
 from flockana.theorems.theorem import Status
@@ -123,7 +123,7 @@ _NOISY = (
 
 
 def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
-    """Five agents on the left and five on the right of the box, that run apart."""
+    """Return five agents on the left and five on the right of the box, moving apart."""
     rng = np.random.default_rng(seed)
     side = np.repeat([-1.0, 1.0], N // 2)
     x = 25.0 + side * rng.uniform(5.0, 13.0, N)
@@ -132,7 +132,7 @@ def _two_fragments(seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _head_on() -> tuple[FloatArray, FloatArray]:
-    """Three agents that run at the origin, and far off two pairs that run at each other."""
+    """Return three agents heading for the origin, and far away two pairs heading for each other."""
     directions = np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     pairs = [(x, y) for y in _LANES for x in (-10.0, 10.0)]
     ways = [(way * _SPEED, 0.0) for _ in _LANES for way in (1.0, -1.0)]
@@ -260,7 +260,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
         "the abstract calls the flocking scalable. Settings of zone-51; n agents, 500 if not given, as dense as the "
         "ten of section 5.1 and more than 2 m apart, velocities in (0, 1) (J18).",
         ZoneFlocking(FREE),
-        drawn_later((size, 2), lambda: crowd_start(seed, size)),
+        lazy_state((size, 2), lambda: crowd_start(seed, size)),
         20.0,
         seed,
         (*OPEN[1:], DISTANCES, _TOGETHER),

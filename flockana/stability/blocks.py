@@ -107,11 +107,23 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral))
 
 
-def ensure_pairs_and_pull(law: Any) -> None:
-    """Raise unless a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do."""
+def is_pairs_and_pull(law: Any) -> bool:
+    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> is_pairs_and_pull(Algorithm1())
+    True
+    """
     terms = getattr(law, "terms", ())
-    linear = all(isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
-    if not (terms and linear):
+    linear = (isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
+    return bool(terms) and all(linear)
+
+
+def ensure_pairs_and_pull(law: Any) -> None:
+    """Raise unless a law is one of pairs and a linear pull."""
+    if not is_pairs_and_pull(law):
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
 
 

@@ -4,22 +4,24 @@ s = jω is a root for the delay τ where z = e^jωτ makes z A + B singular, A =
 z = (μ + j)/(μ − j), so that μ = cot(ωτ/2) is real on the unit circle, that is an eigenvalue problem in which nothing is
 infinite where the flock without delay has no root: μ is an eigenvalue of W = −j (A + B)⁻¹(A − B).
 
-Where all four matrices commute each mode has two crossings at most, in closed form. Else frequencies are excluded a
-whole interval at a time: about ω the matrix (A + B)(μ − W), in the eigenvectors of W at ω, is diagonally dominant for
-every real μ as long as the interval is short against the eigenvalues' distances from the real axis. So no band is
-narrow enough to be missed.
+Where all four matrices commute, or can be made triangular together, each mode has a crossing polynomial: in closed form
+with at most two crossings if they are symmetric. Else frequencies are excluded a whole interval at a time: about ω the
+matrix (A + B)(μ − W), in the eigenvectors of W at ω, is diagonally dominant for every real μ as long as the interval is
+short against the eigenvalues' distances from the real axis. So no band is narrow enough to be missed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, pi, sqrt, tan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.equilibria.curvature import EPS
+from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
 Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -28,6 +30,8 @@ CLOSE = 1e-6  # relative: the certified lower bound of a margin lies that close 
 MOST = 3000  # spectra: a search that needs more certifies nothing
 _ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes are taken
 _STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative
+_LOW = 1e-6  # of the largest frequency of a crossing polynomial's coefficients: what is below is a neutral motion
+_DOUBLE = 1e-6  # relative: imaginary parts of roots of a crossing polynomial that touch the axis to rounding
 _POWERS = 20  # of a matrix, for its Perron vector
 _WIDE = 2.0  # ratio of the ends of an interval that is looked at as a whole
 _SAFE = 0.99  # of an interval that exact arithmetic would exclude
@@ -42,9 +46,10 @@ class Crossing(NamedTuple):
 
 
 def modal_crossing(four: Four, neutral: float) -> Crossing | None:
-    """The least crossing of K₀, D₀, K₁, D₁ that are symmetric and commute, mode by mode; None of others.
+    """The least crossing of K₀, D₀, K₁, D₁ with common modes, mode by mode; None of others.
 
-    |k₀ − ω² + jωd₀| = |k₁ + jωd₁| is a quadratic equation in ω². Stiffness up to `neutral` is 0.
+    |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
+    Stiffness up to `neutral` is 0.
 
     Examples
     --------
@@ -53,10 +58,16 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     >>> one, zero = np.ones((1, 1)), np.zeros((1, 1))
     >>> modal_crossing((zero, zero, zero, one), 0.0)
     Crossing(delay=1.5707963267948966, frequency=1.0, least=1.5707963267948966)
+
+    A balanced directed cycle of three, p' = −L p(t − τ), has λ = (3 ± j√3)/2 and (π/2 − π/6)/√3:
+
+    >>> cycle = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
+    >>> round(modal_crossing((0 * cycle, 0 * cycle, 0 * cycle, cycle), 0.0).delay, 4)
+    0.6046
     """
     values = _common_modes(four)
     if values is None:
-        return None
+        return _triangular_crossing(four)
     best = Crossing(inf, float("nan"), inf)
     for k0, d0, k1, d1 in values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
@@ -67,6 +78,54 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
             if delay < best.delay:
                 best = Crossing(delay, omega, delay)
     return best
+
+
+def _triangular_crossing(four: Four) -> Crossing | None:
+    """The least crossing of matrices that a unitary matrix makes triangular together, as those that commute."""
+    values = _common_diagonals(four)
+    if values is None:
+        return None
+    best = Crossing(inf, float("nan"), inf)
+    for k0, d0, k1, d1 in values.T.tolist():
+        prompt, late = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
+        if not late.any():
+            continue
+        size = max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1)))
+        for omega in _moduli_meet(prompt, late, size):
+            powers = omega ** np.arange(3.0)
+            delay = phase(-complex(late @ powers) * complex(prompt @ powers).conjugate()) / omega
+            if delay < best.delay:
+                best = Crossing(delay, omega, (1.0 - CLOSE) * delay)
+    return best
+
+
+def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
+    """ω > 0 with |a(ω)| = |b(ω)|, polynomials by rising powers; those far below `size` are left out."""
+    balance = np.poly1d((np.convolve(a, a.conj()).real - np.convolve(b, b.conj()).real)[::-1])
+    slope, roots, found = balance.deriv(), balance.roots, []
+    for omega in roots.real[(np.abs(roots.imag) <= _DOUBLE * np.abs(roots)) & (roots.real > _LOW * size)].tolist():
+        better = omega - float(balance(omega)) / (float(slope(omega)) or inf)
+        found.append(better if abs(better - omega) <= _DOUBLE * omega else omega)
+    return found
+
+
+def _common_diagonals(four: Four) -> ComplexArray | None:
+    """Diagonals of four matrices made triangular together, shape (4, N); None if they cannot be, or rounding blurs."""
+    from scipy.linalg import schur
+
+    sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
+    used = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
+    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used)), np.zeros_like(four[0]))
+    if eigen(mixed)[2].max(initial=0.0) > CLOSE:
+        return None
+    turn: Any = schur(mixed, output="complex")[1]
+    values = np.zeros((4, len(mixed)), np.complex128)
+    for k, (x, size) in enumerate(zip(four, sizes, strict=True)):
+        there = turn.conj().T @ x @ turn
+        if np.abs(np.tril(there, -1)).max(initial=0.0) > rounding * size:
+            return None
+        values[k] = np.where(np.abs(np.diag(there)) > rounding * size, np.diag(there), 0.0)
+    return values
 
 
 def _common_modes(four: Four) -> FloatArray | None:
@@ -164,10 +223,13 @@ def _free(at: _Spectrum, angle: float) -> float:
     return _SAFE * 2.0 / (linear + sqrt(linear * linear + 4.0 * square))
 
 
-def least_crossing(four: Four, low: float, high: float) -> Crossing:
+def least_crossing(
+    four: Four, low: float, high: float, advance: Callable[[float], object] = lambda _: None
+) -> Crossing:
     """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular.
 
     The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are needed.
+    `advance` is called with the share of the frequencies that is done.
 
     Examples
     --------
@@ -198,6 +260,7 @@ def least_crossing(four: Four, low: float, high: float) -> Crossing:
             todo.append((a, middle - reach))
         if b > middle + reach:
             todo.append((middle + reach, b))
+        advance(1.0 - sum(top - bottom for bottom, top in todo) / (high - low))
     return best
 
 

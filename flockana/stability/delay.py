@@ -8,6 +8,7 @@ itself are prompt).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf, nan, pi
 from typing import Any
@@ -16,10 +17,12 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_nonnegative, ensure_positive
+from flockana.base.progress import progress_bar
 from flockana.equilibria.curvature import EPS
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import NEUTRAL, law_blocks
+from flockana.laws.law import Law
+from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
+from flockana.stability.linearise import linearise
 from flockana.stability.rounding import eigen
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -78,11 +81,13 @@ class DelayMargin:
         return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
-def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", strict: bool = True) -> DelaySystem:
+def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True) -> DelaySystem:
     """The linearised flock whose interactions are delayed.
 
     Parameters
     ----------
+    law : Law
+        Algorithm 1 or 2, gains one for all or one per agent; with ``"all"`` any law that `linearise` takes.
     q : array_like, shape (n, m)
         Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
@@ -99,11 +104,17 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
     Examples
     --------
     >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.laws.olfati_saber import Algorithm2
     >>> one = delay_system(Algorithm2(target=StaticTarget((0.0,))), [[0.0]])
     >>> [block.tolist() for block in one.late], one.neutral
     ([[[1.1]], [[2.0976176963403033]]], 0)
     """
     ensure_known("set of delayed terms", delayed, DELAYED)
+    if delayed == "all" and isinstance(law, Law) and not is_pairs_and_pull(law):
+        found = linearise(law, q, allow_residual=not strict)
+        k, d, rest = found.stiffness.toarray(), found.damping.toarray(), found.second_order.invariant
+        zero = np.zeros_like(k)
+        return DelaySystem((zero, zero), (k, d), len(rest.zero) + rest.chains)
     flock = law_blocks(law, q, strict=strict)
     neutral, zero = flock.neutral.shape[1] + flock.drifting.shape[1], np.zeros_like(flock.stiffness)
     if delayed == "all":
@@ -117,9 +128,10 @@ def delay_system(law: Algorithm1 | Algorithm2, q: Any, *, delayed: str = "all", 
         held = np.linalg.matrix_rank(flock.drifting.T @ prompt_k @ flock.drifting, tol=NEUTRAL * np.abs(prompt_k).max())
         neutral -= int(held)
     elif law.target is not None:
+        gains: Any = law.gains  # type: ignore[attr-defined]  # Algorithm 2 has them
         shape, own = np.shape(q), np.diag_indices(len(zero))
-        prompt_k[own] = np.broadcast_to(law.gains.pull, shape).ravel()
-        prompt_d[own] = np.broadcast_to(law.gains.drag, shape).ravel()
+        prompt_k[own] = np.broadcast_to(gains.pull, shape).ravel()
+        prompt_d[own] = np.broadcast_to(gains.drag, shape).ravel()
     return DelaySystem((prompt_k, prompt_d), (flock.stiffness - prompt_k, flock.damping - prompt_d), neutral)
 
 
@@ -147,17 +159,20 @@ def scalar_margin(k: float, d: float) -> DelayMargin:
     return DelayMargin(float(np.arctan2(omega * d, k)) / omega / unit, omega * unit)
 
 
-def delay_margin(system: DelaySystem) -> DelayMargin:
+def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     """The least delay at which a root reaches the imaginary axis.
 
-    In closed form where prompt and late parts share their modes, else by a search over all frequencies that excludes
-    whole intervals by a bound (`flockana.stability.crossings`): no band is too narrow for it. Neutral motions are set
-    apart by themselves; a flock that has any is searched from a millionth of its highest frequency on.
+    In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;
+    else by a search over all frequencies that excludes whole intervals by a bound (`flockana.stability.crossings`): no
+    band is too narrow for it. Parts that hear others and are not heard by them are looked at by themselves. Neutral
+    motions are set apart; a flock that has any is searched from a millionth of its highest frequency on.
 
     Parameters
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
+    progress : bool
+        Show a progress bar on the terminal.
 
     Examples
     --------
@@ -173,6 +188,18 @@ def delay_margin(system: DelaySystem) -> DelayMargin:
     """
     if not _stable(system):
         return DelayMargin(0.0, float("nan"), 0.0)
+    parts = list(_strong_parts(system))
+    with progress_bar(len(parts), enabled=progress, counted=False) as advance:
+        margins = [
+            _margin_of_part(part, lambda share, k=k: advance(k + share, f"part {k + 1} of {len(parts)}"))  # type: ignore[misc]
+            for k, part in enumerate(parts)
+        ]
+    first = min(margins, key=lambda margin: margin.delay)
+    return DelayMargin(first.delay, first.frequency, min(margin.least for margin in margins))
+
+
+def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> DelayMargin:
+    """Margin of a part that nothing else moves."""
     if system.highest == 0.0:
         return DelayMargin(inf, float("nan"), inf)
     unit = 2.0 ** int(np.log2(system.highest))  # of frequency: exact, and nothing overflows
@@ -182,8 +209,22 @@ def delay_margin(system: DelaySystem) -> DelayMargin:
     found = modal_crossing(four, NEUTRAL * stiffness if system.neutral else 0.0)
     if found is None:
         top = 1.01 * system.highest / unit
-        found = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top)
+        found = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
     return DelayMargin(found.delay / unit, found.frequency * unit, found.least / unit)
+
+
+def _strong_parts(system: DelaySystem) -> Iterator[DelaySystem]:
+    """Strongly connected parts: the roots of the whole are those of its parts, each taken by itself."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    matrices = (*system.prompt, *system.late)
+    heard = csr_array(np.sum([np.abs(part) for part in matrices], axis=0))
+    count, part_of = connected_components(heard, directed=True, connection="strong")
+    for k in range(count):
+        own = np.ix_(part_of == k, part_of == k)
+        k0, d0, k1, d1 = (part[own] for part in matrices)
+        yield DelaySystem((k0, d0), (k1, d1), system.neutral)
 
 
 def _stable(system: DelaySystem) -> bool:
@@ -191,8 +232,11 @@ def _stable(system: DelaySystem) -> bool:
 
     These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     """
-    (k0, d0), (k1, d1) = system.prompt, system.late
-    roots, _, errors = eigen(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]]))
+    found = []
+    for part in _strong_parts(system):
+        (k0, d0), (k1, d1) = part.prompt, part.late
+        found.append(eigen(np.block([[np.zeros_like(k0), np.eye(len(k0))], [-(k0 + k1), -(d0 + d1)]])))
+    roots, errors = np.concatenate([x[0] for x in found]), np.concatenate([x[2] for x in found])
     neutral = np.abs(roots) <= errors
     neutral[np.argsort(np.abs(roots), kind="stable")[: system.neutral]] = True
     return bool(np.all(roots.real[~neutral] < -errors[~neutral]))

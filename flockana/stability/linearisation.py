@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
+from flockana.base.tables import facts_html, facts_text
 from flockana.laws.law import Law
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.nets import LinkArray
@@ -20,6 +21,9 @@ from flockana.stability.signals import structural_system, translational_system, 
 if TYPE_CHECKING:
     import control
     from scipy.sparse import csr_array
+
+_FEW = 5  # modes that a table lists
+_MOST_SHOWN = 900  # coordinates up to which all poles are found for a table
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +66,29 @@ class Linearisation:
     links: LinkArray = field(repr=False)
     A_sparse: csr_array = field(repr=False)
     zero: float
+
+    def facts(self) -> dict[str, str]:
+        """Return what a table shows: sizes, zero modes, poles and the slowest modes."""
+        known = {
+            "law": type(self.law).__name__,
+            "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",
+            "residual": f"{self.residual:.2g} of the law's forces",
+        }
+        if self.q.size > _MOST_SHOWN:
+            return {**known, "poles": f"{2 * self.q.size}; slowest_modes(...) finds a few of them"}
+        zero, modes = [mode.name for mode in self.zero_modes], self.modes
+        known |= {"zero modes": ", ".join(zero) if len(zero) <= _FEW else f"{len(zero)}", "poles": f"{2 * self.q.size}"}
+        known |= {"stable": "yes" if self.stable else "no"}
+        for k, mode in enumerate(modes[:_FEW], 1):
+            swing = f" ± {mode.frequency:.4g}i" if mode.frequency else ""
+            known[f"mode {k}"] = f"{mode.name}: λ = {mode.eigenvalue.real:.4g}{swing}, ζ = {mode.damping_ratio:.3g}"
+        return known | ({"further modes": f"{len(modes) - _FEW}"} if len(modes) > _FEW else {})
+
+    def __str__(self) -> str:
+        return facts_text("Linearisation", self.facts())
+
+    def _repr_html_(self) -> str:
+        return facts_html("Linearisation", self.facts())
 
     @cached_property
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it

@@ -1,9 +1,9 @@
-"""Linearise a law about an equilibrium, after checking that it is one."""
+"""Linearise a law or a map about an equilibrium, after checking that it is one."""
 
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -17,13 +17,14 @@ from flockana.base.checks import (
     ensure_state,
 )
 from flockana.base.errors import ArgumentError
-from flockana.equilibria.solve import Equilibrium, ensure_found
+from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 from flockana.measures.nets import links as links_within
 from flockana.stability.linearisation import Linearisation
+from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map
 from flockana.stability.modes import ZERO
 
 if TYPE_CHECKING:
@@ -34,6 +35,30 @@ _LATER = 0.7310585786  # of the flock's own time: after it a steady motion must 
 _STEADY = 1e-9  # relative
 
 
+@overload
+def linearise(
+    law: DiscreteLaw,
+    equilibrium: Any,
+    p: Any = None,
+    *,
+    t: float = ...,
+    links: Any = ...,
+    force_tolerance: float = ...,
+    allow_residual: bool = ...,
+    zero: float | None = ...,
+) -> MapLinearisation: ...
+@overload
+def linearise(
+    law: Any,
+    equilibrium: Any,
+    p: Any = None,
+    *,
+    t: float = ...,
+    links: Any = ...,
+    force_tolerance: float = ...,
+    allow_residual: bool = ...,
+    zero: float | None = ...,
+) -> Linearisation: ...
 def linearise(
     law: Any,
     equilibrium: Any,
@@ -44,18 +69,20 @@ def linearise(
     force_tolerance: float = RESIDUAL,
     allow_residual: bool = False,
     zero: float | None = None,
-) -> Linearisation:
-    """Linearise a law about an equilibrium, after checking that it is one.
+) -> Linearisation | MapLinearisation:
+    """Linearise a law or a map about an equilibrium, after checking that it is one.
 
     Under Algorithms 1 and 2 (with one gain for all) that is the frame of the centre of mass: it is exact for every
     motion of the γ-agent, for the Jacobian depends on differences of positions alone, and the centre obeys the same
     linear equation wherever it is. Then only the shape must be at equilibrium. Under any other law all agents must keep
-    one constant velocity with no force on them, along which the Jacobian must not change.
+    one constant velocity with no force on them, along which the Jacobian must not change. A map that steps such a law
+    rests where the law does; a map of headings is linearised about parallel motion, `p`.
 
     Parameters
     ----------
-    law : Law
-        A continuous law with `jacobian`: Algorithms 1, 2, 3, or any other.
+    law : Law or DiscreteLaw
+        A continuous law with `jacobian`, or a map: a scheme such as `TaylorStep`, the MSN project's, the minimal
+        model's, `HeadingAveraging`.
     equilibrium : Equilibrium or array_like, shape (n, m)
         From `find_equilibrium`, or positions.
     p : array_like, shape (n, m), optional
@@ -74,6 +101,10 @@ def linearise(
         See `Linearisation`; by default 1e-8, or what takes in the soft modes that an `Equilibrium` tells of (a link
         that lets go at r is as stiff as the solver left it).
 
+    Returns
+    -------
+    Linearisation, or of a map MapLinearisation
+
     Raises
     ------
     ArgumentError
@@ -88,10 +119,13 @@ def linearise(
     >>> [round(value.real, 6) for value in one.eigenvalues.tolist()] == [-1.048809, -1.048809]
     True
     """
-    if isinstance(law, DiscreteLaw) or not isinstance(law, Law):
-        raise ArgumentError(f"law = {law!r}: expected a continuous law, such as Algorithm2(...); a map has no q'' = u")
+    if isinstance(law, DiscreteLaw):
+        how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero}
+        return _linearised_map(law, equilibrium, p, how)
+    if not isinstance(law, Law):
+        raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(...), or a map such as TaylorStep(...)")
     if isinstance(equilibrium, Equilibrium):
-        ensure_found("equilibrium", equilibrium)
+        ensure_unedited_equilibrium("equilibrium", equilibrium)
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     t = ensure_finite_scalar("t", t)
@@ -119,6 +153,17 @@ def linearise(
     for array in (q, p):
         array.setflags(write=False)
     return Linearisation(law, q, p, t, residual, between, matrix, zero)
+
+
+def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
+    """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
+    if law.continuous is not None and law.position_factor is not None:
+        flow = linearise(law.continuous, equilibrium, p, **how)
+        return linearise_map(law, flow)
+    q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
+    law.check_dimension(q.shape[1])
+    q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
+    return linearise_headings(law, q, p, ensure_finite_scalar("t", how["t"]))
 
 
 def _softest(equilibrium: Any, matrix: csr_array) -> float:

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from flockana.base.checks import ensure_count, ensure_positive
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.dynamics.trajectory import Trajectory
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.modes import Mode
@@ -58,9 +58,9 @@ def mode_motion(
     ([0.5, 6.5], 5)
     """
     if not isinstance(linearisation, Linearisation):
-        raise ArgumentError(f"linearisation = {told(linearisation)}: expected what linearise(...) gives")
+        raise ArgumentError(f"linearisation = {format_value(linearisation)}: expected what linearise(...) gives")
     if not isinstance(mode, Mode):
-        raise ArgumentError(f"mode = {told(mode)}: expected one of linearisation.modes")
+        raise ArgumentError(f"mode = {format_value(mode)}: expected one of linearisation.modes")
     q = linearisation.q
     if np.shape(mode.shape) != q.shape:
         raise ArgumentError(f"mode.shape is {np.shape(mode.shape)}: expected {q.shape}, a mode of this linearisation")

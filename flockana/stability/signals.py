@@ -30,7 +30,14 @@ def labels(name: str, n: int, m: int) -> list[str]:
     return [f"{name}{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
 
 
-def _vector(name: str, m: int) -> list[str]:
+def axes_of(name: str, m: int) -> list[str]:
+    """Names of the components of one vector.
+
+    Examples
+    --------
+    >>> axes_of("qc", 2)
+    ['qc_x', 'qc_y']
+    """
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 
@@ -40,7 +47,7 @@ def _target_inputs(flock: Any) -> tuple[FloatArray, list[str]]:
     if (pull := flock.law.term(Navigation)) is None:
         return np.zeros((size, 0)), []
     by_position, by_velocity = pull.target_derivatives(flock.t, flock.q)
-    return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), _vector("qr", m) + _vector("pr", m)
+    return np.hstack([by_position.reshape(size, m), by_velocity.reshape(size, m)]), axes_of("qr", m) + axes_of("pr", m)
 
 
 def _lengths(flock: Any) -> tuple[FloatArray, list[str]]:
@@ -80,7 +87,7 @@ def whole_system(flock: Any) -> control.StateSpace:
     names = (
         labels("q", n, m) + labels("p", n, m),
         labels("f", n, m) + target_names,
-        _vector("qc", m) + labels("x", n, m) + length_names,
+        axes_of("qc", m) + labels("x", n, m) + length_names,
     )
     return _system((flock.stiffness.toarray(), flock.damping.toarray()), drive, read, names, "flock")
 
@@ -114,9 +121,9 @@ def translational_system(flock: Any) -> control.StateSpace:
     target, target_names = _target_inputs(flock)
     alone = flock.second_order.split
     names = (
-        _vector("qc", m) + _vector("pc", m),
+        axes_of("qc", m) + axes_of("pc", m),
         labels("f", n, m) + target_names,
-        _vector("qc", m),
+        axes_of("qc", m),
     )
     blocks = (np.diag(alone.stiffness), np.diag(alone.damping))
     return _system(blocks, mean @ np.hstack([np.eye(n * m), target]), np.eye(m), names, "centre")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_known, ensure_nonnegative, ensure_points
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
@@ -199,6 +199,6 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
 
 def _ensure_gain(law: Any, name: str) -> None:
     if not isinstance(law, Algorithm1 | Algorithm2):
-        raise ArgumentError(f"law = {told(law)}: expected Algorithm1(...) or Algorithm2(...)")
+        raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1(...) or Algorithm2(...)")
     known = GAINS[:2] if law.target is None else GAINS
     ensure_known("gain", name, known)

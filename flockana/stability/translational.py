@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_series, real_array
-from flockana.base.errors import ArgumentError, told
+from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.curvature import EPS
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
@@ -109,7 +109,7 @@ class CentreOfMass:
         try:
             s = 1j * real_array(omega)
         except (TypeError, ValueError, OverflowError):
-            raise ArgumentError(f"omega = {told(omega)}: expected real numbers") from None
+            raise ArgumentError(f"omega = {format_value(omega)}: expected real numbers") from None
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
 

@@ -1,4 +1,4 @@
-"""Zone-based flocking of one pair in sympy: both forms of the behaviours, bounds, distances of rest, common speed.
+"""Zone-based flocking of one pair in sympy: both forms of the behaviours, bounds, rest distances.
 
 Equation numbers are those of Jond's paper. A sum over a zone is a sum of these pairs, divided by the sum of the
 weights where the behaviour is a mean, so that a pair shows the equality of the two forms for every number of agents.
@@ -20,7 +20,7 @@ _X = sp.Symbol("x", nonnegative=True)
 
 
 def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
-    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and of one in its zones.
+    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and a neighbour.
 
     Examples
     --------
@@ -158,18 +158,25 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, w
     return sp.expand(distance)
 
 
-def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr | None = None) -> sp.Expr:
-    """Return the distance of a pair at rest in the zone of conflict: separation and cohesion balance there (J15).
+def rest_distance(
+    *, separation: sp.Expr = GAIN, cohesion: sp.Expr | None = None, repulsion: sp.Expr | None = None
+) -> sp.Expr:
+    """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15).
+
+    Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
 
     Examples
     --------
-    >>> rest_distance(), rest_distance(separation=5, cohesion=1).subs(C, 3)
-    (c*w/(g + w), 5/2)
+    >>> rest_distance(separation=5, cohesion=1, repulsion=sp.Rational(3, 2)).subs(C, 3)
+    5/2
+    >>> rest_distance(separation=5, cohesion=10, repulsion=sp.Rational(3, 2)).subs(C, 3)
+    3/2
     """
     d = sp.Symbol("d", positive=True)
     pull = (sp.Symbol("g", positive=True) if cohesion is None else exact("cohesion", cohesion)) * d
     (distance,) = sp.solve(sp.Eq(exact("separation", separation) * (d - C) + pull, 0), d)
-    return sp.factor(distance)
+    least = sp.Symbol("r", positive=True) if repulsion is None else exact("repulsion", repulsion)
+    return sp.Max(least, sp.factor(distance))
 
 
 def altitude(speed: sp.Expr | None = None) -> sp.Expr:

@@ -1,4 +1,4 @@
-"""The energy of laws that are composed of terms, written out for a small flock: what drag takes and thrust adds.
+"""Energy balance of composed laws, written out for a small flock, with drag and thrust.
 
 Three agents show every kind of pair, and a pull on one, two or all of them, so the identities are those of every n.
 """
@@ -25,7 +25,7 @@ def _state(m: int) -> tuple[list[sp.Matrix], list[sp.Matrix], tuple[sp.Matrix, s
 
 
 def _between_agents(q: list[sp.Matrix], p: list[sp.Matrix]) -> tuple[list[sp.Matrix], sp.Expr, sp.Expr]:
-    """(forces, potential, power of the consensus), the weights symmetric and otherwise free."""
+    """Return (forces, potential, power of the consensus), with symmetric but otherwise free weights."""
     u, potential, power = [sp.zeros(*x.shape) for x in q], sp.Integer(0), sp.Integer(0)
     for i, j in combinations(range(_N), 2):
         weight, apart, slip = sp.Symbol(f"a_{i}{j}", nonnegative=True), q[j] - q[i], p[j] - p[i]
@@ -63,7 +63,7 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
 
 
 def moving_frame_identity(m: int = 2) -> Derivation:
-    """Derive dH/dt in the moving frame, of a γ-agent of any path that pulls all, told acceleration and drag.
+    """Derive dH/dt in the moving frame, for a γ-agent on any path that pulls all, with feedforward and drag.
 
     H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
     acts on all alike does no work there.

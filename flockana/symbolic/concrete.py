@@ -1,4 +1,4 @@
-"""Everything written out for a small flock: u_i, H(q, p), and dH/dt by the chain rule over all agents.
+"""A small flock written out: u_i, H(q, p), and dH/dt by the chain rule over all agents.
 
 Here nothing is lifted from a generic pair: the sums are formed, differentiated and compared as they stand,
 with the graph Laplacian as a matrix. So it tests the lifting of `flockana.symbolic.energy`, and reference
@@ -34,7 +34,7 @@ LAWS = ("algorithm1", "algorithm2")
 
 @dataclass(frozen=True)
 class ConcreteFlock:
-    """n agents in m dimensions under a law, every expression explicit in the symbols q and p.
+    """Small flock under a law, every expression explicit in the symbols q and p.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class ConcreteFlock:
 
     @cached_property
     def acceleration(self) -> tuple[sp.Matrix, ...]:
-        """u_i of every agent."""
+        """Input u_i of every agent."""
         total = []
         for i, (q_i, p_i) in enumerate(zip(self.q, self.p, strict=True)):
             u_i = sp.zeros(self.m, 1)
@@ -140,7 +140,7 @@ class ConcreteFlock:
 
     @cached_property
     def residual(self) -> sp.Expr:
-        """rate - claimed, expanded with sqrt(1 + eps |q_j - q_i|^2) named for each pair: 0 for a theorem."""
+        """Return rate - claimed, in roots sqrt(1 + eps |q_j - q_i|^2) of each pair: 0 for a theorem."""
         roots = {}
         for i, j in combinations(range(self.n), 2):
             square = (1 + EPS * sigma_norm(self.q[j] - self.q[i])) ** 2
@@ -184,5 +184,5 @@ class ConcreteFlock:
         return latex_steps(f"{self.law.capitalize()}, n = {self.n}, m = {self.m}", steps)
 
     def _repr_latex_(self) -> str:
-        """Show it in a notebook."""
+        """Return the LaTeX that a notebook shows."""
         return f"$${self.latex()}$$"

@@ -1,4 +1,4 @@
-"""Agents that follow copies of the gamma-agent: their energy balance, and how copies that differ part."""
+"""Agents that follow copies of a γ-agent with dynamics: energy balance, and separation of the copies."""
 
 from __future__ import annotations
 

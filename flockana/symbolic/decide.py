@@ -1,4 +1,4 @@
-"""Decisions about a formula over a whole interval by branch and bound: smoothness, sign and least value.
+"""Decisions about a formula over an interval by branch and bound: smoothness, sign and least value.
 
 Intervals are halved until an enclosure decides. What decides is the number of intervals, never the clock, so that the
 answer is the same on every machine.
@@ -31,18 +31,18 @@ Place = Callable[[float], float]
 
 
 def down(x: arb) -> float:
-    """A float that is not above a ball."""
+    """Return a float that is not above a ball."""
     value = float(x.lower())
     return value if arb(value) <= x.lower() else nextafter(value, -inf)
 
 
 def up(x: arb) -> float:
-    """A float that is not below a ball."""
+    """Return a float that is not below a ball."""
     return 0.0 - down(-x)
 
 
 def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | None:
-    """Whether a number is 0: by algebra, or certainly not by its enclosure; None if that is open.
+    """Return whether a number is 0, by algebra or by its enclosure; None if undecided.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | No
 
 
 class Region(NamedTuple):
-    """A formula in parameters, their numbers, and two points between which it is decided.
+    """Formula with numbers for its parameters, on an interval.
 
     `left` and `right` hold the exact points `ends` between them; `place` gives the distance for messages.
     """
@@ -80,7 +80,7 @@ class Region(NamedTuple):
 
     @property
     def exact(self) -> sp.Expr:
-        """The formula with its numbers."""
+        """The formula with its numbers inserted."""
         return self.expression.xreplace(self.numbers)
 
     @property
@@ -90,19 +90,7 @@ class Region(NamedTuple):
 
 
 def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: str = "") -> list[Fact]:
-    """Whether a formula is analytic inside an interval and up to its ends: nothing if it is, else what is the matter.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval.
-    name : str
-        The formula, in messages.
-    scale, slope : float
-        Of its values and slopes: what a jump is compared with.
-    kinks : str
-        What jumps where the slope does, in messages; nothing if kinks are allowed, whose points then stay open.
-    """
+    """Return reasons why a formula is not analytic on a closed interval, or leaves it open; empty if it is analytic."""
     of, whole = region.enclosed, region.right - region.left
     open_: list[Fact] = []
     stack, looked = [(region.left, region.right, 0)], 0
@@ -143,7 +131,7 @@ def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
 def _looked_at(
     of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
 ) -> Fact:  # fmt: skip
-    """What values and slopes beside a point show: a jump, a pole, a kink, no value; open if nothing."""
+    """Return faults that values and slopes beside a point show: a jump, pole, kink or missing value."""
     whole, place = region.right - region.left, region.place(_float(at))
     near, far = whole / 2**100, whole / 2**50
     sides: list[list[list[arb] | None]] = []
@@ -170,15 +158,7 @@ def _looked_at(
 
 
 def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
-    """Whether a formula is nonnegative on an interval, and positive inside it.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval; zeros at its ends are decided by the first derivative that is not 0.
-    name : str
-        The formula, in messages.
-    """
+    """Return the fact whether a formula is nonnegative on an interval, and positive inside."""
     if region.expression == 0:
         return Fact("met", f"{name} is 0"), Fact("unmet", f"{name} is 0", _ends(region, region.left, region.right))
     left, right = region.left, region.right
@@ -194,7 +174,7 @@ def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
 
 
 def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
-    """Sign of a formula beside an end at which it vanishes, and how far it holds; (0, 0) if it does not vanish."""
+    """Return the sign of a formula beside an end where it vanishes, and how far it holds; else (0, 0)."""
     derivative, whole = region.expression, region.right - region.left
     end = region.ends[side]
     for order in range(_ORDERS):
@@ -253,7 +233,7 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
 
 
 def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
-    """The certain sign on an interval: by its enclosure, or where it is monotone by its ends."""
+    """Return the certain sign on an interval, by its enclosure or by its ends where it is monotone."""
     ball = interval(left, right)
     sign, found = of.sign(ball), of.series(ball)
     if sign == POSITIVE or found is None or found[1].contains(0):
@@ -265,7 +245,7 @@ def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
 
 
 class Least(NamedTuple):
-    """Bounds of the least value, and where the upper one is reached."""
+    """Bounds of the least value, and the place of the upper one."""
 
     low: float
     high: float
@@ -273,15 +253,7 @@ class Least(NamedTuple):
 
 
 def least_on(region: Region, scale: float) -> Least:
-    """The least value on an interval, as an enclosure; −∞ from below where the formula has none.
-
-    Parameters
-    ----------
-    region : Region
-        Formula and interval.
-    scale : float
-        Of its values: the width that is enough is 1e-15 of it, or 1e-13 of the value.
-    """
+    """Return an enclosure of the least value on an interval; −∞ below where the formula has none."""
     of, number = region.enclosed, count(0, -1)  # of two that are as low the later first
     best, where, looked = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
@@ -310,7 +282,7 @@ def least_on(region: Region, scale: float) -> Least:
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
-    """A lower bound on an interval, a value in it and where."""
+    """Return a lower bound on an interval, a value in it and its place."""
     middle = (left + right) / 2
     found, at = of.series(interval(left, right)), of.series(arb(middle))
     seen = arb.pos_inf() if at is None else at[0].upper()

@@ -1,4 +1,4 @@
-"""Derivations as values: steps of text, equation and condition, printing as LaTeX, and computed residuals."""
+"""Derivations: steps of text, equation and condition, LaTeX output, and computed residuals."""
 
 from __future__ import annotations
 
@@ -55,8 +55,6 @@ class Derivation:
 
     Parameters
     ----------
-    title : str
-        What is derived.
     steps : tuple of Step
         How, each with its condition.
     result : sympy.Basic
@@ -85,5 +83,5 @@ class Derivation:
         return latex_steps(self.title, self.steps)
 
     def _repr_latex_(self) -> str:
-        """Show the steps in a notebook."""
+        """Return the LaTeX that a notebook shows."""
         return f"$${self.latex()}$$"

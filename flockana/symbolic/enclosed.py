@@ -1,4 +1,4 @@
-"""Enclosures of a formula over an interval, with its Taylor coefficients, by ball arithmetic (Arb).
+"""Enclosures of a formula and of its Taylor coefficients over an interval, in ball arithmetic (Arb).
 
 An enclosure exists only where every operation of the formula is analytic on the whole interval: no divisor may vanish,
 no argument of a root or logarithm may reach 0. So it proves that the formula has all derivatives there.
@@ -20,7 +20,7 @@ _LARGEST = 2**120  # argument of an exponential
 
 @contextmanager
 def precision(bits: int, terms: int = 1) -> Iterator[None]:
-    """Compute with some bits, and series with some terms."""
+    """Set the precision of ball arithmetic, and the length of its series, inside the block."""
     kept = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = bits, terms
     try:
@@ -30,29 +30,22 @@ def precision(bits: int, terms: int = 1) -> Iterator[None]:
 
 
 def rational(number: Any) -> fmpq:
-    """A rational number of sympy, or a Fraction, as Arb's."""
+    """Return a rational number of sympy, or a Fraction, in Arb's form."""
     fraction = Fraction(int(number.p), int(number.q)) if isinstance(number, sp.Rational) else Fraction(number)
     return fmpq(fraction.numerator, fraction.denominator)
 
 
 def interval(left: fmpq, right: fmpq) -> arb:
-    """The ball around an interval."""
+    """Return the ball that covers an interval."""
     return arb(left).union(arb(right))
 
 
 class UndefinedError(ArithmeticError):
-    """An operation is not analytic on an interval."""
+    """Exception for an operation that is not analytic on an interval."""
 
 
 class Enclosed:
-    """A formula in one variable as a function of balls.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Without pieces, all numbers exact.
-    variable : sympy.Symbol
-        Its only symbol.
+    """Formula in one variable as a function of balls.
 
     Examples
     --------
@@ -71,7 +64,7 @@ class Enclosed:
         self._add(sp.sympify(expression))
 
     def _add(self, node: sp.Expr) -> int:
-        """Number of a node, after those that it is made of."""
+        """Return the index of a node, added after the nodes it depends on."""
         if node not in self._at:
             arguments = tuple(self._add(each) for each in _arguments(node))
             self._steps.append((_operation(node, self.variable), arguments, node, self.variable in node.free_symbols))
@@ -79,12 +72,12 @@ class Enclosed:
         return self._at[node]
 
     def series(self, x: arb) -> list[arb] | None:
-        """Taylor coefficients that hold for every centre in a ball, `ctx.cap` of them; None where not analytic."""
+        """Return Taylor coefficients valid for every centre in a ball, `ctx.cap` of them; None where not analytic."""
         found = self._run(x)
         return None if found is None else _coefficients(found[-1][0])
 
     def sign(self, x: arb) -> int:
-        """Whether the formula is certainly positive, or nonnegative, on a ball."""
+        """Return whether the formula is certainly positive, and certainly nonnegative, on a ball."""
         found = self._run(x)
         return OPEN if found is None else found[-1][1]
 
@@ -115,25 +108,25 @@ class Enclosed:
 
 
 def _tightened(series: Any, centre: Any, off: arb) -> Any:
-    """A series whose value is also that at the centre and what its slope adds."""
+    """Return a series with its value improved by the mean value form."""
     return _with_value(series, _value(series).intersection(_value(centre) + series[1] * off))
 
 
 def _coefficients(series: arb_series) -> list[arb]:
-    """All of them, trailing zeros too."""
+    """Return all coefficients of a series, trailing zeros included."""
     found = series.coeffs()[: ctx.cap]
     return [*found, *([arb(0)] * (ctx.cap - len(found)))]
 
 
 def _arguments(node: sp.Expr) -> tuple[sp.Expr, ...]:
-    """What a node is computed from; the exponent of a plain power is none of it."""
+    """Return the operands of a node; the exponent of a plain power is not one."""
     if node.is_Pow and node.exp.is_Rational:
         return (node.base,)
     return () if node.is_Atom else tuple(node.args)
 
 
 def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
-    """How a node is computed: a function of the ball and of the arguments' series."""
+    """Return a node's operation as a function of the ball and of its operands' series."""
     if node == variable:
         return lambda x: arb_series([x, 1])
     if isinstance(node, sp.Float):
@@ -178,12 +171,12 @@ def _product(factors: tuple[Any, ...]) -> Any:
 
 
 def _value(series: Any) -> arb:
-    """The value of a series, its first coefficient."""
+    """Return the value of a series, its first coefficient."""
     return series[0]
 
 
 def _with_value(series: Any, value: arb) -> Any:
-    """A series with another enclosure of its value."""
+    """Return a series with another enclosure of its value."""
     return arb_series([value, *_coefficients(series)[1:]])
 
 
@@ -194,7 +187,7 @@ def _positive(series: Any) -> Any:
 
 
 def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
-    """A plain power, its inverse unless `up`: whole ones of any base, roots of a positive one."""
+    """Return a plain power, or its inverse unless `up`: whole ones of any base, roots of a positive one."""
     of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
     value = _with_value(_multiplied(of, whole), _power_range(_value(of), whole)) if whole > 1 else of
     if up:
@@ -205,7 +198,7 @@ def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
 
 
 def _multiplied(base: Any, whole: int) -> Any:
-    """A product of equal factors."""
+    """Return the product of equal factors."""
     value = None
     while whole:
         if whole & 1:
@@ -216,7 +209,7 @@ def _multiplied(base: Any, whole: int) -> Any:
 
 
 def _power_range(base: arb, whole: int) -> arb:
-    """The range of a whole power: that of its ends, and 0 if it turns there."""
+    """Return the range of a whole power, which includes 0 where it turns."""
     ends = interval_of(*(_multiplied(end, whole) for end in (base.lower(), base.upper())))
     if whole % 2 or base > 0 or base < 0:
         return ends
@@ -224,7 +217,7 @@ def _power_range(base: arb, whole: int) -> arb:
 
 
 def interval_of(low: arb, high: arb) -> arb:
-    """The ball around two ends."""
+    """Return the ball that covers two ends."""
     return low.union(high)
 
 
@@ -238,12 +231,12 @@ def _exp(x: Any) -> Any:
 
 
 def _integrated(value: arb, slope: Any, x: Any) -> Any:
-    """The series of a function from its value and the series of its derivative."""
+    """Return the series of a function from its value and the series of its derivative."""
     return (slope * x.derivative()).integral() + value if ctx.cap > 1 else arb_series([value])
 
 
 def _tanh(x: Any) -> Any:
-    """By its ends, as it rises; its slope is 1 − tanh²."""
+    """Return tanh of a series, from its ends, as it increases; its slope is 1 − tanh²."""
     at = interval_of(*(end.tanh() for end in (_value(x).lower(), _value(x).upper())))
     value = arb_series([at])
     for _ in range(ctx.cap - 1):
@@ -252,7 +245,7 @@ def _tanh(x: Any) -> Any:
 
 
 def _wave(x: arb) -> arb:
-    """The range of the cosine: that of the ends, and the tops and bottoms between."""
+    """Return the range of the cosine, with the maxima and minima between the ends."""
     turns = x / arb.pi()
     if x.is_exact() or not turns.rad() < 0.25:
         return x.cos()
@@ -270,7 +263,7 @@ def _tan(x: Any) -> Any:
 
 
 def _inside(x: Any) -> Any:
-    """A series whose value is certainly within (−1, 1)."""
+    """Return a series whose value is certainly within (−1, 1)."""
     if not (_value(x) > -1 and _value(x) < 1):
         raise UndefinedError
     return x
@@ -306,7 +299,7 @@ _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
 
 
 def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
-    """What is certain about the sign of a node, by its ball or by what it is made of."""
+    """Return the certain sign of a node, from its ball or from its operands."""
     ball = _value(value)
     if ball > 0:
         return POSITIVE

@@ -47,8 +47,6 @@ class EnergyIdentity:
 
     Parameters
     ----------
-    name : str
-        What is identified.
     energy : sympy.Expr
         The energy, as sums over n agents.
     rate : sympy.Expr
@@ -83,19 +81,12 @@ class EnergyIdentity:
         return latex_steps(self.name, self.steps)
 
     def _repr_latex_(self) -> str:
-        """Show the derivation in a notebook."""
+        """Return the LaTeX that a notebook shows."""
         return f"$${self.latex()}$$"
 
 
 class GenericPair:
-    """Agents i and j among n, by components: the terms of dH/dt that involve both.
-
-    Parameters
-    ----------
-    m : int
-        Dimension, 1, 2 or 3.
-    frame : tuple of sympy.IndexedBase
-        Positions and velocities: (Q, P) in the given frame, (X, V) in the moving one.
+    """Two agents i and j among n, by components: the terms of dH/dt that involve both.
 
     Examples
     --------

@@ -38,14 +38,10 @@ def e1_identity(m: int = 2) -> EnergyIdentity:
 
 @dataclass(frozen=True)
 class RisingEnergy:
-    """A state at which the printed H rises, while the true one falls.
+    """State at which the printed H rises, while the true one falls.
 
     Parameters
     ----------
-    alpha : AlphaSymbols
-        Interaction parameters, rational.
-    gains : GainSymbols
-        Gains, rational.
     q, p : tuple of sympy.Rational
         Positions and velocities of the agents, m = 1.
     rate : sympy.Expr

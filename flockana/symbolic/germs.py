@@ -1,4 +1,4 @@
-"""A formula just above a point: a power of the distance from it times an enclosed factor."""
+"""Leading behaviour of a formula just above a point: a power of the distance times an enclosed factor."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _T = sp.Symbol("t", real=True)
 
 
 class Germ(NamedTuple):
-    """t^power times a factor within a ball, for all t in (0, w]; analytic there."""
+    """Power t^power times a factor within a ball, for all t in (0, w]; analytic there."""
 
     power: Fraction
     factor: arb
 
 
 class _UnknownError(ArithmeticError):
-    """No germ is known."""
+    """Exception for a formula whose leading behaviour is not known."""
 
 
 def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
-    """The germ of a formula at 0, on (0, width]; None where its form is not known.
+    """Return the leading behaviour of a formula on (0, width]; None where it is not known.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
 
 
 class _Near:
-    """Walks a formula from its leaves up."""
+    """Visitor that computes germs of a formula from its leaves up."""
 
     def __init__(self, variable: sp.Symbol, width: fmpq) -> None:
         self.variable, self.width = variable, arb(width)
@@ -84,7 +84,7 @@ class _Near:
         return Germ(least, total)
 
     def _until(self, power: Fraction) -> arb:
-        """The range of t^power, power ≥ 0."""
+        """Return the range of t^power, power ≥ 0."""
         if power == 0:
             return arb(1)
         return interval_of(arb(0), (self.width.log() * arb(fmpq(power.numerator, power.denominator))).exp().upper())
@@ -96,7 +96,7 @@ class _Near:
         return Germ(base.power * power, factor)
 
     def _range(self, one: Germ) -> arb:
-        """All values of a germ that is bounded, its limit too."""
+        """Return all values of a bounded germ, its limit included."""
         return one.factor * self._until(one.power)
 
     def _function(self, of: Any, argument: Germ) -> Germ:
@@ -124,7 +124,7 @@ class _Near:
         raise _UnknownError
 
     def _logarithm(self, argument: Germ) -> Germ:
-        """log(t^k N) = k log t + log N, by t^(1/64) |log t| <= max of its course up to the width."""
+        """Return the germ of log(t^k N) = k log t + log N, with a bound of t^(1/64) |log t|."""
         if not argument.factor > 0 or not self.width < 1:
             raise _UnknownError
         slow = arb(fmpq(_SLOW.numerator, _SLOW.denominator))

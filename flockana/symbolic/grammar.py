@@ -1,4 +1,4 @@
-"""Formulas as text: read by a small grammar of their own, so that a file with a formula in it is data and no program.
+"""Formulas as text, parsed by a small grammar and never evaluated as Python.
 
 Known are names, numbers, + - * / ** and brackets, comparisons with the distance, ``Piecewise((value, condition), ...)``
 and the functions in `FUNCTIONS`. Nothing is evaluated as Python, and nothing that is written small can grow large.
@@ -49,7 +49,7 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
-    """The sympy expression that a text says, in the names given.
+    """Return the sympy expression of a text, in the given names.
 
     Examples
     --------
@@ -77,14 +77,7 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 
 
 def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
-    """Number of nodes of an expression, height of its tower of exponentials, and degree of its powers.
-
-    Parameters
-    ----------
-    value : sympy.Basic
-        The expression.
-    known : dict
-        What was measured before; it is added to, so that repeated parts cost nothing.
+    """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers.
 
     Examples
     --------
@@ -105,7 +98,7 @@ def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tu
 
 
 def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
-    """The same with every absolute value as two pieces, also those that sympy makes of roots of squares."""
+    """Return an expression with absolute values, and roots of squares, written as two pieces."""
     for inner in value.atoms(sp.Abs):
         _ensure_plain(inner.args[0], where)
     try:
@@ -115,7 +108,7 @@ def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
 
 
 def _ensure_plain(value: sp.Expr, where: str) -> None:
-    """Refuse a condition on what has pieces itself: where they meet is not known."""
+    """Raise on a condition that has pieces itself, as its zeros are not known."""
     if value.has(sp.Piecewise, sp.Abs):
         raise ArgumentError(
             f"{where}: a condition, or abs, of {_short(str(value))}, which has pieces itself; expected one that is "
@@ -124,7 +117,7 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 
 def write_formula(expression: sp.Expr) -> str:
-    """The text that `read_formula` reads as the same expression, every number to the last bit.
+    """Return a text that `read_formula` reads as the same expression, every number to the last bit.
 
     Examples
     --------
@@ -136,7 +129,7 @@ def write_formula(expression: sp.Expr) -> str:
 
 
 class _Printer(StrPrinter):
-    """sympy's, whose numbers lose no digit."""
+    """Printer of sympy expressions that writes numbers without loss."""
 
     def _print_Float(self, number: sp.Float) -> str:  # noqa: N802  # sympy's name
         return repr(float(number))
@@ -150,7 +143,7 @@ def _short(text: str) -> str:
 
 
 class _Reader:
-    """Walks the tree of a text and builds the expression, node by node."""
+    """Visitor that builds a sympy expression from the syntax tree of a text."""
 
     def __init__(self, text: str, symbols: Mapping[str, sp.Expr], where: str) -> None:
         self.text, self.where = text, where
@@ -158,7 +151,7 @@ class _Reader:
         self._sizes: dict[sp.Basic, tuple[int, int, int]] = {}
 
     def expression(self, node: ast.AST, depth: int) -> Any:
-        """What a node says."""
+        """Return the expression of a node."""
         if depth > DEPTH:
             raise ArgumentError(f"{self.where} is nested more than {DEPTH} deep: expected a simpler formula")
         if isinstance(node, ast.Constant):
@@ -227,7 +220,7 @@ class _Reader:
         return self._real(value, node)
 
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
-        """The value, if it is small, real, and a number in it is of a size that floating point knows."""
+        """Return a value; raise if it is large, complex, or has a number beyond floating point."""
         self._ensure_small(value)
         unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
         if unreal or (value.is_number and not self._size_of(value) < _GREATEST):
@@ -243,7 +236,7 @@ class _Reader:
             return inf
 
     def _ensure_small(self, value: sp.Expr) -> None:
-        """Refuse what few characters make large: pieces within pieces, towers of powers, powers of powers."""
+        """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
         nodes, tower, degree = measured(value, self._sizes)
         for found, most, what in ((nodes, NODES, "parts"), (tower, TOWER, "exponentials within each other"),
                                   (degree, DEGREE, "as its degree")):  # fmt: skip
@@ -251,7 +244,7 @@ class _Reader:
                 raise ArgumentError(f"{self.where} has {found} {what}: expected at most {most}, a simpler formula")
 
     def _ensure_divisor(self, value: sp.Expr, node: ast.AST) -> None:
-        """Refuse a number as a divisor that is 0, or may be."""
+        """Raise on a divisor that is 0, or may be."""
         if not value.is_number or value.is_Rational:
             return
         with precision(_DIVISOR_BITS):
@@ -262,7 +255,7 @@ class _Reader:
             )
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:
-        """Refuse 9**9**9 before it is computed."""
+        """Raise on powers such as 9**9**9 before they are computed."""
         if power.is_number and not (power.is_Rational or power.is_Float):
             raise ArgumentError(f"{self.where}: a power {power} is no plain number; expected one such as 2 or 1/2")
         if power.is_number and abs(power) > LARGEST_POWER:

@@ -1,4 +1,4 @@
-"""Bounds of a potential whose slope is a formula: sums of Taylor integrals with enclosed remainders."""
+"""Bounds of a potential given by its slope: sums of Taylor integrals with enclosed remainders."""
 
 from __future__ import annotations
 
@@ -19,17 +19,7 @@ Bounds = tuple[float, float]
 
 
 def integral_least(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
-    """Bounds of the least value of an integral and of its value at the left end; it vanishes at an anchor.
-
-    Parameters
-    ----------
-    regions : list of Region
-        The integrand from left to right; one of the ends is the anchor, but for rounding.
-    anchor : fmpq
-        Where the integral is 0.
-    scale : float
-        Of its values.
-    """
+    """Return bounds of an integral's least value and of its value at the left end; it is 0 at the anchor."""
     total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
     with precision(_BITS, _TERMS):
         for region in regions:
@@ -56,7 +46,7 @@ def integral_least(regions: list[Region], anchor: fmpq, scale: float) -> tuple[B
 
 
 def _parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
-    """Integral, range of the integrand and width of intervals on which Taylor's formula is exact to rounding."""
+    """Return integral, range and width of intervals on which Taylor's formula is exact to rounding."""
     of, parts = region.enclosed, []
     stack = [(region.left, region.right, 0)]
     while stack:

@@ -20,8 +20,8 @@ OF_SQUARE = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, 
 GROUP, PINNED = (0, 0, 1), (0,)  # three agents: two of one leader, the first of them pinned, and one of another
 
 
-def led_energy_identity(m: int = 2, *, told: bool = True) -> Derivation:
-    """Derive dH/dt of three agents and two leaders: all kinds of pairs, pinned and not, so an identity for every n.
+def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
+    """Derive dH/dt of three agents and two leaders, with all kinds of pairs, pinned and not.
 
     H = sum |p_i - p_l|^2/2 + sum psi(rho_ij^2) + c_1/2 sum of the pinned |q_i - q_l|^2; its rate has -k_2 p^T L p
     within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
@@ -38,7 +38,7 @@ def led_energy_identity(m: int = 2, *, told: bool = True) -> Derivation:
     slip = [own - led for own, led in zip(p, p_l, strict=True)]
     pairs = [sp.zeros(m, 1) for _ in GROUP]
     energy, lost = sp.S.Zero, sp.S.Zero
-    u = [sp.Matrix(a) if told else sp.zeros(m, 1) for a in a_l]
+    u = [sp.Matrix(a) if feedforward else sp.zeros(m, 1) for a in a_l]
     for i, j in combinations(range(3), 2):
         delta, weight = q[j] - q[i], sp.Symbol(f"a_{i}{j}", nonnegative=True)
         energy += OF_SQUARE(delta.dot(delta))
@@ -51,7 +51,7 @@ def led_energy_identity(m: int = 2, *, told: bool = True) -> Derivation:
     for i in range(3):
         u[i] += pairs[i]
         energy += slip[i].dot(slip[i]) / 2
-        lost -= pairs[i].dot(p_l[i]) + (0 if told else slip[i].dot(a_l[i]))
+        lost -= pairs[i].dot(p_l[i]) + (0 if feedforward else slip[i].dot(a_l[i]))
         if i in PINNED:
             u[i] -= C_1 * (q[i] - q_l[i]) + C_2 * slip[i]
             energy += C_1 * (q[i] - q_l[i]).dot(q[i] - q_l[i]) / 2

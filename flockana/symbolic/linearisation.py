@@ -27,7 +27,7 @@ PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
 
 
 def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
-    """Derivative of a force, columns by variable; generic functions of σ by name, σ named z, √(1 + ε s²) named w."""
+    """Return the derivative of a force, one column per variable, in terms of named functions of σ."""
     aware = {}
     for function, slope in table.items():  # the same function, but it knows its derivative
         derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
@@ -38,7 +38,7 @@ def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma
 
 
 def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
-    """Derive what agent j does to ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j.
+    """Derive agent j's part of ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j.
 
     w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j),
     side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
@@ -86,7 +86,7 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
 
 
 def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bool = False) -> Derivation:
-    """Derive what the γ-agent does to ∂u_i/∂(q_i, p_i), with x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I.
+    """Derive the γ-agent's part of ∂u_i/∂(q_i, p_i), x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
 
 
 def turn(obstacle: GenericObstacle) -> sp.Matrix:
-    """Return d(p_hat)/dq at fixed p: how the velocity of the closest point turns as the agent moves.
+    """Return d(p_hat)/dq at fixed p: the turning rate of the β-agent's velocity.
 
     Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
 
@@ -139,7 +139,7 @@ def turn(obstacle: GenericObstacle) -> sp.Matrix:
 
 
 def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
-    """Derive what an obstacle does to ∂u_i/∂(q_i, p_i), its β-agent moving as the agent does.
+    """Derive an obstacle's part of ∂u_i/∂(q_i, p_i), its β-agent moving with the agent.
 
     With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i
     −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2 b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i

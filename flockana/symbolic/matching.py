@@ -1,4 +1,4 @@
-"""Velocity consensus with any weight of the distance, and any pair potential, in sympy: how their energy changes."""
+"""Energy balance of velocity consensus with any weight of the distance and any pair potential."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
 
 
 def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
-    """Derive dH/dt of three agents that match velocities: all that an identity in pairs needs for every n.
+    """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n.
 
     H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
 

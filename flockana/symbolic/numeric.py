@@ -1,4 +1,4 @@
-"""Reference values from the symbolic expressions: thirty digits in mpmath, handed over as numpy arrays.
+"""Reference values of the symbolic expressions, by mpmath with thirty digits, as numpy arrays.
 
 Slow and exact, for tests that hold a fast kernel against the formula itself. psi_alpha comes from its
 derived pieces, the rate of the energy from the chain rule, not from the closed form.
@@ -58,36 +58,21 @@ class NumericLaw:
             return self.functions[which](*(mpmath.mpf(x) for x in (*q.ravel().tolist(), *p.ravel().tolist())))
 
     def acceleration(self, q: npt.ArrayLike, p: npt.ArrayLike) -> FloatArray:
-        """Return u, shape (n, m).
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-        """
+        """Return u, shape (n, m)."""
         flat = [float(u) for u in self._evaluate(0, q, p)]
         return np.array(flat).reshape(self.flock.n, self.flock.m)
 
     def energy(self, q: npt.ArrayLike, p: npt.ArrayLike) -> float:
-        """Return H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2.
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-        """
+        """Return H(q, p) of Algorithm 1, H_lambda(x, v) of Algorithm 2."""
         return float(self._evaluate(1, q, p))
 
     def energy_rate(self, q: npt.ArrayLike, p: npt.ArrayLike) -> float:
-        """Return the energy's time derivative along the flow, by the chain rule.
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-        """
+        """Return the energy's time derivative along the flow, by the chain rule."""
         return float(self._evaluate(2, q, p))
 
 
 def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
-    """Return a function of z with fixed parameters, hidden from sympy by name."""
+    """Return a function of z with fixed parameters."""
     named = ALPHA_NAMED
     parameters = [named.h, named.a, named.b, named.c, named.d_alpha, named.r_alpha]
     function = sp.lambdify([Z, *parameters], scalar(Z, alpha=named), "mpmath")
@@ -114,8 +99,6 @@ def numeric_law(
         ``"algorithm1"`` or ``"algorithm2"``.
     n, m : int
         Number of agents (small: the expressions grow as n^2), dimension.
-    alpha : AlphaSymbols
-        Interaction parameters, all numbers.
     gains : GainSymbols
         Gains, all numbers that the law uses.
     q_r, p_r : array_like, shape (m,), optional

@@ -1,4 +1,4 @@
-"""Beta-agents at walls and spheres: the envelope fact, and the sign of what an obstacle does to the energy.
+"""β-agents at walls and spheres: gradient of their potential, and sign of their power.
 
 The normal of a wall is any nonzero vector here, the centre and radius of a sphere are symbols; agents sit at
 q = y + x, with y a point of the wall or the centre. What is computed is rational in x and, at a sphere, |x|.
@@ -61,13 +61,6 @@ def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) 
 class GenericObstacle:
     """Agent and obstacle of one kind, by components.
 
-    Parameters
-    ----------
-    kind : str
-        ``"wall"`` or ``"sphere"``.
-    m : int
-        Dimension, 1, 2 or 3.
-
     Examples
     --------
     >>> GenericObstacle("sphere", 2).reduce(sp.sqrt(sp.Symbol("x1", real=True)**2 + sp.Symbol("x2", real=True)**2))
@@ -94,7 +87,7 @@ class GenericObstacle:
         self.derivative = beta[0].jacobian(self.x)  # of q_hat in q = y + x
 
     def reduce(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression in normal form, with |x| named rho: what vanishes identically comes out as 0."""
+        """Return an expression in normal form, with |x| named rho, so that identities come out as 0."""
         square, first = self.x.dot(self.x), self.x[0]
         on_a_line = {sp.Abs(first): self.distance, sp.sign(first): first / self.distance}  # sqrt(x . x) if m = 1
         named = expression.xreplace(on_a_line if self.m == 1 else {square: self.distance**2})

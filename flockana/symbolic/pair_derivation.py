@@ -40,12 +40,12 @@ def _at(expression: sp.Expr, at: sp.Expr, y: sp.Symbol) -> sp.Expr:
 
 
 def _along(potential: sp.Expr, at: sp.Expr, y: sp.Symbol, square: sp.Symbol) -> sp.Expr:
-    """2 dψ/d(s²), which the weight must be."""
+    """Return 2 dψ/d(s²), which must equal the weight."""
     return 2 * sp.diff(potential.subs(y, at), square)
 
 
 def alpha_steps() -> tuple[Step, ...]:
-    """Force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
+    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What is proved of a pair law by a formula: smoothness, sign of the adjacency, least potential over its range."""
+"""Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _PROOF = "every operation of the formula is analytic between the cuts, and both 
 
 
 def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Symbol, sp.Expr]:
-    """Parameters as the decimals that they print as, and the σ-norms of range and length by their formula."""
+    """Return parameters as exact decimals, with the σ-norms of range and length."""
     exact = {symbol: sp.Rational(repr(float(value))) for symbol, value in numbers.items()}
     if eps > 0.0:
         for name in ("r", "d"):
@@ -36,16 +36,7 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
 
 
 def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFacts:
-    """The facts of a formula with its numbers.
-
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    eps : float
-        ε of the σ-norm, 0 for a formula in s.
-    strength, tallest : float
-        The unit of forces and that of the adjacency: what jumps are compared with.
+    """Return the facts proved of a formula with its numbers.
 
     Examples
     --------
@@ -61,7 +52,7 @@ def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFac
 
 @dataclass(frozen=True, eq=False)
 class _Decided:
-    """A formula while it is decided."""
+    """Formula with its numbers, on which facts are decided."""
 
     cut: Cut
     eps: float
@@ -70,7 +61,7 @@ class _Decided:
 
     @property
     def facts(self) -> PairFacts:
-        """All of them."""
+        """Facts on smoothness, sign and least values."""
         weight, inside = self._signs()
         least, contact = self._energies()
         rest = [least_on(region, self.tallest) for region in self._regions(self._weights)]
@@ -90,7 +81,7 @@ class _Decided:
 
     @cached_property
     def _marks(self) -> list[sp.Expr]:
-        """0, the cuts and the range, as they are written."""
+        """Symbols of 0, the cuts and the range."""
         in_norm = self._y == Z
         return [sp.Integer(0), *self.cut.written[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
 
@@ -106,11 +97,11 @@ class _Decided:
         return self._chosen(self.cut.formula.adjacency)
 
     def place(self, y: float) -> float:
-        """The Euclidean distance of y."""
+        """Return the Euclidean distance of y."""
         return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
 
     def _point(self, mark: sp.Expr, side: int) -> fmpq:
-        """A rational number at a mark, not inside of it."""
+        """Return a rational number at a mark, rounded outwards."""
         exact = mark.xreplace(self._numbers)
         if isinstance(exact, sp.Rational):
             return rational(exact)
@@ -120,7 +111,7 @@ class _Decided:
         return fmpq(int(end[0])) * fmpq(2) ** int(end[1])
 
     def _regions(self, formulas: list[sp.Expr], *, split: bool = True) -> Iterator[Region]:
-        """Formula by formula between marks, and between the length if they are split there."""
+        """Yield regions of each formula between marks, also split at the desired distance."""
         length = sp.Symbol("d_z" if self._y == Z else "d", positive=True)
         for formula, (left, right) in zip(formulas, pairwise(self._marks), strict=True):
             inside = self._point(left, 1) < self._point(length, 0) and self._point(length, 1) < self._point(right, 0)
@@ -128,7 +119,7 @@ class _Decided:
                 yield Region(formula, self._y, self._numbers, self._point(a, 0), self._point(b, 1), (a, b), self.place)
 
     def _inner(self) -> Iterator[Fact]:
-        """Faults between the marks."""
+        """Yield faults of smoothness between the marks."""
         forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
@@ -150,7 +141,7 @@ class _Decided:
                     yield Fact("unmet", text, fact.witness) if at_end else fact
 
     def _clear(self, region: Region) -> tuple[fmpq, bool]:
-        """From where on a formula is to be looked at: 0, or as far as its germ is analytic; and whether it is."""
+        """Return the point from which a formula is checked near contact, and whether it is analytic before."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS, 2):
@@ -161,7 +152,7 @@ class _Decided:
         return region.right / 2 ** _NEAR[-1], False
 
     def _joints(self) -> Iterator[Fact]:
-        """Jumps where pieces meet."""
+        """Yield jumps where pieces meet."""
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
         slopes = self._mains if forces else [sp.diff(each, self._y) for each in self._mains]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
@@ -174,7 +165,7 @@ class _Decided:
                 yield from self._vanishes(gap, scale, place, f"{name} jumps at s = {place:g}")
 
     def _end(self) -> Iterator[Fact]:
-        """What does not vanish at the range."""
+        """Yield what does not vanish at the range."""
         main, place = self._mains[-1], self.place(self.cut.end)
         force = main if self.cut.formula.forces else sp.diff(main, self._y)
         for what, name, scale in ((force, "force", self.strength), (self._weights[-1], "adjacency", self.tallest)):
@@ -182,7 +173,7 @@ class _Decided:
             yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, place, text)
 
     def _vanishes(self, number: sp.Expr, scale: float, place: float, fault: str) -> Iterator[Fact]:
-        """Nothing if a number is 0 by algebra; a fault if it certainly is not, beyond rounding of the parameters."""
+        """Yield a fault if a number is certainly not 0, beyond rounding of the parameters."""
         zero = is_zero(number, self._numbers)
         if zero:
             return
@@ -197,7 +188,7 @@ class _Decided:
         yield Fact("assumed", f"open is whether {fault}", (place, place))
 
     def _signs(self) -> tuple[Fact, Fact]:
-        """Whether the adjacency is nonnegative, and positive inside."""
+        """Return facts whether the adjacency is nonnegative, and positive below the range."""
         found = []
         for region in self._regions([_factored(each, self._y) for each in self._weights]):
             if region.left == 0 and self._limit(region.exact) is None:
@@ -216,7 +207,7 @@ class _Decided:
         )
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
-        """Ends of a region, other than contact and the range, at which the adjacency vanishes or may."""
+        """Yield ends of a region, except contact and range, at which the adjacency vanishes or may."""
         for end, at in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
@@ -225,7 +216,7 @@ class _Decided:
                 yield Fact(status, f"the adjacency vanishes at s = {place:.6g}", (place, place))
 
     def _sign_near(self, region: Region) -> tuple[Fact, fmpq] | None:
-        """The sign of a formula that has no value at contact, beside it."""
+        """Return the sign near contact of a formula that has no value there."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS):
@@ -242,7 +233,7 @@ class _Decided:
         return None
 
     def _limit(self, formula: sp.Expr) -> arb | None:
-        """The value at contact, of a formula that is analytic there."""
+        """Return the value at contact of a formula that is analytic there."""
         with precision(_BITS, 2):
             width = fmpq(1) / 2**_CLOSE
             found = Enclosed(formula, self._y)
@@ -250,7 +241,7 @@ class _Decided:
         return None if values is None else values[0]
 
     def _energies(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Bounds of the least potential and of that at contact."""
+        """Return bounds of the least potential and of the potential at contact."""
         scale = self.strength * self.cut.end
         if self.cut.formula.forces:
             regions = list(self._regions(self._mains))
@@ -267,7 +258,7 @@ class _Decided:
         return self._sharpened(regions, low, high), contact
 
     def _sharpened(self, regions: list[Region], low: float, high: float) -> tuple[float, float]:
-        """A least value that is reached at a declared distance, proved by the sign of the rest."""
+        """Return the bounds, exact if the least value is at a declared distance."""
         scale = self.strength * self.cut.end
         for value in (region.expression.subs(self._y, end) for region in regions for end in region.ends):
             with precision(_BITS):
@@ -280,7 +271,7 @@ class _Decided:
         return low, high
 
     def _contact(self, region: Region) -> tuple[tuple[float, float], Least, fmpq]:
-        """The potential where two agents meet, its least near there, and from where on it is to be looked at."""
+        """Return the potential at contact, its least value near there, and where the checked range begins."""
         formula, y = region.exact, self._y
         value = self._limit(formula)
         if value is not None:
@@ -310,7 +301,7 @@ class _Decided:
         return (-inf, inf), Least(-inf, inf, 0.0), width
 
     def _close(self, formula: sp.Expr, slope: Germ) -> tuple[float, float] | None:
-        """The limit at contact, from a value close to it and what the slope adds at most."""
+        """Return the limit at contact, from a nearby value and a bound of the slope."""
         width = fmpq(1) / 2**_CLOSE
         with precision(4 * _CLOSE):
             end = Enclosed(formula, self._y).series(arb(width))
@@ -335,6 +326,6 @@ def _bounds(own: Germ) -> tuple[float, float] | None:
 
 
 def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
-    """A polynomial as a product, in which double zeros are seen."""
+    """Return a polynomial as a product, in which double zeros are visible."""
     small = formula.is_polynomial(y) and formula.is_Add and len(formula.free_symbols) < 4
     return sp.factor(formula) if small and sp.degree(formula, y) <= 16 else formula

@@ -1,4 +1,4 @@
-"""A pair law's formula: which distance it is in, where its pieces meet, and what follows from it by derivation.
+"""Formula of a pair law: its variable, its pieces, and derived weight and slopes.
 
 A formula is in the distance s or in the σ-norm z = (√(1 + εs²) − 1)/ε. It is cut where its pieces meet, at numbers;
 between two cuts it is smooth, and sympy derives there, in y = s² or y = z, what the sums over pairs need.
@@ -29,7 +29,7 @@ RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTION
 
 @dataclass(frozen=True)
 class PairFormula:
-    """A potential or a force, and an adjacency, as read from their texts.
+    """Potential or force, and adjacency, as parsed from text.
 
     Examples
     --------
@@ -45,12 +45,12 @@ class PairFormula:
 
     @property
     def derivative(self) -> sp.Expr:
-        """ψ', the derivative in the distance."""
+        """Derivative ψ' by the distance."""
         return self.main if self.forces else sp.diff(self.main, self.distance)
 
 
 def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> PairFormula:
-    """Read a pair law of which either the potential or its derivative is given."""
+    """Return a pair law from texts, given either the potential or its derivative."""
     taken = sorted(RESERVED & {*names})
     if taken or not all(name.isidentifier() for name in names):
         bad = taken or [name for name in names if not name.isidentifier()]
@@ -74,13 +74,13 @@ def read_pair(potential: str, force: str, adjacency: str, names: list[str]) -> P
 
 
 def _in_fractions(expression: sp.Expr) -> sp.Expr:
-    """The same with 0.1 as 1/10: what cancels between derived terms cancels to the last digit."""
+    """Return an expression with decimals as fractions (0.1 as 1/10), so that terms cancel exactly."""
     return expression.xreplace({number: sp.Rational(repr(float(number))) for number in expression.atoms(sp.Float)})
 
 
 @dataclass(frozen=True)
 class Piece:
-    """What follows from a formula between two cuts, in y: s² or z, and the root √(1 + εs²) = 1 + εz beside z.
+    """Weight, adjacency and slopes between two cuts, in y: s² or z, with the root √(1 + εs²).
 
     `potential` is None where the force was given.
     """
@@ -94,7 +94,7 @@ class Piece:
 
 
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
-    """Weight w of q_j − q_i, its slope dw/d(s²), adjacency and da/d(s²), of smooth expressions.
+    """Return weight w of q_j − q_i, dw/d(s²), adjacency and da/d(s²) of smooth expressions.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
 
 
 def _ensure_derived(derivative: sp.Expr, most: int) -> None:
-    """Refuse a formula whose derivatives are too large to be compiled."""
+    """Raise on a formula whose derivatives are too large to compile."""
     nodes = measured(derivative, {})[0]
     if nodes > most:
         raise ArgumentError(
@@ -127,7 +127,7 @@ def _ensure_derived(derivative: sp.Expr, most: int) -> None:
 
 @dataclass(frozen=True)
 class Cut:
-    """A pair formula with numbers for its parameters, cut where its pieces meet.
+    """Pair formula with numbers for its parameters, divided where its pieces meet.
 
     Examples
     --------
@@ -142,12 +142,12 @@ class Cut:
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
-        """0, the distances at which pieces meet, rising, and the end."""
+        """Numbers 0, the distances at which pieces meet, and the end, in rising order."""
         return (0.0, *self._meetings, self.end)
 
     @cached_property
     def written(self) -> tuple[sp.Expr, ...]:
-        """The marks as they are written in parameters; the end as a number."""
+        """The marks as expressions in the parameters; the end as a number."""
         return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
 
     @cached_property
@@ -160,7 +160,7 @@ class Cut:
         return inside
 
     def _meeting(self, condition: Any) -> sp.Expr:
-        """Where a condition begins or ceases to hold."""
+        """Return where a condition begins or ceases to hold."""
         y = self.formula.distance
         if not isinstance(condition, sp.core.relational.Relational):
             raise ArgumentError(f"the condition {condition} is not one comparison: expected one such as {y} < r/2")
@@ -174,7 +174,7 @@ class Cut:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """What follows from the formula between each two marks."""
+        """Derived expressions between consecutive marks."""
         found = tuple(
             derive_piece(
                 self.chosen(self.formula.main, 0.5 * (left + right)),
@@ -189,15 +189,7 @@ class Cut:
         return found
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """An expression without its pieces, those chosen that hold at a distance.
-
-        Parameters
-        ----------
-        expression : sympy.Expr
-            Of the distance.
-        at : float
-            In the distance of the formula.
-        """
+        """Return an expression with the piece that holds at a distance."""
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
@@ -212,14 +204,14 @@ class Cut:
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """The value of an expression in parameters alone, to `DIGITS`."""
+        """Return the value of an expression in parameters alone, to `DIGITS`."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
             raise ArgumentError(f"{expression} has no value for these parameters: expected a finite number") from None
 
     def function(self, expression: sp.Expr) -> Callable[[Any], Any]:
-        """An expression of a piece as a function of y, to `DIGITS`; NaN where it has no real value."""
+        """Return an expression as a function of y, to `DIGITS`; NaN where it is not real."""
         y = Z if self.formula.distance == Z else SQUARE
         expression = expression.subs(ROOT, 1 + EPS * Z)
         symbols = list(self.numbers)
@@ -243,7 +235,7 @@ _LONGEST = 1e12  # argument of an exponential: beyond it the result has more dig
 
 
 def _bounded_exp(x: Any) -> Any:
-    """The exponential; 0 far below any number, and no value far above."""
+    """Return the exponential; 0 on underflow, NaN on overflow."""
     if mpmath.mpf(x) > _LONGEST:
         raise OverflowError
     return mpmath.exp(x) if x > -_LONGEST else mpmath.mpf(0)
@@ -263,7 +255,7 @@ _BOUNDED: dict[str, Callable[..., Any]] = {
 
 
 def _conditions(expression: sp.Basic) -> Iterator[Any]:
-    """The comparisons on which the pieces of an expression hang."""
+    """Return the comparisons that select the pieces of an expression."""
     for piecewise in expression.atoms(sp.Piecewise):
         for _, condition in piecewise.args:
             if condition not in (sp.true, sp.false):

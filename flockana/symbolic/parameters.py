@@ -1,4 +1,4 @@
-"""Frozen bundles of the parameters that the formulas contain: symbols by default, exact numbers where given."""
+"""Parameters of the formulas as frozen bundles: symbols by default, exact numbers where given."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def exact(name: str, value: Any) -> sp.Expr:
 
 
 def _fill(bundle: Any, derived: tuple[str, ...] = ()) -> None:
-    """Make every given field of a frozen bundle an exact expression."""
+    """Convert every given field of a frozen bundle to an exact expression."""
     for field in fields(bundle):
         value = getattr(bundle, field.name)
         if value is not None or field.name not in derived:
@@ -43,7 +43,7 @@ def _fill(bundle: Any, derived: tuple[str, ...] = ()) -> None:
 
 
 def _require(condition: bool | None, message: str) -> None:
-    """Raise on a condition that sympy decides to be false; open ones are assumptions."""
+    """Raise on a condition that is certainly false; undecided ones are assumptions."""
     if condition is False:
         raise ArgumentError(message)
 
@@ -146,7 +146,7 @@ class BetaSymbols:
 
 @dataclass(frozen=True)
 class GainSymbols:
-    """Gains of the protocols, symbols by default; floats become the decimal fractions they print as.
+    """Gains of the laws, symbols by default; floats become exact decimal fractions.
 
     Parameters
     ----------

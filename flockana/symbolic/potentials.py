@@ -32,7 +32,7 @@ BETA_NAMED = BetaSymbols(d_beta=sp.Symbol("d_beta", positive=True))
 
 @dataclass(frozen=True)
 class _Potential:
-    """Integral from `zero` of `smooth` on [0, edge], of `tapered` on [edge, cutoff], of 0 beyond."""
+    """Potential as integral from `zero`: `smooth` on [0, edge], `tapered` on [edge, cutoff], 0 beyond."""
 
     smooth: Scalar
     tapered: Scalar
@@ -56,7 +56,7 @@ class _Potential:
         )
 
     def conditions(self, z: sp.Expr) -> tuple[sp.Basic, sp.Basic, sp.Basic]:
-        """Return where each piece holds."""
+        """Return the condition of each piece."""
         return sp.Le(z, self.edge), sp.And(sp.Ge(z, self.edge), sp.Le(z, self.cutoff)), sp.Ge(z, self.cutoff)
 
     def expression(self, z: sp.Expr) -> sp.Expr:
@@ -70,7 +70,7 @@ class _Potential:
         return sp.Piecewise(*branches)
 
     def residuals(self, zero_on_plateau: bool) -> tuple[sp.Expr, ...]:
-        """Return what must vanish: derivative less force on each piece, the jumps, the value at the zero."""
+        """Return residuals that must vanish: derivative less force, jumps, and the value at the zero."""
         near, middle, far = self.pieces(zero_on_plateau)
         at_zero = near if zero_on_plateau else middle
         computed = (
@@ -107,7 +107,7 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
 
 def alpha_potential(alpha: AlphaSymbols) -> _Potential:
-    """Return the pieces that make psi_alpha."""
+    """Return the pieces of psi_alpha."""
     return _Potential(
         smooth=lambda z: phi(z - alpha.d_alpha, alpha=alpha),
         tapered=lambda z: taper(z / alpha.r_alpha, h=alpha.h) * phi(z - alpha.d_alpha, alpha=alpha),
@@ -119,7 +119,7 @@ def alpha_potential(alpha: AlphaSymbols) -> _Potential:
 
 
 def _beta(beta: BetaSymbols) -> _Potential:
-    """Return the pieces that make psi_beta, whose zero is its cut-off."""
+    """Return the pieces of psi_beta, which is 0 at its cut-off."""
     area = beta.unit**2
 
     def repulsion(z: sp.Expr) -> sp.Expr:
@@ -136,7 +136,7 @@ def _beta(beta: BetaSymbols) -> _Potential:
 
 
 def _refuse_indicator(h: sp.Expr) -> None:
-    """Refuse h = 1, at which there is no taper to integrate over."""
+    """Raise for h = 1, at which there is no taper to integrate over."""
     if h == 1:
         raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
 

@@ -1,4 +1,4 @@
-"""Expressions to the text of scalar functions that a compiler takes: constants taken out, common parts shared."""
+"""Source of compiled scalar functions from sympy expressions, with common subexpressions shared."""
 
 from __future__ import annotations
 
@@ -11,14 +11,7 @@ _WHOLE = 8  # powers up to it are products
 
 
 class Constants:
-    """Constant subexpressions, by their place among the parameters.
-
-    Parameters
-    ----------
-    variables : iterable of sympy.Symbol
-        The variables.
-    first : int
-        Place of the first constant.
+    """Constant subexpressions, numbered among the parameters.
 
     Examples
     --------

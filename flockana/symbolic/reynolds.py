@@ -1,4 +1,4 @@
-"""Reynolds' rules in Algorithm 1 and erratum E14: the slides lose the term -S_i q_i of the gradient part."""
+"""Reynolds' rules in Algorithm 1, and erratum E14: the slides lose the term -S_i q_i."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bounds of the slopes of a pair law on parts of its range: how fast force and adjacency may change."""
+"""Bounds of a pair law's slopes on parts of its range."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BITS = 96
 
 
 class SlopeBound(NamedTuple):
-    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where none is known."""
+    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where unknown."""
 
     left: float
     right: float
@@ -28,21 +28,7 @@ class SlopeBound(NamedTuple):
 
 
 def slope_bounds(cut: Cut, eps: float, r: float, places: list[float], parts: int) -> tuple[SlopeBound, ...]:
-    """Bounds of the slopes on equal parts of the range, split at the cuts.
-
-    Parameters
-    ----------
-    cut : Cut
-        The formula.
-    eps : float
-        ε of the σ-norm, 0 for a formula in s.
-    r : float
-        The range.
-    places : list of float
-        Euclidean distances of the cuts.
-    parts : int
-        Number of equal parts.
-    """
+    """Return bounds of the slopes on equal parts of the range, also split at the cuts."""
     numbers, found = exact_numbers(cut.numbers, eps), []
     root = sp.sqrt(1 + EPS * S**2)
     norm, along = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
@@ -59,7 +45,7 @@ def slope_bounds(cut: Cut, eps: float, r: float, places: list[float], parts: int
 
 
 def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:
-    """A bound of a Taylor coefficient on an interval."""
+    """Return a bound of a Taylor coefficient on an interval."""
     middle = (left + right) / 2
     with precision(_BITS, order + 1):
         found, at = of.series(interval(left, right)), of.series(arb(middle))

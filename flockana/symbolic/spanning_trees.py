@@ -1,4 +1,4 @@
-"""Matrices of directed perception graphs, and what they give on rooted trees: the bearing-distance Theorem 1.
+"""Matrices of directed perception graphs on rooted trees (bearing-distance Theorem 1).
 
 Edge e = (j, i): j sends, i receives; D has +1 at the receiver and -1 at the sender, D_in keeps the +1. With
 x = (-D^T (x) I) p the minimal model reads u = -D_in W^s D^T p - D_in W^a D^T v, W^s = diag w_e. Everything here is
@@ -80,7 +80,7 @@ def stacked_form(edges: Edges) -> Derivation:
 
 
 def separation_forms(edges: Edges) -> dict[str, Derivation]:
-    """Derive the separation from its sums, and hold the paper's matrix forms against it, as printed and corrected.
+    """Derive the separation from its sums, compared with the paper's matrix forms, printed and corrected.
 
     With q_e = k_e x_e, k_e = rho/|x_e|, agent i separates by the sum of x_e - q_e over its edges (mu = 1). The printed
     (28) adds q, and the identity before (34) gives q the sign of D^T p: both are wrong, and since they are used

@@ -1,4 +1,4 @@
-"""Algorithm 2 splits: structural dynamics in the moving frame, and linear translational dynamics of its origin."""
+"""Split of Algorithm 2 into structural dynamics in the moving frame and linear translational dynamics."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def gamma_force(
 
 
 def _agent_rates(m: int, gains: GainSymbols, moving: bool) -> tuple[sp.Expr, sp.Expr]:
-    """Return what one agent and the gamma-agent add to dH/dt, by the chain rule and as claimed, in Q and P."""
+    """Return the terms of dH/dt from one agent and the gamma-agent, derived and claimed, in Q and P."""
     q_i, p_i, q_r, p_r, speed = (vector(name, m) for name in ("q_i", "p_i", "q_r", "p_r", "s"))  # s: the true dq_r/dt
     energy = gains.c1_gamma * sigma_norm(q_i - q_r, eps=_ONE) + HALF * p_i.dot(p_i)
     force = gamma_force(q_i, p_i, q_r, p_r, gains=gains)

@@ -97,7 +97,7 @@ def frequency_gain(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, ome
 
 
 def _squared_moduli(scale: sp.Expr, gains: GainSymbols, square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """Squared moduli of numerator and denominator of G(jω), polynomials in ω²."""
+    """Return squared moduli of numerator and denominator of G(jω), polynomials in ω²."""
 
     def modulus(polynomial: sp.Expr) -> sp.Expr:
         even, odd = ((polynomial + sign * polynomial.subs(S, -S)) / 2 for sign in (1, -1))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
 
 from flockana.base.checks import ensure_points, ensure_positive
-from flockana.base.errors import ArgumentError, UnknownNameError, told
+from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
@@ -18,7 +20,9 @@ from flockana.theorems.theorem import Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
     from flockana.certified.tube import Tube
+    from flockana.theorems.together import Verdicts
 
+T_SPAN = (0.0, 20.0)  # of a law that is run without one
 _RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"
 _REMEDY = "simulate(law, q0, p0, t_span) makes one; metrics, plots and the player take recordings as they are"
 
@@ -56,26 +60,49 @@ def theorem(name: str) -> Theorem:
     Parameters
     ----------
     name : str
-        One of `theorems`.
+        One of `theorems`, or the name that its source prints, such as "Theorem 3".
 
     Raises
     ------
     UnknownNameError
         If there is none; the closest name is suggested.
+    ArgumentError
+        If several sources print a theorem of that name.
 
     Examples
     --------
-    >>> theorem("os-3").kind
-    'trajectory'
+    >>> theorem("os-3").kind, theorem("Theorem 3").id
+    ('trajectory', 'os-3')
     """
     try:
         return catalogue()[name]
     except (KeyError, TypeError):
-        raise UnknownNameError("theorem", name, theorems()) from None
+        return _printed_as(name)
 
 
+def _printed_as(name: Any) -> Theorem:
+    """Return the theorem that its source prints under a name such as "Theorem 3"."""
+    wanted = re.compile(rf"\b{re.escape(str(name).strip())}$", re.IGNORECASE)
+    found = {i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(_printed(x.source))}
+    if len(found) == 1:
+        return catalogue()[next(iter(found))]
+    if found:
+        listed = "; ".join(f"{i} ({source})" for i, source in found.items())
+        raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
+    raise UnknownNameError("theorem", name, theorems())
+
+
+def _printed(source: str) -> str:
+    """Return where a statement is printed, without what is ours."""
+    return re.split(r";| \(", source)[0]
+
+
+@overload
+def verify(name: None = None, trajectory: Any = None, **case: Any) -> Verdicts: ...
+@overload
+def verify(name: str | Theorem, trajectory: Any = None, **case: Any) -> Verdict: ...
 def verify(
-    name: str | Theorem,
+    name: str | Theorem | None = None,
     trajectory: Trajectory | Tube | None = None,
     *,
     basin: Any = None,
@@ -88,13 +115,15 @@ def verify(
     r: float | None = None,
     tolerances: Tolerances | None = None,
     subject: str = "",
-) -> Verdict:
+) -> Verdict | Verdicts:
     """Check a theorem: on a run, on a law that is run first, on a configuration, or (errata) by itself.
+
+    Without a theorem, check all that are about the law of the run.
 
     Parameters
     ----------
-    name : str or Theorem
-        One of `theorems`, or a theorem of your own.
+    name : str or Theorem, optional
+        One of `theorems`, or a theorem of your own; by default all that are about the law.
     trajectory : Trajectory or Tube, optional
         The run, for theorems about motion. Of a tube (`flockana.enclose`) the claims are decided rigorously, for every
         start that it encloses, and their rigour reads ``"interval"``; they are those of the law whose parameters are
@@ -114,7 +143,7 @@ def verify(
 
     Returns
     -------
-    Verdict
+    Verdict, or Verdicts without a theorem
 
     A claim about a run carries the error of its integration: the same start is integrated once more, a hundred times
     more tightly, and both must agree (`flockana.theorems.observed`). A failed run verifies nothing.
@@ -130,6 +159,11 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
+    if name is None:
+        from flockana.theorems.together import verify_together  # which checks each theorem by this function
+
+        run = trajectory if trajectory is not None else _simulated(law, q0, p0, t_span)
+        return verify_together(run, tolerances=tolerances, subject=subject)
     item = name if isinstance(name, Theorem) else theorem(name)
     used = Tolerances() if tolerances is None else tolerances
     if not isinstance(used, Tolerances):
@@ -137,7 +171,8 @@ def verify(
     motion = {"law": law, "q0": q0, "p0": p0, "t_span": t_span}
     still = {"q": q, "d": d, "r": r}
     given = {k for k, v in {"trajectory": trajectory, **motion, **still}.items() if v is not None}
-    needed = {"trajectory": ({"trajectory"}, set(motion)), "configuration": (set(still),), "fixed": (set(),)}[item.kind]
+    start = given & set(motion) if {"law", "q0"} <= given else set(motion)
+    needed = {"trajectory": ({"trajectory"}, start), "configuration": (set(still),), "fixed": (set(),)}[item.kind]
     if given not in needed:
         options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
         raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
@@ -146,14 +181,21 @@ def verify(
     if basin is not None:
         raise ArgumentError("a basin decides the limit of a tube: expected verify(theorem, enclose(...), basin=...)")
     if item.kind == "trajectory":
-        run = trajectory if trajectory is not None else simulate(law, q0, p0, t_span)
+        run = trajectory if trajectory is not None else _simulated(law, q0, p0, t_span)
         if not isinstance(run, Trajectory):
             raise ArgumentError(f"trajectory = {run!r}: expected a Trajectory, such as scenario('collapse').run()")
         return _verified_run(item, run, used, subject)
     subject_data: tuple[Any, ...] = ()
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
-    return Verdict(item.id, *item.examine(*subject_data, used), used, subject)
+    return Verdict(item.id, *item.examine(*subject_data, used), used, subject, item.author)
+
+
+def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
+    """Return a run from a start, at rest and over 20 time units unless told otherwise."""
+    if law is None or q0 is None:
+        raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
+    return simulate(law, q0, np.zeros(np.shape(q0)) if p0 is None else p0, T_SPAN if t_span is None else t_span)
 
 
 def _is_tube(run: Any) -> bool:
@@ -169,14 +211,16 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
     if item.enclosed is None:
         able = ", ".join(name for name, one in catalogue().items() if one.enclosed is not None)
         raise ArgumentError(f"{item.id} is not decided from a tube: expected a Trajectory, or one of {able}")
-    tube.ensure_whole()
+    tube.ensure_unedited()
     if basin is not None:
         from flockana.certified.basin import Basin
 
         if not isinstance(basin, Basin):
-            raise ArgumentError(f"basin = {told(basin)}: expected a basin, as certify(...) returns it, or None")
-        basin.ensure_whole()
-    return Verdict(item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
+            raise ArgumentError(f"basin = {format_value(basin)}: expected a basin, as certify(...) returns it, or None")
+        basin.ensure_unedited()
+    return Verdict(
+        item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject, item.author
+    )
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
@@ -184,4 +228,4 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
     ensure_fits(run)
     seen = Observed.of(run)
     hypotheses, claims = item.examine(seen, tolerances)
-    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject)
+    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject, item.author)

@@ -7,13 +7,15 @@ decides instead, and the numbers stand beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.errata import printed
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
+from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
 
 def judged(
@@ -345,12 +347,15 @@ def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields
 def erratum(
     name: str,
     *,
-    title: str,
+    title: str = "",
     statement: str,
     source: str,
     check: Callable[[Tolerances], list[Claim]],
     expected: Mapping[str, Status],
     references: tuple[str, ...] = ("olfati-saber-2006",),
+    author: By = "source",
+    corrected: tuple[str, ...] = (),
+    ours: tuple[str, ...] = (),
 ) -> Theorem:
     """A statement that is checked by itself, on no run of the user's: an erratum, with what is expected of its claims.
 
@@ -359,13 +364,15 @@ def erratum(
     name : str
         Its id.
     title, statement, source : str
-        As in `Theorem`.
+        As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
     check : callable
         Returns the claims, from the tolerances.
     expected : mapping of str to str
         Status that is expected of each claim; that of the whole follows from them.
     references : tuple of str
         Keys of the bibliography.
+    author, corrected, ours
+        As in `Theorem`.
 
     Examples
     --------
@@ -376,13 +383,17 @@ def erratum(
     >>> dict(two.expected), two.examine(Tolerances())[1][0].status
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
-    return Theorem(
+    item = Theorem(
         id=name,
-        title=title,
+        title=title or printed(name),
         statement=statement,
         source=source,
         kind="fixed",
         check=lambda tolerances: ([], check(tolerances)),
         references=references,
-        expected={name: overall(expected.values())} | {f"{name}:{claim}": status for claim, status in expected.items()},
+        author=author,
+        corrected=corrected,
+        ours=ours,
     )
+    by_author = overall(status for claim, status in expected.items() if item.by(claim) == author)
+    return replace(item, expected={name: by_author} | {f"{name}:{claim}": s for claim, s in expected.items()})

@@ -80,4 +80,5 @@ THEOREM = Theorem(
     kind="fixed",
     check=_check_delays,
     expected={"delay-margin": "verified"},
+    author="flockana",
 )

@@ -20,7 +20,7 @@ FLOOR = 300.0  # and how often the relative tolerance, where the two agree by ch
 
 def ensure_fits(run: Trajectory) -> None:
     """Raise unless the samples of a run are those of its law: the inputs, and some steps, are computed anew."""
-    run.remembered("fits", lambda: _ensure_fits(run))
+    run.cached("fits", lambda: _ensure_fits(run))
 
 
 def _ensure_fits(run: Trajectory) -> bool:

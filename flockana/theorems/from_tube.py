@@ -177,11 +177,13 @@ def in_the_limit(
     )
 
 
-def converges(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str) -> Claim:
-    """The claim that every start of the tube converges to the orbit of the basin that it ends in."""
+def converges(
+    case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str, proof: str | None = None
+) -> Claim:
+    """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
-    return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught)
+    return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught, proof=proof)
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:

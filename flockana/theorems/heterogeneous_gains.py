@@ -75,4 +75,5 @@ THEOREM = Theorem(
         "heterogeneous-gains:apart": "inconclusive",
         "heterogeneous-gains:simplified": "verified",
     },
+    ours=("apart",),
 )

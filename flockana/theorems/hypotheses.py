@@ -96,7 +96,7 @@ def law_is_or_composed(name: str, *laws: type) -> Callable[[Observed], Hypothesi
     return applied_to
 
 
-def law_with_common_gains(name: str, *laws: type) -> Callable[[Observed], Hypothesis]:
+def law_with_common_gains(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
     """As `law_is`, and one c1γ and one c2γ for all agents.
 
     Parameters
@@ -105,6 +105,8 @@ def law_with_common_gains(name: str, *laws: type) -> Callable[[Observed], Hypoth
         The laws, as the hypothesis names them.
     *laws : type
         Classes of laws with gains.
+    formulas : bool
+        As in `law_is`.
 
     Examples
     --------
@@ -114,7 +116,7 @@ def law_with_common_gains(name: str, *laws: type) -> Callable[[Observed], Hypoth
     """
 
     def applied_to(run: Observed) -> Hypothesis:
-        law = applied(run, name, *laws)
+        law = applied(run, name, *laws, formulas=formulas)
         return law if law.status == "unmet" or not run.law.gains.per_agent else common_gains(run)
 
     return applied_to

@@ -8,7 +8,9 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import PairInteraction
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
+from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Hypothesis
 
 
@@ -38,6 +40,8 @@ def meeting(run: Trajectory | Observed) -> Meeting:
     (True, 0.0)
     """
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
+    if gain == 0.0:
+        return Meeting(0.0, 0.0)
     (least, _), (top, most) = _bounds(pair)
     if most == -np.inf:
         return Meeting(0.0, -np.inf)  # a pair that meets has less energy than any bound
@@ -54,6 +58,12 @@ def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, fl
     top = contact[0] if contact[0] > -np.inf or contact[1] == -np.inf else float(np.nan_to_num(ends[0], nan=-np.inf))
     seen = least[0] if np.isfinite(least[0]) else float(min(pair.far_potential, np.nanmin(ends)))
     return (seen, seen), (top, max(top, contact[1] if np.isfinite(contact[1]) else top))
+
+
+def above_least(run: Trajectory | Observed, energy: Enclosure) -> Enclosure:
+    """Return an energy less the least that all pairs together can have."""
+    floor = meeting(run).floor
+    return energy if floor == 0.0 else (energy - floor).widened(4.0 * EPS * abs(floor))
 
 
 def least_is_known(run: Trajectory | Observed) -> list[Hypothesis]:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.memory import Remembering
+from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
@@ -44,7 +44,7 @@ class End(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Observed(Remembering):
+class Observed(ResultCache):
     """A run and a second one from the same start, with enclosures of what both show.
 
     Parameters
@@ -70,7 +70,7 @@ class Observed(Remembering):
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
         """Return a run as observed, with its second run; kept with the run."""
-        return run.remembered("observed", lambda: cls(run, *paired(run)))
+        return run.cached("observed", lambda: cls(run, *paired(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:

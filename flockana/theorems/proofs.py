@@ -5,6 +5,8 @@ from __future__ import annotations
 from flockana.theorems.theorem import Rigour
 
 RIGOUR: dict[str, Rigour] = {
+    "any-potential": "smt",
+    "any-potential-limits": "smt",
     "barrier": "interval",
     "bearing-distance": "smt",
     "bearing-distance-printed": "smt",
@@ -13,6 +15,7 @@ RIGOUR: dict[str, Rigour] = {
     "collisions": "smt",
     "compressed-patches": "interval",
     "constant-acceleration": "symbolic",
+    "convergence": "smt",
     "cucker-smale": "smt",
     "dead-zone": "smt",
     "delayed-consensus": "interval",
@@ -40,4 +43,8 @@ RIGOUR: dict[str, Rigour] = {
     "turned-axes": "symbolic",
 }
 
-CITES: dict[str, tuple[str, ...]] = {"matched-velocities": ("Barbalat",)}
+CITES: dict[str, tuple[str, ...]] = {
+    "any-potential-limits": ("Barbalat", "LaSalle"),
+    "convergence": ("Łojasiewicz", "centre-stable manifold"),
+    "matched-velocities": ("Barbalat",),
+}

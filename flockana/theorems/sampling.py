@@ -215,13 +215,18 @@ class Nets:
     open_links: FloatArray
 
 
+def reach(seen: Observed) -> float:
+    """Return the distance within which two agents are linked: r of the lattice, or the range of the pair law."""
+    return float(seen.law.alpha.range if seen.law.lattice is None else seen.law.lattice[1])
+
+
 def nets_at(seen: Observed) -> Nets:
     """Return the net at each sample of a run of a law with a range."""
-    return seen.remembered("nets at samples", lambda: _nets_at(seen))
+    return seen.cached("nets at samples", lambda: _nets_at(seen))
 
 
 def _nets_at(seen: Observed) -> Nets:
-    r, rows, doubt = seen.law.lattice[1], [], _rounding(seen) + 2.0 * seen.shape_error.max(axis=1)
+    r, rows, doubt = reach(seen), [], _rounding(seen) + 2.0 * seen.shape_error.max(axis=1)
     for k, q in enumerate(seen.run.q):
         if not np.isfinite(doubt[k]):
             return _unknown_nets(seen, len(seen.t))
@@ -232,7 +237,7 @@ def _nets_at(seen: Observed) -> Nets:
 
 def nets_between(seen: Observed) -> Nets:
     """Return the net in each interval between samples: what the motion may bring to r is left open."""
-    return seen.remembered("nets between samples", lambda: _nets_between(seen))
+    return seen.cached("nets between samples", lambda: _nets_between(seen))
 
 
 def _nets_between(seen: Observed) -> Nets:
@@ -240,7 +245,7 @@ def _nets_between(seen: Observed) -> Nets:
         return Nets(*(getattr(nets_at(seen), field.name)[:-1] for field in fields(Nets)))
     if seen.doubt:
         return _unknown_nets(seen, len(seen.t) - 1)
-    run, r, rounding, rows = seen.run, seen.law.lattice[1], _rounding(seen), []
+    run, r, rounding, rows = seen.run, reach(seen), _rounding(seen), []
     h, (speed, force, off), path = np.diff(run.t), _motion(seen), run.path
     first = np.searchsorted(path.t, run.t)
     for k in range(len(run.t) - 1):
@@ -285,7 +290,7 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
 
 def _rounding(seen: Observed) -> float:
     """Rounding of a distance of two agents, compared with r."""
-    return float(16.0 * EPS * (np.abs(seen.run.q).max() + seen.law.lattice[1]))
+    return float(16.0 * EPS * (np.abs(seen.run.q).max() + reach(seen)))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:

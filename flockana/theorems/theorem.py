@@ -4,89 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
-from flockana.base.checks import ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.theorems.errata import Erratum, erratum_of
+from flockana.theorems.headline import BYLINES, headline
+from flockana.theorems.tolerances import Tolerances as Tolerances
+from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
 Rigour = Literal["symbolic", "smt", "interval", "numeric"]
 HypothesisStatus = Literal["met", "unmet", "assumed"]
 About = Literal["run", "limit", "all"]
 Kind = Literal["trajectory", "configuration", "fixed"]
+By = Literal["source", "corrected", "flockana"]  # whose statement it is
 
 _RIGOURS: tuple[Rigour, ...] = ("numeric", "interval", "smt", "symbolic")  # weakest first
-
-
-@dataclass(frozen=True)
-class Tolerances:
-    """Every threshold that a verdict uses; it is shown with the verdict.
-
-    Parameters
-    ----------
-    energy : float
-        Largest energy-balance residual, relative to the largest |H| of the run, that still counts as the identity.
-    velocity : float
-        Velocity mismatch K̃ below which velocities count as matched, relative to the square of the law's speed scale.
-    force : float
-        Largest force on an agent in the moving frame, relative to the law's force scale, below which a state counts as
-        an equilibrium.
-    lattice : float
-        Largest |link − d|/d of what is called an α-lattice; measured, so not exact.
-    quasi : float
-        Largest |link − d|/d of what is called a quasi-α-lattice (δ ≪ d).
-    curvature : float
-        Smallest Hessian eigenvalue, relative to the largest, that counts as positive.
-    contact : float
-        Distance, relative to d, at which two agents count as coincident.
-    giant : float
-        Share of the agents that a giant component holds at least.
-    cohesion : float
-        Growth of the cohesion radius over the window, as a factor, that still counts as cohesive.
-    deviation : float
-        ε₁ of α-flocking: Ẽ ≤ ε₁.
-    mismatch : float
-        ε₂ of α-flocking: K̃ ≤ ε₂, relative to the square of the law's speed scale.
-    settle : float
-        Share of the run that is left out as transient before α-flocking is judged.
-    agreement : float
-        Relative difference at which a measured figure agrees with a predicted or a reported one.
-
-    Lengths, times and forces are relative to `Trajectory.scales`, so that a verdict is the same in all units.
-
-    Raises
-    ------
-    ArgumentError
-        If one is no finite number > 0 (`settle` may be 0), or a share (`giant`, `settle`) is not below 1.
-
-    Examples
-    --------
-    >>> Tolerances(quasi=0.1).quasi
-    0.1
-    """
-
-    energy: float = 1e-6
-    velocity: float = 1e-10
-    force: float = 1e-6
-    lattice: float = 1e-6
-    quasi: float = 0.1
-    curvature: float = 1e-6
-    contact: float = 1e-9
-    giant: float = 0.5
-    cohesion: float = 1.5
-    deviation: float = 0.05
-    mismatch: float = 1e-4
-    settle: float = 0.5
-    agreement: float = 0.02
-
-    def __post_init__(self) -> None:
-        for field_ in fields(self):
-            ensure = ensure_nonnegative if field_.name == "settle" else ensure_positive
-            value = ensure(f"tolerances.{field_.name}", getattr(self, field_.name))
-            if field_.name in ("giant", "settle") and value >= 1.0:
-                raise ArgumentError(f"tolerances.{field_.name} = {value:g}: expected a share below 1")
-            object.__setattr__(self, field_.name, value)
 
 
 @dataclass(frozen=True)
@@ -146,6 +80,8 @@ class Claim:
         Lemmas of analysis that the deciding proof takes from the literature.
     contradicts : str
         Identifier of the proof that the decided numbers contradict; the run or the library is at fault then.
+    by : {"source", "corrected", "flockana"}
+        Whose claim it is: the source's, as printed; a correction of it; or the library's own.
 
     Raises
     ------
@@ -169,6 +105,7 @@ class Claim:
     about: About = "run"
     contradicts: str = ""
     cites: tuple[str, ...] = ()
+    by: By = "source"
 
     def __post_init__(self) -> None:
         if self.error is not None and self.error < 0.0:
@@ -203,6 +140,8 @@ class Verdict:
         Thresholds that were used.
     subject : str
         What it was checked on.
+    author : {"source", "corrected", "flockana"}
+        Whose theorem it is: its claims alone decide the status.
     """
 
     theorem: str
@@ -210,11 +149,34 @@ class Verdict:
     claims: tuple[Claim, ...]
     tolerances: Tolerances = field(default_factory=Tolerances)
     subject: str = ""
+    author: By = "source"
+
+    @property
+    def main_claims(self) -> tuple[Claim, ...]:
+        """Claims of the theorem's author."""
+        return tuple(claim for claim in self.claims if claim.by == self.author)
+
+    @property
+    def further_claims(self) -> tuple[Claim, ...]:
+        """Corrections and extensions, which leave the status as it is."""
+        return tuple(claim for claim in self.claims if claim.by != self.author)
 
     @property
     def status(self) -> Status:
-        """Refuted if a claim is; else inconclusive if one is; else verified if one is; else vacuous."""
-        return overall([claim.status for claim in self.claims])
+        """Of the author's claims: refuted if one is; else inconclusive if one is; else verified; else vacuous."""
+        return overall(claim.status for claim in self.main_claims)
+
+    @property
+    def summary(self) -> str:
+        """The status with counts, and apart from it the corrections and extensions.
+
+        Examples
+        --------
+        >>> claims = Claim("i", "vacuous"), Claim("cross", "verified", stated="no two links cross", by="flockana")
+        >>> Verdict("os-5", (Hypothesis("κ > 1", "unmet"),), claims).summary
+        '1 of 1 vacuous: κ > 1 does not hold; our extension: no two links cross, verified'
+        """
+        return headline(self)
 
     @property
     def contradictions(self) -> tuple[Claim, ...]:
@@ -224,7 +186,7 @@ class Verdict:
     @property
     def rigour(self) -> Rigour:
         """The weakest rigour among the claims that decide the status."""
-        deciding = [c.rigour for c in self.claims if c.status == self.status] or ["numeric"]
+        deciding = [c.rigour for c in self.main_claims if c.status == self.status] or ["numeric"]
         return min(deciding, key=_RIGOURS.index)
 
     def claim(self, name: str) -> Claim:
@@ -250,13 +212,23 @@ class Verdict:
         data: dict[str, Any] = _plain(asdict(self))
         for claim in data["claims"]:
             claim["needs"] = [need["name"] for need in claim["needs"]]
-        return {"theorem": data.pop("theorem"), "status": self.status, "rigour": self.rigour} | data
+        head = {"theorem": data.pop("theorem"), "status": self.status, "summary": self.summary, "rigour": self.rigour}
+        return head | data
 
     def __str__(self) -> str:
         lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
+        lines += [f"  {self.summary}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
-        lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.claims]
+        lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.main_claims]
+        lines += [f"  {c.name:>14} {c.status:12} [{BYLINES[c.by]}] {c.detail}{c.cited}" for c in self.further_claims]
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return verdict_html(self)
+
+    def to_latex(self) -> str:
+        """Return the claims as a LaTeX ``tabular`` in the style of booktabs."""
+        return verdict_latex(self)
 
 
 Lead = Callable[[Any, Claim], float]
@@ -297,6 +269,10 @@ class Theorem:
         Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis.
     enclosed : callable, optional
         As `check`, of a tube (`flockana.enclose`), a certified basin that it may end in or None, and the tolerances.
+    author : {"source", "corrected", "flockana"}
+        Whose theorem it is; the claims are the author's unless named below.
+    corrected, ours : tuple of str
+        Names of the claims that correct the source, and of the library's own.
     """
 
     id: str
@@ -312,6 +288,24 @@ class Theorem:
     claims: tuple[str, ...] = ()
     reason: str = "{name}: {detail}"
     enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+    author: By = "source"
+    corrected: tuple[str, ...] = ()
+    ours: tuple[str, ...] = ()
+
+    @property
+    def erratum(self) -> Erratum | None:
+        """What the source prints and what is right, if the theorem checks an erratum."""
+        return erratum_of(self.id)
+
+    def by(self, claim: str) -> By:
+        """Return whose a claim is.
+
+        Parameters
+        ----------
+        claim : str
+            Its name.
+        """
+        return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
     def examine(
         self, *case: Any, check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
@@ -332,8 +326,11 @@ class Theorem:
             hypotheses, claims = [*hypotheses, *further], list(stated)
         if (missed := unmet(hypotheses)) is not None:
             text, made = self.reason.format(name=missed.name, detail=missed.detail), {claim.name for claim in claims}
-            claims += [Claim(name, "vacuous", detail=text) for name in self.claims if name not in made]
-        return tuple(hypotheses), tuple(claims)
+            left_out = (name for name in self.claims if name not in made)
+            claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
+        return tuple(hypotheses), tuple(
+            claim if claim.by != "source" else replace(claim, by=self.by(claim.name)) for claim in claims
+        )
 
 
 def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:

@@ -30,6 +30,7 @@ def data_of(verdict):
     """What a verdict says, as plain data."""
     kept = (
         "name",
+        "by",
         "status",
         "rigour",
         "proof",

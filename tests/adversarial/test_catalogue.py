@@ -12,7 +12,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.scenarios import scenario, scenarios
 from tests.adversarial.cases import Case
 from tests.adversarial.published import changes_of_run, published_runs
-from tests.adversarial.transforms import UNITS, UnchangedError, in_units, later, renumbered, rigid
+from tests.adversarial.transforms import UNITS, UnchangedError, delayed_start, in_units, renumbered, rigid
 
 QUICK = {  # one change each in the sample; every change of every scenario in the attack
     "head-on": "micrometres and milliseconds",
@@ -49,7 +49,7 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
     "turned and moved": turn_and_move,
     "moved": lambda case, rng: rigid(case, np.eye(np.shape(case.q0)[1]), 20.0 * rng.normal(size=np.shape(case.q0)[1])),
     "renumbered": lambda case, rng: renumbered(case, rng.permutation(len(case.q0))),
-    "later": lambda case, rng: later(case, 1000.0),
+    "later": lambda case, rng: delayed_start(case, 1000.0),
     "half the tolerance": tighter(0.5),
     "twice the tolerance": tighter(2.0),
     "a hundredth of the tolerance": tighter(0.01),

@@ -84,15 +84,17 @@ def test_one_agent_through_two_others_with_a_leader():
     st.booleans(),
     seeds,
 )
-def test_a_centre_that_is_told_converges(pull, zeta, frequency, told, seed):
+def test_a_centre_that_is_told_converges(pull, zeta, frequency, feedforward, seed):
     """Agents out of reach of each other, each a damped spring about the leader: all of it, or nothing if not told."""
     rng = np.random.default_rng(seed)
     match = 2.0 * zeta * np.sqrt(pull)
     circle = CircleTarget((0.0, 0.0), 4.0, frequency)
-    law = Composition(AlphaInteraction(), Gains(1.0, 1.0, 0.0, 0.0, pull, match), target=circle, told=told)
+    law = Composition(
+        AlphaInteraction(), Gains(1.0, 1.0, 0.0, 0.0, pull, match), target=circle, feedforward=feedforward
+    )
     q = np.array([[20.0, 0.0], [-20.0, 3.0]]) + rng.uniform(-1.0, 1.0, (2, 2))
     p = rng.uniform(-1.0, 1.0, (2, 2))
     expected = dict.fromkeys(("centre", "velocities", "distance", "no-collision"), VACUOUS)
-    if told:
+    if feedforward:
         expected = {"centre": VERIFIED, "distance": VERIFIED, "velocities": TRUE, "no-collision": TRUE}
     hold("su-varying", Case(law, q, p, 6.0), expected)

@@ -14,7 +14,7 @@ from flockana.laws.olfati_saber import Algorithm1
 from tests.adversarial import truth
 from tests.adversarial.cases import effort
 from tests.adversarial.strategies import flocks, seeds
-from tests.adversarial.transforms import UNITS, UnchangedError, boosted, in_units, later, renumbered, rigid
+from tests.adversarial.transforms import UNITS, UnchangedError, boosted, delayed_start, in_units, renumbered, rigid
 
 BY_LAW = {
     1: ("os-1", "energy", "collision-energy", "alpha-flocking", "alpha-flocking-strict", "lattice-limit-printed"),
@@ -55,7 +55,7 @@ CHANGES = {
     "mirror": lambda case, rng: rigid(case, -np.eye(np.shape(case.q0)[1]), 0.0),
     "frame": lambda case, rng: boosted(case, 3.0 * case.law.alpha.d / truth.law_time(case.law) * rng.normal()),
     "numbers": lambda case, rng: renumbered(case, rng.permutation(len(case.q0))),
-    "clock": lambda case, rng: later(case, 50.0 * truth.law_time(case.law) * rng.normal()),
+    "clock": lambda case, rng: delayed_start(case, 50.0 * truth.law_time(case.law) * rng.normal()),
     "output": lambda case, rng: replace(case, options={"t_eval": np.linspace(0.0, case.until, rng.integers(2, 300))}),
     "method": lambda case, rng: replace(case, options={"method": ["RK45", "LSODA"][rng.integers(2)], "rtol": 1e-6}),
     "half": lambda case, rng: replace(case, options={"rtol": 0.5e-8}),

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.laws.link_keeping import LinkKeeping
-from tests.adversarial.cases import TRUE, VACUOUS, Case, effort, hold
+from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds
 
 THEOREMS = ("links-kept",)
-CLAIMS = dict.fromkeys(("rate", "balance", "links", "connected"), TRUE)
+CLAIMS = dict.fromkeys(("rate", "balance", "links", "connected", "velocities"), TRUE)
 
 
 @st.composite
@@ -36,4 +36,5 @@ def nets(draw):
 @given(nets())
 def test_no_link_is_lost(drawn):
     case, joined = drawn
-    hold("links-kept", case, CLAIMS if joined else CLAIMS | {"connected": VACUOUS})
+    said = CLAIMS if joined else CLAIMS | {"connected": VACUOUS, "velocities": VACUOUS}
+    hold("links-kept", case, said | {"velocities": VERIFIED if joined and case.law.c > 0.0 else VACUOUS})

@@ -32,13 +32,13 @@ from flockana.theorems.observed import Observed, with_doubt
 HERE, ROUND = StaticTarget((0.0, 0.0)), CircleTarget((0.0, 0.0), 9.0, 0.05)
 APART, NEAR = [[0.0, 0.0], [7.5, 0.0]], [[0.0, 0.0], [1.2, 0.0]]
 ALONG, SLOW = [[0.0, 0.0], [0.2, 0.0]], [[0.0, 0.0], [0.0, 0.1]]
-TOLD = {"pair": AlphaInteraction(), "consensus": 9.0, "navigation": ROUND, "told": True}
+TOLD = {"pair": AlphaInteraction(), "consensus": 9.0, "navigation": ROUND, "feedforward": True}
 RUNS = {
     "algorithm 1": lambda: (Algorithm1(), APART, ALONG),
     "algorithm 2": lambda: (Algorithm2(target=HERE), APART, ALONG),
     "algorithm 3": lambda: (Algorithm3(target=HERE, obstacles=(Sphere((100.0, 0.0), 2.0),)), APART, ALONG),
     "informed": lambda: (Algorithm2(target=HERE), APART, ALONG),
-    "told": lambda: (compose(**TOLD), APART, ALONG),
+    "feedforward": lambda: (compose(**TOLD), APART, ALONG),
     "dead zone": lambda: (DeadZoneFlocking(), APART, ALONG),
     "fixed net": lambda: (FixedNetFlocking(edges=((0, 1),)), NEAR, SLOW),
     "proximity": lambda: (ProximityFlocking(), NEAR, SLOW),
@@ -127,7 +127,7 @@ PLANTED = [
     ("os-3", "i", "algorithm 2", away),
     ("os-3", "iv-none", "algorithm 2", crossed),
     ("su-informed", "distance", "informed", away),
-    ("su-varying", "centre", "told", away),
+    ("su-varying", "centre", "feedforward", away),
     ("tanner-fixed", "energy", "fixed net", lifted),
     ("tanner-fixed", "no-collision", "fixed net", closer),
     ("tanner-switching", "energy", "proximity", lifted),

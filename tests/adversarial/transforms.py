@@ -82,7 +82,7 @@ def renumbered(case, order):
     return replace(case, law=law, q0=np.asarray(case.q0)[order], p0=np.asarray(case.p0)[order])
 
 
-def later(case, by):
+def delayed_start(case, by):
     """The clock started earlier: only where nothing in the law tells the time."""
     target = getattr(case.law, "target", None)
     if not isinstance(target, StaticTarget | None) or _led(case.law):

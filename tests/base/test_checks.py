@@ -16,7 +16,7 @@ from flockana.base.checks import (
     ensure_seed,
     ensure_series,
 )
-from flockana.base.errors import ArgumentError, UnknownNameError, told
+from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.lattice import fcc, honeycomb, triangular
 
 ARRAY = np.arange(30.0).reshape(10, 3)  # its repr has ten lines
@@ -39,12 +39,12 @@ def test_an_array_for_a_scalar_is_told_on_one_line(check):
 def test_what_is_not_finite_and_what_is_unknown_are_told_on_one_line_too():
     assert "\n" not in message(ArgumentError, ensure_series, "weights", np.full(50, np.nan))
     assert "\n" not in message(UnknownNameError, fl.scenario, ARRAY)
-    assert told("two  spaces") == "'two  spaces'"
+    assert format_value("two  spaces") == "'two  spaces'"
 
 
 def test_whole_numbers_of_very_many_digits_are_told_by_their_size():
-    assert (told(10**39), told(-HUGE)) == (f"{10**39}", "about -1e+400")
-    assert told([10**5000]) == "a list that cannot be written"
+    assert (format_value(10**39), format_value(-HUGE)) == (f"{10**39}", "about -1e+400")
+    assert format_value([10**5000]) == "a list that cannot be written"
     assert message(ArgumentError, ensure_count, "n", -(10**5000)) == "n = about -1e+5000: expected a whole number >= 1"
 
 

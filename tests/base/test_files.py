@@ -5,11 +5,11 @@ import os
 import pytest
 
 from flockana.base.errors import FileError
-from flockana.base.files import replacing
+from flockana.base.files import atomic_write
 
 
 def write(target, text, *, error=None, **options):
-    with replacing(target, **options) as partial:
+    with atomic_write(target, **options) as partial:
         partial.write_text(text)
         if error is not None:
             raise error
@@ -27,7 +27,7 @@ def test_what_is_not_whole_is_removed_and_what_was_there_stays(error, tmp_path):
 def test_the_new_one_takes_the_place_of_the_old_one_at_the_end(tmp_path):
     target = tmp_path / "it.tar.gz"
     target.write_text("before")
-    with replacing(target) as partial:
+    with atomic_write(target) as partial:
         partial.write_text("whole")
         assert target.read_text() == "before"
         assert (partial.parent, partial.suffix, partial.name[0]) == (tmp_path, ".gz", ".")

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from flockana.base.interrupts import interrupts_held, interrupts_recognised
+from flockana.base.interrupts import defer_sigint, restore_interrupts
 from tests.programs import out_of_a_kernel, posix
 
 REPORT = "import signal; print(*(s.name for s in signal.pthread_sigmask(signal.SIG_BLOCK, ())), sep=',')"
@@ -30,7 +30,7 @@ def another_thread():
 
 def held(work, *, after=None):
     """Do something with Ctrl-C held, then what comes after it."""
-    with interrupts_held():
+    with defer_sigint():
         work()
     if after is not None:
         after()
@@ -93,7 +93,7 @@ def test_an_error_is_the_context_of_the_interrupt():
 
 def test_where_it_is_ignored_it_stays_ignored():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with interrupts_held():
+    with defer_sigint():
         signal.raise_signal(signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
@@ -103,7 +103,7 @@ def test_in_another_thread_it_leaves_the_main_ones_handler_alone():
 
     def work():
         try:
-            with interrupts_held():
+            with defer_sigint():
                 assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
         except BaseException as error:
             failures.append(error)
@@ -119,9 +119,9 @@ def test_processes_started_meanwhile_do_not_get_it_even_the_first_of_all():
     """In a process of its own: multiprocessing starts a helper with the first process, and then unblocks the signal."""
     code = f"""
 import multiprocessing, subprocess, sys
-from flockana.base.interrupts import interrupts_hidden
+from flockana.base.interrupts import block_sigint
 if __name__ == "__main__":
-    with interrupts_hidden():
+    with block_sigint():
         lock = multiprocessing.get_context("spawn").Lock()
         subprocess.run([sys.executable, "-c", {REPORT!r}])
     subprocess.run([sys.executable, "-c", {REPORT!r}])
@@ -145,7 +145,7 @@ def kernel():
 def test_what_others_make_of_ctrl_c_is_ctrl_c_again(work):
     with pytest.raises(RuntimeError if work is lock_in_disorder else SystemError):
         work()
-    with pytest.raises(KeyboardInterrupt), interrupts_recognised():
+    with pytest.raises(KeyboardInterrupt), restore_interrupts():
         work()
 
 
@@ -162,5 +162,5 @@ def plain():
 
 @pytest.mark.parametrize("work", [handled, plain])
 def test_other_errors_stay_what_they_are(work):
-    with pytest.raises(ValueError, match="another subject"), interrupts_recognised():
+    with pytest.raises(ValueError, match="another subject"), restore_interrupts():
         work()

@@ -9,7 +9,7 @@ import flockana as fl
 import flockana.interactions.dead_zone
 import flockana.laws.bearing_distance
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import speaks_for
+from flockana.base.overrides import overrides_consistently
 from flockana.interactions.weights import RationalWeight
 
 
@@ -36,7 +36,7 @@ class Later(Both):
 
 @pytest.mark.parametrize(("kind", "true"), [(Base, 1), (Unchanged, 1), (Changed, 0), (Both, 1), (Later, 0)])
 def test_a_form_holds_until_a_subclass_changes_what_it_stands_for(kind, true):
-    assert speaks_for(kind, "form", ["act"]) == bool(true)
+    assert overrides_consistently(kind, "form", ["act"]) == bool(true)
 
 
 @dataclass(frozen=True)

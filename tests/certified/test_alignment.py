@@ -8,7 +8,7 @@ from flint import arb, ctx
 from scipy.spatial.transform import Rotation
 
 from flockana.base.errors import ArgumentError
-from flockana.certified.alignment import centred, turned_to
+from flockana.certified.alignment import centred, rotated_to
 
 
 def turned(angle, m):
@@ -24,7 +24,7 @@ def test_the_equilibrium_is_turned_to_the_flock_by_a_true_rotation(angle, m):
     """Lengths and angles stay to 60 digits, though the matrix is proposed in floating point."""
     rest = np.random.default_rng(m).normal(size=(5, m))
     with ctx.workprec(200):
-        found = turned_to(centred("rest", rest, (5, m)), [arb(y) for y in (rest @ turned(angle, m).T).ravel()], (5, m))
+        found = rotated_to(centred("rest", rest, (5, m)), [arb(y) for y in (rest @ turned(angle, m).T).ravel()], (5, m))
         rows, before = ([z[i : i + m] for i in range(0, 5 * m, m)] for z in (found, centred("rest", rest, (5, m))))
         for a in range(5):
             for b in range(a + 1):
@@ -36,7 +36,7 @@ def test_the_equilibrium_is_turned_to_the_flock_by_a_true_rotation(angle, m):
 
 
 def test_on_a_line_nothing_turns():
-    assert [float(x) for x in turned_to([arb(-1), arb(1)], [arb(1), arb(-1)], (2, 1))] == [-1.0, 1.0]
+    assert [float(x) for x in rotated_to([arb(-1), arb(1)], [arb(1), arb(-1)], (2, 1))] == [-1.0, 1.0]
 
 
 @pytest.mark.parametrize("m", [2, 3])
@@ -44,7 +44,7 @@ def test_a_mirrored_flock_is_turned_to_as_well_as_a_rotation_can(m):
     """Against the angle of the sum of products in the plane, and scipy's alignment in space."""
     rest = np.array([[1.0, 0.2, 0.3], [-0.4, 1.0, -0.9], [-0.6, -1.2, 0.6]])[:, :m]
     seen = rest * [1.0, -1.0, 1.0][:m] + 0.1 * rest[::-1]
-    found = turned_to(*([arb(y) for y in z.ravel()] for z in (rest, seen)), (3, m))
+    found = rotated_to(*([arb(y) for y in z.ravel()] for z in (rest, seen)), (3, m))
     best = Rotation.align_vectors(seen, rest)[0].as_matrix() if m == 3 else None
     if m == 2:
         dots, crosses = (rest * seen).sum(), (rest[:, 0] * seen[:, 1] - rest[:, 1] * seen[:, 0]).sum()

@@ -23,7 +23,7 @@ from flockana import (
     simulate,
 )
 from flockana.base.errors import ArgumentError, FlockanaError
-from flockana.certified.alignment import projects
+from flockana.certified.alignment import unique_projection
 from flockana.certified.shells import SHELLS
 from flockana.certified.structure import Structure
 from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
@@ -199,13 +199,13 @@ def test_a_set_of_states_is_in_the_basin_only_if_all_of_it_is():
 def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_flock():
     square = [arb(x) for x in (1, 1, 1, -1, -1, 1, -1, -1)]  # its size is √8
     u = Structure.of(Algorithm1(), 4, 2)
-    assert projects(u, square, fmpq(282, 100))
-    assert not projects(u, square, fmpq(283, 100))
+    assert unique_projection(u, square, fmpq(282, 100))
+    assert not unique_projection(u, square, fmpq(283, 100))
     four = [arb(x) for row in TETRAHEDRON * np.sqrt(8.0) / 7.0 for x in map(round, row)]  # Σ x xᵀ = 4: tr 12, norm √48
     space = Structure.of(Algorithm1(), 4, 3)
     most = (12.0 - 48.0**0.5) / (1.0 + 3.0**0.5) / 48.0**0.25
-    assert projects(space, four, fmpq(int(most * 1e6), 10**6))
-    assert not projects(space, four, fmpq(int(most * 1e6) + 1, 10**6))
+    assert unique_projection(space, four, fmpq(int(most * 1e6), 10**6))
+    assert not unique_projection(space, four, fmpq(int(most * 1e6) + 1, 10**6))
 
 
 def test_a_state_that_is_no_number_is_refused():

@@ -216,7 +216,7 @@ def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
 
 
 def test_a_stated_number_has_its_digits_and_no_more():
-    rounded = check_basin.rounded_down
+    rounded = check_basin.round_down_float
     assert rounded("7.740", Fraction("7.7405"))
     assert not rounded("7.7399", Fraction("7.7405"))
     assert not rounded("7.739", Fraction("7.7405"))
@@ -272,8 +272,8 @@ def test_the_nearest_point_of_an_orbit_is_unique_below_the_size_of_the_net(monke
     """Of a square whose corners are (±1, ±1) the size is √8, and a basin with another one has no such point."""
     net = check_net.Net({**pair_data(), "positions": [["0x1p0", "0x1p0"]] * 4})
     square = [[arb(x), arb(y)] for x in (1, -1) for y in (1, -1)]
-    assert net.projects(square, arb(radius)) is unique
-    monkeypatch.setattr(check_net.Net, "projects", lambda self, x, radius: unique)
+    assert net.unique_projection(square, arb(radius)) is unique
+    monkeypatch.setattr(check_net.Net, "unique_projection", lambda self, x, radius: unique)
     assert rejected(pair_data()) is not unique
 
 
@@ -283,7 +283,7 @@ def test_in_space_it_is_so_below_the_bound_of_the_two_sizes(radius, unique):
     net = check_net.Net({**pair_data(), "positions": [["0x1p0"] * 3] * 4})
     tetrahedron = [[arb(x) for x in row] for row in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))]
     most = (12 - arb(48).sqrt()) / (1 + arb(3).sqrt()) / arb(48).sqrt().sqrt()
-    assert net.projects(tetrahedron, most * radius) is unique
+    assert net.unique_projection(tetrahedron, most * radius) is unique
 
 
 def test_a_law_that_damps_nothing_proves_no_rate():

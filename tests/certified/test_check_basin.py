@@ -14,7 +14,7 @@ from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS
 from flockana.certified.check_net import ROOT_TWO, Net
-from flockana.certified.decimals import floored, written
+from flockana.certified.decimals import format_decimal, round_down
 from tests.certified.conftest import basin_of
 
 
@@ -103,7 +103,7 @@ def test_a_pair_out_of_range_that_may_come_into_it_is_missed(data, monkeypatch, 
 
 def test_the_nearest_point_is_asked_to_be_unique_in_all_of_the_radius(data, monkeypatch):
     asked = []
-    monkeypatch.setattr(Net, "projects", lambda self, x, radius: asked.append(radius) or True)
+    monkeypatch.setattr(Net, "unique_projection", lambda self, x, radius: asked.append(radius) or True)
     checked(data)
     (radius,) = asked
     assert radius.overlaps(arb(data["radius"]))
@@ -120,7 +120,10 @@ def test_the_rate_counts_all_that_damps_the_velocities(share):
     free = theta * curvature + 2 * (theta * surplus + (1 - theta) * curvature)
     kappa = (1 - share * min(1, theta * (curvature + eps * tau) / free)) * free / most
     rate = eps * (free - kappa * most) / (curvature + eps * tau) / 2
-    data["lyapunov"]["kappa"], data["rate"] = str(kappa), written(floored(fmpq(rate.numerator, rate.denominator), 3))
+    data["lyapunov"]["kappa"], data["rate"] = (
+        str(kappa),
+        format_decimal(round_down(fmpq(rate.numerator, rate.denominator), 3)),
+    )
     if share > 0:
         checked(data)
     else:

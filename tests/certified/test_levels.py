@@ -9,7 +9,7 @@ from flint import arb, ctx
 from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.certified import levels
 from flockana.equilibria.barrier import coincident_lattice, collision_bounds
-from flockana.theorems.olfati_saber.os_1 import disconnected_energy
+from flockana.theorems.olfati_saber.any_potential import disconnected_energy
 
 LONG = AlphaInteraction(r=9.8)  # κ = 1.4: cliques of 4 in the plane
 

@@ -11,7 +11,7 @@ from flint import arb, ctx, fmpq
 from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
-from flockana.certified.decimals import floored, raised, written
+from flockana.certified.decimals import format_decimal, round_down, round_up
 from flockana.certified.intervals import square
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
@@ -55,12 +55,12 @@ def test_proposed_bounds_are_proved_and_samples_leave_no_room_for_much_better_on
         pull = 30.0 * action / root
         along = float(stiff.min()) - 0.25 * float(np.abs(stiff).max())
         across = proposed_across(along, rest, x, stiff, pull, eta)
-        a, b = floored(arb(along), 6), floored(arb(across), 6)
+        a, b = round_down(arb(along), 6), round_down(arb(across), 6)
         assert cells.holds(SHELLS, a, b)
         true = sampled(rest, eta, along)
         assert across < true
-        assert not cells.holds(SHELLS, a, floored(arb(true + 0.01 * abs(true) + 1e-3), 6))
-        above = floored(arb(1.001 * float(stiff.min()) + 1.0), 6)
+        assert not cells.holds(SHELLS, a, round_down(arb(true + 0.01 * abs(true) + 1e-3), 6))
+        above = round_down(arb(1.001 * float(stiff.min()) + 1.0), 6)
         assert not cells.holds(SHELLS, above, b)
 
 
@@ -126,8 +126,8 @@ def test_where_a_coarse_cell_would_do_it_still_is_a_bound(eta, pair):
     true = largest_across(1.0, eta, pair.numbers[0], lambda length: pair(length + 0.0 * length))
     with ctx.workdps(25):
         for holds in provers(1.0, eta, pair):
-            assert not holds(along, floored(arb(true + 2e-3 * max(1.0, abs(true))), 6))
-            assert holds(along, floored(arb(true - 4.0 * eta**2), 6))
+            assert not holds(along, round_down(arb(true + 2e-3 * max(1.0, abs(true))), 6))
+            assert holds(along, round_down(arb(true - 4.0 * eta**2), 6))
 
 
 def test_the_least_of_a_square_in_the_turn_may_be_within_and_not_at_its_end():
@@ -136,8 +136,8 @@ def test_the_least_of_a_square_in_the_turn_may_be_within_and_not_at_its_end():
     true = largest_across(1.0, 0.5, -2.0, lambda length: pair(length + 0.0 * length))
     with ctx.workdps(25):
         for holds in provers(1.0, 0.5, pair):
-            assert not holds(along, floored(arb(true + 2e-3), 6))
-            assert holds(along, floored(arb(true - 0.5), 6))
+            assert not holds(along, round_down(arb(true + 2e-3), 6))
+            assert holds(along, round_down(arb(true - 0.5), 6))
 
 
 def test_nothing_is_proved_of_a_pair_of_which_nothing_is_known():
@@ -162,13 +162,13 @@ def test_what_is_proved_of_a_pair_is_nearly_all_that_is_true(rest, eta, slack):
     x = np.linspace(-eta, eta, 1001)
     stiff = curves(rest + x)[0]
     most = float(np.abs(stiff).max())
-    along = floored(arb(float(stiff.min()) - slack * most), 6)
+    along = round_down(arb(float(stiff.min()) - slack * most), 6)
     true = largest_across(rest, eta, float(along.p) / float(along.q))
     with ctx.workdps(25):
         for holds in provers(rest, eta):
-            assert holds(along, floored(arb(true - 0.4 * most * (eta / rest) ** 2), 6))
-            assert not holds(along, floored(arb(true + 1e-3 * abs(true) + 1e-4), 6))
-            assert not holds(floored(arb(float(stiff.min()) + 1e-3 * most), 6), fmpq(-1000))
+            assert holds(along, round_down(arb(true - 0.4 * most * (eta / rest) ** 2), 6))
+            assert not holds(along, round_down(arb(true + 1e-3 * abs(true) + 1e-4), 6))
+            assert not holds(round_down(arb(float(stiff.min()) + 1e-3 * most), 6), fmpq(-1000))
 
 
 def test_the_pair_of_a_structure_is_that_of_the_law():
@@ -215,7 +215,7 @@ def test_the_rate_is_one_of_every_linear_system_within_its_bounds(seed):
     turn, other = (np.linalg.qr(rng.standard_normal((size, size)))[0] for _ in range(2))
     stiff, drag = np.linspace(1.0, 1.0 + 30.0 * rng.uniform(), size), np.linspace(0.5, 0.5 + 8.0 * rng.uniform(), size)
     k, d = turn @ np.diag(stiff) @ turn.T, other @ np.diag(drag) @ other.T
-    bounds = Bounds(fmpq(1), fmpq(1, 2), fmpq(1, 2), raised(arb(float(drag[-1])), 4))
+    bounds = Bounds(fmpq(1), fmpq(1, 2), fmpq(1, 2), round_up(arb(float(drag[-1])), 4))
     found = decay(bounds)
     eps, alpha = (float(y.p) / float(y.q) for y in (found.eps, 2 * found.rate))
     one, zero = np.eye(size), np.zeros((size, size))
@@ -245,8 +245,8 @@ def test_no_rate_without_damping_or_with_a_useless_choice():
 
 
 def test_stated_decimals_are_on_the_safe_side_to_the_digit():
-    assert written(floored(arb("12.3456"), 4)) == "12.34"
-    assert written(raised(arb("12.3416"), 4)) == "12.35"
-    assert written(floored(arb("-0.0123416"), 4)) == "-0.01235"
-    assert floored(fmpq(1, 4), 3) == fmpq(1, 4)
-    assert floored(fmpq(0), 3) == 0
+    assert format_decimal(round_down(arb("12.3456"), 4)) == "12.34"
+    assert format_decimal(round_up(arb("12.3416"), 4)) == "12.35"
+    assert format_decimal(round_down(arb("-0.0123416"), 4)) == "-0.01235"
+    assert round_down(fmpq(1, 4), 3) == fmpq(1, 4)
+    assert round_down(fmpq(0), 3) == 0

@@ -82,8 +82,12 @@ def test_floats_are_on_the_safe_side(number, by):
 
 def test_a_tube_ends_in_a_basin_of_its_own_law_only(meeting):
     for law, inside in ((Algorithm1(), True), (Algorithm1(gains=Gains(c1_alpha=29.0)), False)):
-        assert meeting.ends_in(SimpleNamespace(ensure_whole=lambda: None, law=law, holds=lambda q, p: True)) is inside
-    assert not meeting.ends_in(SimpleNamespace(ensure_whole=lambda: None, law=Algorithm1(), holds=lambda q, p: False))
+        assert (
+            meeting.ends_in(SimpleNamespace(ensure_unedited=lambda: None, law=law, holds=lambda q, p: True)) is inside
+        )
+    assert not meeting.ends_in(
+        SimpleNamespace(ensure_unedited=lambda: None, law=Algorithm1(), holds=lambda q, p: False)
+    )
 
 
 def test_a_run_that_starts_later_follows_the_target_from_there():

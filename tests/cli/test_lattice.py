@@ -218,3 +218,25 @@ def test_the_commands_load_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "scipy", "matplotlib", "casadi"} & set(eval(done.stdout))
+
+
+def test_a_lattice_rounded_to_two_decimals_is_none_until_a_tolerance_says_so(call, found, tmp_path):
+    file = tmp_path / "rounded.csv"
+    np.savetxt(file, np.round(hexagonal_patch(2, 7.0), 2), delimiter=",", fmt="%.2f")
+    verdict = found(file)["verdict"]
+    assert (verdict["status"], verdict["author"]) == ("vacuous", "source")
+    assert verdict["summary"].startswith(
+        "4 of 4 vacuous: 'q is an α-lattice' does not hold; our extension: no two links"
+    )
+    whose = {claim["name"]: (claim["by"], claim["status"]) for claim in verdict["claims"]}
+    assert whose["i"] == ("source", "vacuous")
+    assert whose["extension"] == ("flockana", "verified")
+    out = " ".join(call(file)[1].split())
+    assert "our extension: no two links cross, verified" in out
+    assert "--tol 0.0003" in out
+    assert found(file, "--tol", "0.0003")["verdict"]["summary"].startswith("4 of 4 verified; our extension: ")
+    assert "--tol" not in call("hexagonal-patch:2")[1]
+
+
+def test_a_tolerance_beyond_which_the_theorem_is_not_proved_is_refused(refused):
+    refused("--tol 0.2: expected more than 0 and at most 0.1", "line:3", "--tol", "0.2")

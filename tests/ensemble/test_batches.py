@@ -6,8 +6,8 @@ from concurrent.futures.process import BrokenProcessPool
 import pytest
 
 from flockana.base.errors import SolverError
-from flockana.ensemble.batches import work_through
-from flockana.ensemble.executors import Crew, crew
+from flockana.ensemble.batches import map_in_batches
+from flockana.ensemble.executors import WorkerPool, worker_pool
 
 
 class Mortal(Executor):
@@ -31,8 +31,8 @@ def squares(batch):
 
 
 def worked(pool, items, **options):
-    workers = Crew(pool, lambda: 2, renew=lambda: pool)
-    return [pair for done in work_through(items, squares, workers, **options) for pair in done]
+    workers = WorkerPool(pool, lambda: 2, renew=lambda: pool)
+    return [pair for done in map_in_batches(items, squares, workers, **options) for pair in done]
 
 
 def test_every_item_has_its_own_result_once():
@@ -63,14 +63,14 @@ def test_an_error_of_the_function_ends_it_as_it_is():
     def fails(batch):
         raise ValueError("a bad item")
 
-    with crew(jobs=1) as workers, pytest.raises(ValueError, match="a bad item"):
-        list(work_through([1, 2], fails, workers))
+    with worker_pool(jobs=1) as workers, pytest.raises(ValueError, match="a bad item"):
+        list(map_in_batches([1, 2], fails, workers))
 
 
 def test_what_is_under_way_is_told_before_it_begins():
     told = []
-    with crew(jobs=1) as workers:
-        results = work_through([3, 4], squares, workers, watch=told.append)
+    with worker_pool(jobs=1) as workers:
+        results = map_in_batches([3, 4], squares, workers, watch=told.append)
         assert told == []
         assert next(results) == ((3, 9),)
         assert told == [(3,)]

@@ -18,7 +18,7 @@ from flockana.base.garbage import SELDOM
 from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
 from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
-from flockana.ensemble.executors import Crew, Serial, crew
+from flockana.ensemble.executors import Serial, WorkerPool, worker_pool
 from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.runs import make_runs
 from flockana.ensemble.work import Job, Request, run_batch
@@ -182,7 +182,7 @@ class Brittle(ThreadPoolExecutor):
 
 def test_a_pool_that_is_found_broken_by_sending_to_it_loses_nothing_and_blames_nobody():
     with Brittle() as broken, ThreadPoolExecutor(2) as fresh:
-        hands = Crew(broken, lambda: 2, renew=lambda: fresh)
+        hands = WorkerPool(broken, lambda: 2, renew=lambda: fresh)
         records = [one for batch in make_runs(REQUEST, [Job(seed) for seed in range(8)], hands) for one in batch]
     assert hands.executor is fresh
     assert {one.job.seed: one.status for one in records} == dict.fromkeys(range(8), "complete")
@@ -352,7 +352,7 @@ def test_shares_want_an_ensemble(alone):
 
 
 def test_a_users_executor_is_kept_as_busy_as_it_is_wide():
-    with ThreadPoolExecutor(5) as executor, crew(executor) as hands:
+    with ThreadPoolExecutor(5) as executor, worker_pool(executor) as hands:
         assert hands.width() == 5
 
 

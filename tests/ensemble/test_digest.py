@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from flockana.ensemble import digest as digests
-from flockana.ensemble.digest import digest_of_sources, kept_digest, mathematics
+from flockana.ensemble.digest import cached_digest, digest_of_sources, mathematics
 
 SOURCES = {"a.py": b"x = 1  # one\n", "b.json": b"{}"}
 
@@ -26,7 +26,7 @@ def parsed(monkeypatch):
 
 def test_the_same_files_are_digested_once(tmp_path, parsed):
     for _ in range(3):
-        assert kept_digest(SOURCES, tmp_path) == digest_of_sources(SOURCES)
+        assert cached_digest(SOURCES, tmp_path) == digest_of_sources(SOURCES)
     assert len(parsed) == 1
     assert [path.suffix for path in tmp_path.iterdir()] == [".txt"]
 
@@ -42,30 +42,30 @@ def test_the_same_files_are_digested_once(tmp_path, parsed):
     ],
 )
 def test_other_files_are_digested_anew(tmp_path, parsed, other):
-    first = kept_digest(SOURCES, tmp_path)
-    assert kept_digest(other, tmp_path) == digest_of_sources(other) != first
+    first = cached_digest(SOURCES, tmp_path)
+    assert cached_digest(other, tmp_path) == digest_of_sources(other) != first
     assert len(parsed) == 2
 
 
 def test_files_that_differ_in_a_comment_have_one_digest_kept_twice(tmp_path, parsed):
     other = {**SOURCES, "a.py": b"x = 1  # eins\n"}
-    assert kept_digest(SOURCES, tmp_path) == kept_digest(other, tmp_path)
+    assert cached_digest(SOURCES, tmp_path) == cached_digest(other, tmp_path)
     assert (len(parsed), len(list(tmp_path.iterdir()))) == (2, 2)
 
 
 def test_what_is_kept_broken_is_not_believed(tmp_path, parsed):
-    whole = kept_digest(SOURCES, tmp_path)
+    whole = cached_digest(SOURCES, tmp_path)
     (kept,) = tmp_path.iterdir()
     for broken in (b"", b"0123", b"\xff" * 16, b"0" * 17):
         kept.write_bytes(broken)
-        assert kept_digest(SOURCES, tmp_path) == whole
+        assert cached_digest(SOURCES, tmp_path) == whole
     assert len(parsed) == 5
 
 
 def test_where_nothing_may_be_written_nothing_is(tmp_path, parsed, monkeypatch):
-    assert kept_digest(SOURCES, tmp_path / "missing") == digest_of_sources(SOURCES)
+    assert cached_digest(SOURCES, tmp_path / "missing") == digest_of_sources(SOURCES)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    assert kept_digest(SOURCES, tmp_path) == digest_of_sources(SOURCES)
+    assert cached_digest(SOURCES, tmp_path) == digest_of_sources(SOURCES)
     assert list(tmp_path.iterdir()) == []
     assert len(parsed) == 2
 

@@ -12,7 +12,7 @@ from flockana.base.units import rescale
 from flockana.environment.obstacles import Wall
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.classify import falling, landscape, spectrum
-from flockana.equilibria.curvature import Landscape, downhill, least_curvature
+from flockana.equilibria.curvature import Landscape, descent_direction, least_curvature
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import find_equilibrium, finish
 from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
@@ -141,11 +141,11 @@ def test_the_printed_law_at_any_distance_finds_its_lattice(d):
 def test_the_way_down_is_the_same_whatever_basis_a_machine_takes():
     """Two agents at one place in space fall apart in any of three directions; signs and bases are arbitrary."""
     found = landscape(Potential(LAW), np.zeros((2, 3)))
-    first = downhill(found)
+    first = descent_direction(found)
     assert np.linalg.norm(first) == pytest.approx(1.0)
     turn = np.linalg.qr(np.random.default_rng(1).standard_normal((3, 3)))[0]
     vars(found)["vectors"] = -found.vectors @ turn  # another orthonormal basis of the same eigenspace
-    np.testing.assert_allclose(downhill(found), first, atol=1e-12)
+    np.testing.assert_allclose(descent_direction(found), first, atol=1e-12)
 
 
 def test_rigid_motions_in_every_unit_and_far_from_the_origin():

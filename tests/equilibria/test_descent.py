@@ -11,7 +11,7 @@ from flockana.base.units import rescale
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.equilibria.descent import anneal, descend, gave_way, newton, relax
+from flockana.equilibria.descent import anneal, descend, newton, pairs_collapsed, relax
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.search import random_starts
 from flockana.interactions import Gains
@@ -91,11 +91,11 @@ def test_the_damped_motion_ends_no_higher_than_it_began():
 
 def test_a_net_gives_way_where_neighbours_part_and_not_where_all_move():
     potential, q = Potential(Algorithm1()), hexagonal_patch(2, 7.0)
-    assert not gave_way(potential, q, q + 100.0)
-    assert not gave_way(potential, q, 0.9 * q)
+    assert not pairs_collapsed(potential, q, q + 100.0)
+    assert not pairs_collapsed(potential, q, 0.9 * q)
     swapped = q.copy()
     swapped[[0, 1]] = swapped[[1, 0]]
-    assert gave_way(potential, q, swapped)
+    assert pairs_collapsed(potential, q, swapped)
 
 
 def test_annealing_keeps_the_centre_and_is_the_same_every_time():

@@ -15,7 +15,7 @@ from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.equilibria import solve as solve_module
-from flockana.equilibria.classify import Spectrum, kind_of, spectrum
+from flockana.equilibria.classify import Spectrum, classify_spectrum, spectrum
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs, finish
@@ -103,7 +103,7 @@ def test_a_hinge_and_a_drifting_component_are_soft_modes_and_not_rigid_ones():
 
 def test_kind_by_the_spectrum():
     def kind(values, index, zero):
-        return kind_of(Spectrum(np.array(values), 3, index, zero))
+        return classify_spectrum(Spectrum(np.array(values), 3, index, zero))
 
     assert kind([-1.0, 0.0, 2.0], 1, 1) == "saddle"
     assert kind([-2.0, -1.0], 2, 0) == "maximum"

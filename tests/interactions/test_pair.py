@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
+from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
 from flockana.kernels.neighbours import BLOCK, pair_list
 from flockana.lattice import hexagonal_patch
 
@@ -45,6 +45,12 @@ from flockana.lattice import hexagonal_patch
 def test_bad_parameters(cls, options, message):
     with pytest.raises(ArgumentError, match=re.escape(message)):
         cls(**options)
+
+
+def test_what_a_pair_law_must_define():
+    wanted = {"energy_at", "far_potential", "length", "panels", "par", "range", "strength"}
+    assert PairInteraction.__abstractmethods__ == wanted
+    assert all(isinstance(vars(PairInteraction)[name], property) for name in wanted - {"energy_at"})
 
 
 def test_defaults_are_the_papers():

@@ -34,7 +34,7 @@ compositions = st.fixed_dictionaries(
         "navigation": st.sampled_from([LEADER, LinearTarget((1.0, 2.0), (0.5, 0.1)), StaticTarget((4.0, 0.0))]),
         "informed": st.sampled_from([(0,), (1, 3), (0, 1, 2, 3)]),
         "bounded": st.sampled_from([False, 3.0]),
-        "told": st.booleans(),
+        "feedforward": st.booleans(),
         "obstacles": st.just(SOLIDS),
         "drag": st.floats(0.01, 2.0),
         "speed": st.tuples(st.floats(0.1, 1.0), st.floats(0.1, 1.0)),
@@ -52,14 +52,14 @@ def made(chosen: dict) -> fl.Law:
     """The law of a drawn choice, from which parts without their like are taken out."""
     chosen = dict(chosen)
     if "navigation" not in chosen:
-        for name in ("informed", "bounded", "told"):
+        for name in ("informed", "bounded", "feedforward"):
             chosen.pop(name, None)
     if "informed" in chosen:
         chosen["agents"] = N
     if "consensus" not in chosen or not {"pair", "net"} & {*chosen}:
         chosen.pop("consensus", None)
         chosen.pop("net", None)
-    if not {*chosen} - {"told", "bounded"}:
+    if not {*chosen} - {"feedforward", "bounded"}:
         chosen["drag"] = 0.5
     return compose(**chosen)
 
@@ -93,7 +93,7 @@ def test_jacobian_is_the_derivative_of_the_force(chosen, state):
 @given(compositions, states)
 def test_force_at_rest_is_minus_the_gradient(chosen, state):
     """Of a conservative law; where a γ-agent moves or its shape has an energy of its own, up to what pushes all."""
-    law, (q, _), h = made(chosen | {"told": False, "navigation": StaticTarget((4.0, 0.0))}), state, 1e-5
+    law, (q, _), h = made(chosen | {"feedforward": False, "navigation": StaticTarget((4.0, 0.0))}), state, 1e-5
     assert law.conservative
     slope = np.zeros_like(q)
     for k in np.ndindex(*q.shape):
@@ -141,8 +141,8 @@ def test_through_a_file_and_other_units(chosen):
     "chosen",
     [
         {"pair": AlphaInteraction(), "consensus": 3.0, "net": AlphaInteraction(r=12.0), "drag": 0.2},
-        {"pair": AlphaInteraction(), "navigation": LEADER, "told": True, "drag": 0.3},
-        {"pair": AlphaInteraction(), "navigation": LEADER, "told": True, "informed": (1,), "speed": (1.0, 0.5)},
+        {"pair": AlphaInteraction(), "navigation": LEADER, "feedforward": True, "drag": 0.3},
+        {"pair": AlphaInteraction(), "navigation": LEADER, "feedforward": True, "informed": (1,), "speed": (1.0, 0.5)},
         {"pair": AlphaInteraction(), "navigation": StaticTarget((4.0, 0.0)), "obstacles": SOLIDS[:1], "drag": 0.1},
         {"speed": (1.0, 0.5)},
         {"pair": AlphaInteraction(), "consensus": 1.0, "net": fl.RationalWeight(2.0, 0.6, 3.0)},
@@ -291,9 +291,9 @@ WRONG = {
     ),
     "speed": ({"speed": 2.0}, r"speed = 2.0: expected \(α, β\)"),
     "pair": ({"pair": 3.0}, "alpha = 3.0: expected"),
-    "told": (
-        {"navigation": CallableTarget(lambda t: (np.zeros(2), np.zeros(2))), "told": True},
-        "expected a γ-agent whose acceleration is known",
+    "feedforward": (
+        {"navigation": CallableTarget(lambda t: (np.zeros(2), np.zeros(2))), "feedforward": True},
+        "expected a γ-agent of known acceleration",
     ),
     "dimension": (
         {"navigation": StaticTarget((0.0,)), "obstacles": SOLIDS},

@@ -14,6 +14,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.terms.leaders import known_path
 from flockana.symbolic.led_dead_zone import led_energy_identity
 
 LEADERS = CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), LinearTarget((9.0, 0.0), (-0.5, 1.0))
@@ -26,7 +27,7 @@ def a_state(seed=3, box=12.0):
     return generator.uniform(0.0, box, (6, 2)), generator.uniform(-1.0, 1.0, (6, 2))
 
 
-def transcribed(t, q, p, *, told=True):
+def transcribed(t, q, p, *, feedforward=True):
     """u_i by loops over agents; the circle's acceleration by hand."""
     angle, rate = 2.0 * pi * 0.1 * t + 0.4, 2.0 * pi * 0.1
     turn = np.array((cos(angle), sin(angle)))
@@ -46,32 +47,34 @@ def transcribed(t, q, p, *, told=True):
                 u[i] += 0.9 * (p[j] - p[i])
         if i in PINNED:
             u[i] += 0.7 * (place - q[i]) + 1.3 * (velocity - p[i])
-        if told:
+        if feedforward:
             u[i] += bend
     return u
 
 
-@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("feedforward", [True, False])
 @pytest.mark.parametrize("seed", [3, 4])
-def test_the_input_is_that_of_its_formula(told, seed):
+def test_the_input_is_that_of_its_formula(feedforward, seed):
     q, p = a_state(seed)
-    law = replace(LAW, told=told)
-    np.testing.assert_allclose(law.acceleration(0.7, q, p), transcribed(0.7, q, p, told=told), rtol=1e-11, atol=1e-11)
+    law = replace(LAW, feedforward=feedforward)
+    np.testing.assert_allclose(
+        law.acceleration(0.7, q, p), transcribed(0.7, q, p, feedforward=feedforward), rtol=1e-11, atol=1e-11
+    )
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_the_rate_is_that_of_the_energy_along_the_flow(told):
+@pytest.mark.parametrize("feedforward", [True, False])
+def test_the_rate_is_that_of_the_energy_along_the_flow(feedforward):
     q, p = a_state()
-    law, t, h = replace(LAW, told=told), 0.7, 1e-5
+    law, t, h = replace(LAW, feedforward=feedforward), 0.7, 1e-5
     u, rate = law.flow(t, q, p)
     ahead, back = (law.energy(t + s, q + s * p + 0.5 * s * s * u, p + s * u) for s in (h, -h))
     assert rate == pytest.approx((ahead - back) / (2.0 * h), rel=1e-7)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
-@pytest.mark.parametrize("told", [True, False])
-def test_the_identity_of_the_energy_is_derived(m, told):
-    assert led_energy_identity(m, told=told).holds
+@pytest.mark.parametrize("feedforward", [True, False])
+def test_the_identity_of_the_energy_is_derived(m, feedforward):
+    assert led_energy_identity(m, feedforward=feedforward).holds
 
 
 def test_with_one_leader_the_energy_falls_by_the_dissipation_alone():
@@ -134,8 +137,7 @@ def test_what_it_measures():
         ({"c1": -1.0}, "c1 = -1: expected a gain >= 0"),
         ({"leaders": ()}, r"leaders = \(\): expected one or more"),
         ({"leaders": LEADERS[0]}, "expected one or more"),
-        ({"leaders": (RescaledVelocity(LEADERS[0], 0.5), LEADERS[1])}, "with its true velocity"),
-        ({"leaders": (StaticTarget((0.0, 0.0), (1.0, 0.0)), LEADERS[1])}, "with its true velocity"),
+        ({"leaders": (RescaledVelocity(LEADERS[0], 0.5), LEADERS[1])}, "with its true"),
         ({"group": (0, 2, 0, 1, 0, 1)}, "group has 2: expected the number of a leader, 0 to 1"),
         ({"pinned": (6,)}, "pinned has 6: expected an agent, 0 to 5"),
         ({"leaders": 3}, "leaders = 3: expected one or more"),
@@ -148,6 +150,12 @@ def test_what_it_measures():
 def test_what_it_refuses(change, words):
     with pytest.raises(ArgumentError, match=words):
         replace(LAW, **change)
+
+
+@pytest.mark.parametrize("leader", [RescaledVelocity(LEADERS[0], 0.5), StaticTarget((0.0, 0.0), (1.0, 0.0)), None])
+def test_a_leader_tells_its_true_velocity(leader):
+    with pytest.raises(ArgumentError, match="with its true velocity"):
+        known_path(leader)
 
 
 def test_flocks_it_is_not_for():

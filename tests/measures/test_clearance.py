@@ -13,7 +13,7 @@ from flockana.environment.polygon import Polygon
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.kernels.paths import bernstein
 from flockana.lattice import hexagonal_patch
-from flockana.measures.clearance import at_once, clearance, constrained_lattice, refine
+from flockana.measures.clearance import bounds_over_hull, clearance, constrained_lattice, refine
 
 OBSTACLES: tuple[Obstacle, ...] = (
     Sphere((1.0, -2.0), 1.5),
@@ -108,7 +108,7 @@ def test_one_tangent_plane_bounds_a_whole_curve(obstacle: Obstacle) -> None:
     for curve in rng.uniform(-8.0, 8.0, (200, 1, 6, 2)):
         least = obstacle.clearance(bernstein.T @ curve[0]).min()
         middle = (bernstein.T @ curve[0])[1000:1001]
-        here, (bound,) = at_once(obstacle, curve, middle, 1e-9)
+        here, (bound,) = bounds_over_hull(obstacle, curve, middle, 1e-9)
         lipschitz = here[0] - np.linalg.norm(curve[0] - middle, axis=1).max()
         assert lipschitz - 1e-9 <= bound <= least + 1e-9
         better += bound > lipschitz + 0.1

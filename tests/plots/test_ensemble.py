@@ -40,8 +40,20 @@ def test_shares_stand_where_they_are_with_their_intervals(ax):
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["a:ii"]
 
 
+def apart(table):
+    """The table with a share of its own for each claim."""
+    own = 0.01 * xarray.DataArray(np.arange(table.sizes["claim"]), dims="claim")
+    return table.assign(share=table.share - own)
+
+
+def test_claims_with_one_curve_share_a_name(ax):
+    plots.share_against(a_table(push=[1.0, 10.0]), "push", ax=ax)
+    assert ax.get_legend_handles_labels()[1] == ["a:i, a:ii"]
+    assert ax.get_xscale() == "log"
+
+
 def test_curves_that_share_a_parameter_are_set_apart_and_names_get_places(ax):
-    plots.share_against(a_table(push=[False, True]), "push", ax=ax)
+    plots.share_against(apart(a_table(push=[False, True])), "push", ax=ax)
     first, second = (line.get_xdata() for line in ax.lines if line.get_marker() in "os")
     assert (first < second).all()
     np.testing.assert_allclose(0.5 * (first + second), [0.0, 1.0])
@@ -116,7 +128,7 @@ def test_more_curves_than_can_be_told_apart_are_refused(ax):
     table = a_table(n=[1.0, 2.0])
     many = xarray.concat([table.assign_coords(claim=[f"{k}:i", f"{k}:ii"]) for k in range(4)], dim="claim")
     with pytest.raises(ArgumentError, match="8 claims: expected at most 7"):
-        plots.share_against(many, "n", ax=ax)
+        plots.share_against(apart(many), "n", ax=ax)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from flockana.equilibria.barrier import (
     bound_range,
     energy_floor,
     lattice_reach,
-    none_from,
+    least_infeasible_size,
     turan_pairs,
 )
 from flockana.equilibria.barrier import largest_clique as numeric_clique
@@ -209,7 +209,7 @@ def test_the_proved_sizes_are_the_numeric_ones(values, sizes):
     _, ratio = n_max.bound_lengths(par)
     assert f"for n >= {sizes[0]}" in n_max.every_state(par, 2, ratio).text
     assert f"an α-lattice of {sizes[1]} agents has V < c*" in n_max.every_lattice(par, 2).text
-    assert (none_from(alpha), lattice_reach(alpha)) == sizes
+    assert (least_infeasible_size(alpha), lattice_reach(alpha)) == sizes
     assert f"an α-lattice of {lattice_reach(alpha, 1)} agents has V < c*" in n_max.every_lattice(par, 1).text
     shortest = n_max.shortest_bound(par)
     assert 0 < bound_range(alpha)[0] - float(shortest) < 1.001 / n_max.PARTS

@@ -8,7 +8,7 @@ import pytest
 from flockana.base.errors import ArgumentError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import Scenario
-from flockana.scenarios.start import drawn_later, later
+from flockana.scenarios.start import lazy_array, lazy_state
 
 
 def item(q, p):
@@ -22,7 +22,7 @@ def test_a_start_is_drawn_once_and_when_it_is_asked_for():
         calls.append(1)
         return np.array([[0.0], [8.0]]), np.array([[1.0], [-1.0]])
 
-    pair = item(*drawn_later((2, 1), draw))
+    pair = item(*lazy_state((2, 1), draw))
     assert (pair.shape, pair.theorems, calls) == ((2, 1), (), [])
     assert (pair.p0.tolist(), pair.q0.tolist()) == ([[1.0], [-1.0]], [[0.0], [8.0]])
     assert pair.q0 is pair.q0
@@ -31,7 +31,7 @@ def test_a_start_is_drawn_once_and_when_it_is_asked_for():
 
 def test_a_scenario_with_such_a_start_is_like_any_other():
     q = np.array([[0.0], [8.0]])
-    now, then = item(q, 0.0 * q), item(later((2, 1), lambda: q), later((2, 1), lambda: 0.0 * q))
+    now, then = item(q, 0.0 * q), item(lazy_array((2, 1), lambda: q), lazy_array((2, 1), lambda: 0.0 * q))
     assert then.in_units(2.0, 1.0).q0.tolist() == now.in_units(2.0, 1.0).q0.tolist() == [[0.0], [16.0]]
     assert replace(then, seed=3).q0 is q
     assert then.run().q.tolist() == now.run().q.tolist()
@@ -41,6 +41,6 @@ def test_errors_of_a_draw_are_raised_where_it_is_asked_for():
     def draw():
         raise ArgumentError("no room")
 
-    pair = item(later((2, 1), draw), later((2, 1), draw))
+    pair = item(lazy_array((2, 1), draw), lazy_array((2, 1), draw))
     with pytest.raises(ArgumentError, match="no room"):
         _ = pair.q0

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 
+import networkx
 import numpy as np
 import pytest
 
@@ -25,6 +26,45 @@ def test_the_margin_is_that_of_the_largest_eigenvalue(seed):
     assert (found.delay, found.frequency) == (pytest.approx(pi / (2.0 * largest)), pytest.approx(largest))
 
 
+def test_a_balanced_cycle_bears_what_its_complex_eigenvalues_do():
+    """(π/2 − π/6)/√3 at ω = √3, of λ = (3 ± j√3)/2."""
+    cycle = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]]
+    found = delay_margin(consensus_system(cycle))
+    assert (found.delay, found.frequency) == (pytest.approx(pi / (3.0 * sqrt(3.0))), pytest.approx(sqrt(3.0)))
+    assert found.certified
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_directed_net_bears_what_its_eigenvalues_do(seed):
+    rng = np.random.default_rng(seed)
+    weights = (rng.random((9, 9)) < 0.4) * rng.uniform(0.1, 3.0, (9, 9))
+    np.fill_diagonal(weights, 0.0)
+    matrix = np.diag(weights.sum(axis=1)) - weights
+    values = np.linalg.eigvals(matrix)
+    system = consensus_system(matrix)
+    assert system.neutral == 9 + np.sum(np.abs(values) < 1e-9)
+    values = values[np.abs(values) > 1e-9]
+    closed = ((pi / 2.0 - np.abs(np.angle(values))) / np.abs(values)).min()
+    found = delay_margin(system)
+    assert found.delay == pytest.approx(closed, rel=1e-9)
+    for share, sign in ((0.98, -1.0), (1.02, 1.0)):
+        assert np.sign(rightmost_roots(system, share * found.delay, count=1)[0].real) == sign
+
+
+def test_a_chain_that_nobody_answers_is_as_good_as_one_link():
+    """L is one Jordan block of ten: its eigenvalues, as a matrix's, would be off by a tenth root of rounding."""
+    matrix = np.diag([0.0] + [1.0] * 10) - np.diag([1.0] * 10, -1)
+    found = delay_margin(consensus_system(matrix))
+    assert found.delay == pytest.approx(pi / 2.0, rel=1e-14)
+
+
+def test_networkx_laplacians_are_taken_as_they_are():
+    graph = networkx.cycle_graph(6)
+    assert delay_margin(consensus_system(networkx.laplacian_matrix(graph))).delay == pytest.approx(pi / 8.0)
+    directed = networkx.laplacian_matrix(networkx.cycle_graph(3, create_using=networkx.DiGraph))
+    assert delay_margin(consensus_system(directed)).delay == pytest.approx(0.6046, abs=5e-5)
+
+
 @pytest.mark.parametrize("share", [0.3, 0.9, 1.1, 3.0])
 def test_the_root_is_one_and_no_other_is_to_its_right(share):
     delay = share * pi / 4.0
@@ -43,8 +83,8 @@ def test_roots_at_zero_are_counted_for_each_component():
 @pytest.mark.parametrize(
     ("matrix", "match"),
     [
-        ([[1.0, 0.0], [0.0, 1.0]], "rows sum to 0"),
-        ([[1.0, -1.0], [-2.0, 2.0]], "symmetric"),
+        ([[1.0, 0.0], [0.0, 1.0]], "row 0 sums to 1: expected rows that sum to 0"),
+        ([[1.0, -1.0], [-2.0, 3.0]], "row 1 sums to 1"),
         ([1.0, -1.0], r"shape \(2,\)"),
         ([[float("nan")]], "finite"),
         ("net", "square array of numbers"),

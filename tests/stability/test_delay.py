@@ -16,6 +16,7 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
+from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import crossings
 from flockana.stability.delay import (
@@ -108,6 +109,28 @@ def reference(system):
         z = np.linalg.eigvals(-np.linalg.solve(k0 - w * w * one + 1j * w * d0, k1 + 1j * w * d1))
         delays += [float(np.angle(x)) % (2.0 * pi) / w for x in z if abs(abs(x) - 1.0) < 1e-6]
     return min(delays)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_modes_that_directed_nets_share(seed):
+    """Four polynomials in one matrix that is not symmetric: held against the polynomial of degree 4 N² in ω."""
+    rng = np.random.default_rng(seed)
+    net = 0.3 * rng.uniform(0.0, 1.0, (3, 3))
+    one = np.eye(3)
+    system = DelaySystem((2.0 * one - net, 1.5 * one - 0.5 * net), (one - net @ net, 0.4 * one - net))
+    margin, exact = delay_margin(system), reference(system)
+    assert margin.delay == (pytest.approx(exact, rel=1e-7) if np.isfinite(exact) else inf)
+    assert margin.certified or not np.isfinite(exact)
+
+
+def test_a_tree_of_the_minimal_model_bears_what_one_edge_does():
+    """All of it late: per edge s² + (s + 1) e^(−sτ) along it, s² + s e^(−sτ) across."""
+    law = MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0)
+    system = delay_system(law, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    best = min(scalar_margin(1.0, 1.0), scalar_margin(0.0, 1.0), key=lambda margin: margin.delay)
+    assert delay_margin(system).delay == pytest.approx(best.delay, rel=1e-6)
+    with pytest.raises(ArgumentError, match="expected Algorithm1 or Algorithm2"):
+        delay_system(law, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], delayed="neighbours")
 
 
 @pytest.mark.parametrize("seed", range(40))

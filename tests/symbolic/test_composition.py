@@ -32,5 +32,5 @@ def test_the_kernels_have_these_rates():
     moving = symbolic.moving_frame_identity(2).result
     rate = moving.subs({s: (numbers | table | {"alpha": -0.4}).get(s.name, 0.0) for s in moving.free_symbols})
     circle = CircleTarget((2.0, -1.0), 3.0, 0.2)
-    dragged = compose(navigation=circle, pull=1.2, match=0.7, told=True, drag=0.4)
+    dragged = compose(navigation=circle, pull=1.2, match=0.7, feedforward=True, drag=0.4)
     assert dragged.energy_rate(0.3, Q, P) == pytest.approx(float(rate), rel=1e-13)

@@ -11,6 +11,7 @@ from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems.olfati_saber.os_5 import CLAIMS
 
 UNMET = Hypothesis("connected", "unmet")
 ASSUMED = Hypothesis("connected", "assumed")
@@ -30,6 +31,66 @@ MET = Hypothesis("connected", "met")
 def test_a_verdict_takes_the_gravest_status_of_its_claims(statuses, expected):
     verdict = Verdict("x", (), tuple(Claim(str(k), s) for k, s in enumerate(statuses)))
     assert verdict.status == expected
+
+
+@pytest.mark.parametrize(
+    ("author", "expected"), [("source", "vacuous"), ("corrected", "verified"), ("flockana", "refuted")]
+)
+def test_only_the_claims_of_its_author_decide_a_verdict(author, expected):
+    claims = (Claim("i", "vacuous"), Claim("ii", "verified", by="corrected"), Claim("iii", "refuted", by="flockana"))
+    verdict = Verdict("x", (), claims, author=author)
+    assert verdict.status == expected
+    assert [claim.by for claim in verdict.main_claims] == [author]
+    assert author not in [claim.by for claim in verdict.further_claims]
+    assert verdict.to_dict()["author"] == author
+
+
+@pytest.mark.parametrize(
+    ("claims", "expected"),
+    [
+        (("verified", "verified", "verified"), "3 of 3 verified"),
+        (
+            ("verified", "vacuous", "inconclusive"),
+            "1 of 3 inconclusive, 1 verified, 1 vacuous: 'connected' does not hold",
+        ),
+        (("verified", "refuted", "refuted"), "2 of 3 refuted, 1 verified"),
+        ((), "no claim"),
+    ],
+)
+def test_the_summary_counts_the_claims(claims, expected):
+    assert Verdict("x", (MET, UNMET), tuple(Claim(str(k), s) for k, s in enumerate(claims))).summary == expected
+
+
+def test_the_summary_names_the_hypothesis_of_the_vacuous_claim_itself():
+    claims = (Claim("i", "verified"), Claim("iii", "vacuous", needs=(Hypothesis("H(0) < c*", "unmet"),)))
+    assert Verdict("os-1", (UNMET,), claims).summary == "1 of 2 verified, 1 vacuous: H(0) < c* does not hold"
+
+
+def test_corrections_and_extensions_are_told_apart():
+    ours = Claim("cross", "verified", stated="no two links cross", by="flockana")
+    claims = (Claim("i", "vacuous", detail="no links"), ours, Claim("ii", "verified", by="corrected"))
+    expected = "1 of 1 vacuous: no links; corrected: ii, verified; our extension: no two links cross, verified"
+    assert Verdict("x", (), claims).summary == expected
+
+
+def test_a_theorem_says_whose_each_claim_is():
+    def check(tolerances):
+        return [UNMET], [Claim("mine", "verified"), Claim("theirs", "verified", by="corrected")]
+
+    item = Theorem("x", "X", "x", "x", "fixed", check, claims=("i", "mine"), ours=("mine",))
+    assert {claim.name: claim.by for claim in item.examine(Tolerances())[1]} == {
+        "i": "source",
+        "mine": "flockana",
+        "theirs": "corrected",
+    }
+
+
+def test_what_a_theorem_names_as_corrected_or_its_own_are_claims_of_it():
+    for name in theorems():
+        item = theorem(name)
+        known = {*item.claims, *(key.partition(":")[2] for key in item.expected)}
+        known |= set(CLAIMS) if name == "os-5" else set()
+        assert {*item.corrected, *item.ours} <= known, name
 
 
 def test_the_rigour_of_a_verdict_is_the_weakest_among_the_claims_that_decide_it():
@@ -115,7 +176,8 @@ def test_claims_that_the_check_leaves_out_are_vacuous_for_the_first_unmet_hypoth
     made = Claim("ii", "verified")
     hypotheses, claims = a_theorem(lambda run, tolerances: (given, [made])).examine(None, Tolerances())
     assert hypotheses == tuple(given)
-    assert claims == (made, Claim("i", "vacuous", detail="b: b is 3"), Claim("iii", "vacuous", detail="b: b is 3"))
+    left_out = (Claim(name, "vacuous", detail="b: b is 3", needs=(given[1],)) for name in ("i", "iii"))
+    assert claims == (made, *left_out)
     _, claims = a_theorem(lambda run, tolerances: (given, []), reason="not so: {name}").examine(None, Tolerances())
     assert [claim.detail for claim in claims] == ["not so: b"] * 3
 

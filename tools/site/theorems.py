@@ -12,6 +12,7 @@ from flockana.report.coverage.anchors import verdict_id
 from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
+from flockana.theorems.headline import BYLINES
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail
 from tools.site.verdicts import Verdicts
@@ -30,6 +31,7 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
     parts = [
         f"# {plain(item.id)}: {plain(item.title)}",
         f"*{plain(item.source)}*",
+        *([] if item.erratum is None else [plain(f"{item.erratum} ({item.erratum.sort})")]),
         "## Statement",
         plain(item.statement),
         _KINDS[item.kind].format(id=item.id),
@@ -65,7 +67,11 @@ def _claims(item: Theorem, verdicts: Verdicts) -> str:
         return "One, the statement itself."
     limits = [name for name in names if (item.id, name) in verdicts.limits]
     rows = [
-        (f"`{name}`", plain(verdicts.stated.get((item.id, name), "")) or "—", _counts(found.get(name, Counter())))
+        (
+            f"`{name}`{_whose(item, name)}",
+            plain(verdicts.stated.get((item.id, name), "")) or "—",
+            _counts(found.get(name, Counter())),
+        )
         for name in names
     ]
     if not verdicts.status:
@@ -74,6 +80,11 @@ def _claims(item: Theorem, verdicts: Verdicts) -> str:
     text = table(("claim, judged by itself", stated, "found, in how many verdicts of the catalogue"), rows)
     said = ", ".join(f"`{name}`" for name in limits)
     return f"{text}\n\nLimits as t → ∞: {said}. Only a certificate or a proof decides these." if limits else text
+
+
+def _whose(item: Theorem, claim: str) -> str:
+    """Whose a claim is, where it is not the author's of the theorem."""
+    return "" if item.by(claim) == item.author else f" ({BYLINES[item.by(claim)]})"
 
 
 def _counts(of: Mapping[str, int]) -> str:
@@ -140,7 +151,7 @@ def index() -> str:
     opening = (
         "# Theorems and errata\n\nA page for each entry of the catalogue, generated from the library: what is printed, "
         "what was proved by machine, and on which runs it is checked. A false printed claim is expected to read "
-        "`refuted`."
+        "`refuted`. What is printed and what is right, side by side: [errata](../../errata.md)."
     )
     rows = [
         (f"[{plain(item.id)}]({item.id}.md)", plain(item.title), item.expected.get(item.id, "on runs"))

@@ -39,7 +39,7 @@ class Leaders(Term):
         The agents with h_i = 1; the others know of their leader no more than its acceleration.
     pull, drag : float
         c₁ and c₂ of the pinned.
-    told : bool
+    feedforward : bool
         Whether the leaders' accelerations are known.
     """
 
@@ -50,7 +50,7 @@ class Leaders(Term):
     pinned: tuple[int, ...]
     pull: float
     drag: float
-    told: bool = True
+    feedforward: bool = True
 
     conservative: ClassVar[bool] = False  # a leader that moves drags and bends those at rest
 
@@ -104,7 +104,7 @@ class Leaders(Term):
             power -= self.damping * dissipation
         u -= self._pins * (self.pull * (q - q_l) + self.drag * slip)
         power -= self.drag * float(np.sum(self._pins * slip * slip))
-        if not self.told:
+        if not self.feedforward:
             return power - float(np.sum(slip * a_l))
         u += a_l
         return power

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.overrides import speaks_for
+from flockana.base.overrides import overrides_consistently
 from flockana.environment.target import Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel
@@ -92,7 +92,7 @@ class Navigation(Term):
     def _path(self) -> FloatArray | None:
         """The numbers of `flockana.kernels.navigation`, of a target whose path has that form."""
         path = self.target.harmonic
-        if path is None or not speaks_for(type(self.target), "harmonic", ("position", "rate", "state")):
+        if path is None or not overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
         c1, c2 = self._gains
         head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]

@@ -9,11 +9,11 @@ from flockana.interactions.weights import Weight
 from flockana.laws.terms.alignment import AlignmentTerm
 from flockana.laws.terms.along import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
+from flockana.laws.terms.feedforward import TargetFeedforward
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term
-from flockana.laws.terms.told import ToldAcceleration
 
 
 def parts(
@@ -24,7 +24,7 @@ def parts(
     field: ObstacleField | None = None,
     target: Target | None = None,
     unit: float | None = None,
-    told: bool = False,
+    feedforward: bool = False,
     thrust: float = 0.0,
     brake: float = 0.0,
 ) -> tuple[Term, ...]:
@@ -55,8 +55,8 @@ def parts(
         pull = Navigation(target, gains, unit, given=tied)
         moving = pull.moving
         terms.append(pull)
-    if target is not None and told:
-        terms.append(ToldAcceleration(target, moving))
+    if target is not None and feedforward:
+        terms.append(TargetFeedforward(target, moving))
     if thrust != 0.0 or brake != 0.0:
         terms.append(AlongVelocity(thrust, brake, moving))
     return tuple(terms)

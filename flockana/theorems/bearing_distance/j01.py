@@ -90,7 +90,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J1",
-    title="Edges converge to their desired lengths, not to zero",
     statement=(
         "Theorem 1 lets the edge vectors x and their rates converge to zero. x = 0 is collision and contradicts "
         "the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference."
@@ -99,4 +98,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

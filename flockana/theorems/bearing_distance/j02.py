@@ -76,7 +76,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J2",
-    title="A_cl is Hurwitz only outside the desired spacing",
     statement=(
         "The proof takes the edge matrices for positive definite, A_cl for Hurwitz. W^s = diag(μ(1 - αr/|x|)) is "
         "negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i r_i on "
@@ -86,4 +85,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"hurwitz": "refuted", "outside": "verified", "positive-definite": "refuted"},
+    corrected=("outside",),
 )

@@ -102,7 +102,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J3",
-    title="Eigenvalues do not pair off index by index",
     statement=(
         "After (39) the proof pairs the eigenvalues of two matrices that do not commute. On directed rooted trees "
         "both are triangular in one order, and it is right; on an undirected path it is not, and A_cl can be "
@@ -112,4 +111,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "hurwitz": "refuted", "trees": "verified"},
+    corrected=("trees",),
 )

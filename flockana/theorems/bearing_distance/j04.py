@@ -57,7 +57,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J4",
-    title="Two signs that cancel, and the wrong Laplacian",
     statement=(
         "(28) adds q where it must be subtracted, and the identity before (34) has the sign of q wrong as well: "
         "together they cancel, and (34), (35) are right. L = D Dᵀ is the undirected Laplacian; the loop holds "
@@ -67,4 +66,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"28": "refuted", "identity": "refuted", "34": "verified", "loop": "verified"},
+    corrected=("loop",),
 )

@@ -74,7 +74,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J5",
-    title="A spacing of |N_i| cannot be had on a spanning tree",
     statement=(
         "With α_i r_i = |N_i| neighbours of different degree want different lengths of their edge, and with equal "
         "radii perception is mutual, so that no graph is a directed tree. On a frozen path of three the ends come "
@@ -84,4 +83,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "runaway": "verified"},
+    ours=("runaway",),
 )

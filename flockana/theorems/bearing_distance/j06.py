@@ -1,4 +1,4 @@
-"""Erratum J6: the corrected Theorem 1 holds on a directed and on an undirected tree, in the plane and in space."""
+"""J6: the corrected Theorem 1 holds on a directed and on an undirected tree, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -56,4 +56,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected=dict.fromkeys(("directed-2", "directed-3", "undirected-2", "undirected-3"), "verified"),
+    author="corrected",
 )

@@ -89,7 +89,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J7",
-    title="The velocity bound is a drag",
     statement=(
         "(10) passes the velocity through v^max tanh(|v|/v^max) in every step. That is a drag: 3 m/s become 2.54, "
         "and with |u| <= 2 no speed above 2.01 lasts, so that v^d = 3 is out of reach. A plain clip is meant."
@@ -98,4 +97,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"step": "verified", "reachable": "refuted", "speed": "refuted", "clip": "verified"},
+    corrected=("clip",),
+    ours=("step",),
 )

@@ -62,7 +62,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J8",
-    title="The velocity estimate drifts",
     statement=(
         "Remark 3 holds the bearing form with the estimate (17) for equivalent. (17) leaves out the global speed "
         "term and both bounds: estimates drift away from the velocities, and the flock disperses."
@@ -71,4 +70,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"forms": "verified", "equivalent": "refuted", "holds-together": "refuted", "measured": "verified"},
+    corrected=("measured",),
 )

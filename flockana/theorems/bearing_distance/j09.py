@@ -69,7 +69,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J9",
-    title="An alien nearer than a_i exerts no force",
     statement=(
         "N_i^s holds the aliens at a_i < d <= s_i: one that comes closer exerts no force and walks through the "
         "flock. With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss."
@@ -78,4 +77,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified", "flock": "refuted"},
+    corrected=("corrected",),
 )

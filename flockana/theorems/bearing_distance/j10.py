@@ -65,11 +65,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "C = 1 within 2 s",
             witness={"least C from 2 s on, by seed": printed},
         ),
-        always(
-            "order-mended",
-            [c >= _IN_ORDER for c in mended],
-            f"{order}, with J7 and J8 mended and the printed weights,",
-            "C = 1 within 2 s",
+        mostly(
+            "unordered-still",
+            [c < _IN_ORDER for c in mended],
+            f"not {order}, with J7 and J8 mended and the printed weights,",
+            "nor is C = 1 within 2 s with J7 and J8 mended",
             witness={"least C from 2 s on, by seed": mended},
         ),
         _weights_cancel(),
@@ -85,7 +85,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J10",
-    title="Section 5.1 does not come out as reported",
     statement=(
         "Section 5.1 reports distances above 1.5 m throughout and C = 1 within 2 s. Random starts as described "
         "violate the first at once, nearly always; with the printed parameters the second never happens, and the "
@@ -97,8 +96,10 @@ THEOREM = erratum(
     expected={
         "distances": "refuted",
         "order": "refuted",
-        "order-mended": "refuted",
+        "unordered-still": "verified",
         "weights": "refuted",
         "recommended": "verified",
     },
+    corrected=("recommended",),
+    ours=("unordered-still",),
 )

@@ -95,7 +95,6 @@ def _recommended(m: int) -> Claim:
 
 THEOREM = erratum(
     "J11",
-    title="The minimal model as printed does not align 60 agents",
     statement=(
         "Fig. 10 is said to show that 60 agents under the minimal model align and hold together. As printed they never "
         "align, and in the plane they fall apart: the desired spacing, as many metres as an agent has neighbours, "
@@ -111,4 +110,5 @@ THEOREM = erratum(
         "recommended-2d": "verified",
         "recommended-3d": "verified",
     },
+    corrected=("recommended-2d", "recommended-3d"),
 )

@@ -132,7 +132,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J12",
-    title="Repulsion reverses inside obstacles, and the printed weights allow contact",
     statement=(
         "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes deeper in. Outside, where weights damp "
         "the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes "
@@ -143,4 +142,6 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"printed": "refuted", "corrected": "verified", "stand-off": "verified", "contact": "refuted"},
+    corrected=("corrected",),
+    ours=("stand-off",),
 )

@@ -121,7 +121,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J13",
-    title="A longer obstacle zone does not react earlier",
     statement=(
         "The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i "
         "when slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that head "
@@ -131,4 +130,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"letter": "refuted", "clamped": "refuted", "reaching": "verified", "stand-off": "verified"},
+    corrected=("reaching", "stand-off"),
 )

@@ -1,4 +1,4 @@
-"""Erratum J14: a new global speed emerges, and it is the desired one as soon as somebody is informed of it."""
+"""J14, confirmed: a new global speed emerges; it is the desired one as soon as somebody is informed of it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import separated_start
 from flockana.theorems.claims import erratum, of_map
 from flockana.theorems.observed import observed
-from flockana.theorems.shares import always, mostly
+from flockana.theorems.shares import mostly
 from flockana.theorems.theorem import Claim, Tolerances
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: speeds that differ by less are the same; of a few hundred steps
@@ -85,11 +85,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "the flock takes over the speed of those who are informed",
             witness={"mean speed by seed": two},
         ),
-        always(
+        mostly(
             "none-of-ten",
-            [abs(v / _DESIRED - 1.0) <= _NEAR for v in none],
-            f"with none informed the mean speed is about v^d ({np.median(none):.2f} in the median)",
-            "a flock of which nobody is informed flies at the desired speed",
+            [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
+            f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
+            "a flock of which nobody is informed does not fly at the desired speed",
             witness={"mean speed by seed": none},
         ),
     ]
@@ -97,7 +97,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J14",
-    title="The new global speed is that of the informed",
     statement=(
         "When some agents alter their speeds their neighbours follow, and a new global speed results; w^ga = 0 for "
         "agents that are not informed of v^d. True: whom alignment reaches takes over v^d from a single informed "
@@ -110,6 +109,7 @@ THEOREM = erratum(
         "one-informed": "verified",
         "none-informed": "verified",
         "two-of-ten": "verified",
-        "none-of-ten": "refuted",
+        "none-of-ten": "verified",
     },
+    ours=("none-informed", "none-of-ten"),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flockana.base.checks import FloatArray
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import min_distance
@@ -17,15 +18,38 @@ _C = 3.0
 _RADII = ZoneRadii(1.5, c=_C, a=5.0)
 _UNBOUNDED = 1e6  # an input bound that never acts
 _STEPS = 1000
-_CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c)
+_CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c), with g_c <= w^ls (c/r - 1)
+_STRONG, _FINE, _SLIDES = (5.0, 10.0), 0.005, 5e-3  # cohesion beyond that; a step; how near r it slides, relative
+
+
+def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: float = 0.1) -> FloatArray:
+    """Distance over time of two agents without a desired speed, at rest at first."""
+    weights = ZoneWeights(separation=separation, speed=0.0, cohesion_gain=cohesion, alignment_gain=4.0)
+    law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, dt=dt)
+    q, p = np.array([[0.0, 0.0], [start, 0.0]]), np.zeros((2, 2))
+    distances: FloatArray = np.diff(law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, :, 0], axis=1)[:, 0]
+    return distances
 
 
 def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
-    """Distance at which two agents without a desired speed come to rest."""
-    weights = ZoneWeights(separation=separation, speed=0.0, cohesion_gain=cohesion, alignment_gain=4.0)
-    law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED)
-    q, p = np.array([[0.0, 0.0], [start, 0.0]]), np.zeros((2, 2))
-    return float(np.diff(law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][-1, :, 0])[0])
+    """Distance at which they come to rest."""
+    return float(_distances(separation, cohesion, start)[-1])
+
+
+def _sliding() -> Claim:
+    """Claim that a strong cohesion, off at r and nearer, holds a pair at r, about which it chatters."""
+    late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
+    off = float(np.abs(late / r - 1.0).max())
+    return of_map(
+        "sliding",
+        _SLIDES - off,
+        _ROUNDING,
+        computed=[float(late.min()), float(late.max())],
+        stated=f"beyond g_c = w^ls (c/r - 1) a pair slides at r = {r:g}",
+        witness={"w^ls": _STRONG[0], "g_c": _STRONG[1], "dt": _FINE},
+        detail=f"with g_c = {_STRONG[1]:g} the balance would be at {_C * _STRONG[0] / sum(_STRONG):.3g} m, nearer "
+        f"than r, where cohesion is off: the pair stays within {off:.1%} of r",
+    )
 
 
 def _pair() -> list[Claim]:
@@ -50,9 +74,10 @@ def _pair() -> list[Claim]:
             computed={case: pair[1] for case, pair in rows.items()},
             stated={case: pair[0] for case, pair in rows.items()},
             witness="two agents at rest, 3.5 m apart at first",
-            detail=f"a pair rests at c w^ls/(w^ls + g_c) in {len(rows)} cases (off by {error:.1g} m): below c for any "
-            "cohesion",
+            detail=f"a pair rests at c w^ls/(w^ls + g_c), which is r or more, in {len(rows)} cases (off by {error:.1g} "
+            "m): below c for any cohesion",
         ),
+        _sliding(),
         of_map(
             "alone",
             _SAME - abs(alone / _C - 1.0),
@@ -81,14 +106,16 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J15",
-    title="Separation ensures no minimum distance c_i",
     statement=(
         "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
-        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion. (On the way "
-        "there agents come closer still: J12.)"
+        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion, as long as "
+        "that is r or more, g_c <= w^ls (c/r - 1); a stronger cohesion, which is off at r and nearer, makes it slide "
+        "at r. (On the way there agents come closer still: J12.)"
     ),
     source="Jond, bearing-distance flocking, (6)",
     check=_check,
     references=("jond-2025",),
-    expected={"printed": "refuted", "rest": "verified", "alone": "verified", "flock": "refuted"},
+    expected={"printed": "refuted", "rest": "verified", "sliding": "verified", "alone": "verified", "flock": "refuted"},
+    corrected=("rest", "sliding"),
+    ours=("alone",),
 )

@@ -28,25 +28,6 @@ def _positions(law: ZoneFlocking, q: FloatArray, p: FloatArray, steps: int) -> F
     return law.iterate(0.0, q, p, law.start(q, p), steps)[0]
 
 
-def _at_rest() -> Claim:
-    """Two agents at rest, out of each other's sight and clear of the walls: no force at all, for ever."""
-    law = ZoneFlocking.printed(_RADII, world=_WALLED)
-    q, p = np.array([[10.0, 10.0], [40.0, 40.0]]), np.zeros((2, 2))
-    path = _positions(law, q, p, 100)
-    moved, apart = float(np.abs(path - q).max()), float(np.linalg.norm(path[-1, 1] - path[-1, 0]))
-    same = moved == 0.0  # a state that a map keeps to the bit it keeps for ever
-    return limit_claim(
-        "at-rest",
-        [],
-        escape=Certificate(1.0 - _A / apart if same else -1.0, "no behaviour acts", _ROUNDING),
-        computed=moved,
-        stated=_REUNITE,
-        witness={"q": q.tolist(), "p": "0"},
-        detail="two agents at rest, farther apart than a_i and than c_i from the walls: every behaviour is exactly "
-        "zero (at rest (5) is 0/0, and read as 0), and they stay where they are",
-    )
-
-
 def _at_walls() -> Claim:
     """Two agents head on at opposite walls: each slows down for ever before its own, and there both stay.
 
@@ -140,23 +121,21 @@ def _pairs() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_at_rest(), _at_walls(), _circling(), _lone(), _pairs()]
+    return [_at_walls(), _circling(), _lone(), _pairs()]
 
 
 THEOREM = erratum(
     "J16",
-    title="In a box fragments need not reunite",
     statement=(
         "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
-        "attraction may grow until a flockmate is found. Agents at rest never meet, nor do two that head for opposite "
-        "walls; others run along the walls, one behind the other, for as long as is seen. Growing radii bring lone "
-        "agents back; fragments of two or more they leave apart."
+        "attraction may grow until a flockmate is found. Two that head for opposite walls at v^d come to rest there "
+        "and never meet. Others are seen to run along the walls, one behind the other, which decides nothing about "
+        "later. Growing radii bring lone agents back; fragments of two or more they leave apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,
     references=("jond-2025",),
     expected={
-        "at-rest": "refuted",
         "at-walls": "refuted",
         "circling": "inconclusive",
         "growing": "verified",

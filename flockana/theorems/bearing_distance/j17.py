@@ -1,4 +1,4 @@
-"""The bearing-distance paper's delayed reaction: agents that see an alien later than it sees them lose distance."""
+"""J17, confirmed: agents that see an alien later than it sees them react late and lose distance."""
 
 from __future__ import annotations
 
@@ -72,7 +72,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "J17",
-    title="A shorter surveillance radius delays the reaction to an alien",
     statement=(
         "Section 5.2: the shorter surveillance radius of the agents, 6 m against the alien's 9 m, causes a delayed "
         "reaction. True: by (9 - s)/(v + v_alien) head on, and the alien comes that much nearer."

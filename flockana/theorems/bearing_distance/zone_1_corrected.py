@@ -117,4 +117,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"),
     references=("jond-2025",),
+    author="corrected",
 )

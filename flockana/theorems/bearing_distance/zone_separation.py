@@ -115,7 +115,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "zone-separation",
-    title="Separation alone oscillates; alignment damps, but excludes no collision",
     statement=(
         "Section 4 says that the separation (25) alone oscillates, and that alignment (24) brings a common motion and "
         "avoids close encounters. Two agents swing about the desired spacing with frequency sqrt(2μ), undamped; on "
@@ -126,4 +125,5 @@ THEOREM = erratum(
     check=_check,
     references=("jond-2025",),
     expected={"alone": "verified", "energy": "verified", "chain": "verified", "close-encounters": "refuted"},
+    ours=("energy", "chain"),
 )

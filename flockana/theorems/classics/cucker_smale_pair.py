@@ -111,4 +111,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("invariant", "bounded", "parts"),
     references=("cucker-smale-2007", "ha-liu-2009", "flockana"),
+    author="flockana",
 )

@@ -49,5 +49,6 @@ THEOREM = (
         check=partial(_check, stretch=sqrt(2.0)),
         claims=_NAMES,
         references=("ha-liu-2009", "flockana"),
+        author="flockana",
     ),
 )

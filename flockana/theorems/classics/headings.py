@@ -142,4 +142,5 @@ THEOREM = Theorem(
     law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
     claims=("hull", "contraction", "agreement"),
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
+    ours=("hull", "contraction"),
 )

@@ -38,10 +38,10 @@ def _turned() -> Claim:
     differ = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
     turned_round = averaged(pair)
     return exact(
-        "frame-free",
-        not differ,
+        "frame-bound",
+        bool(differ),
         computed=str(turned_round),
-        stated="turning the whole flock turns the mean headings with it",
+        stated="turning the whole flock need not turn the mean headings with it",
         witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
         detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_round} of a turn: "
         "they turn round; turned by 1/24 or more they go straight on",
@@ -94,5 +94,6 @@ THEOREM = erratum(
     source="ours, on Jadbabaie, Lin and Morse's averages of headings in [0, 2π)",
     check=_check,
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
-    expected={"frame-free": "refuted", "clear-of-cut": "verified", "vectors": "verified"},
+    expected={"frame-bound": "verified", "clear-of-cut": "verified", "vectors": "verified"},
+    author="flockana",
 )

@@ -15,7 +15,7 @@ from flockana.dynamics.between import Between
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.terms.told import acceleration
+from flockana.laws.terms.feedforward import acceleration
 from flockana.measures.nets import components, links
 from flockana.theorems.hypotheses import condition
 from flockana.theorems.limits import Certificate, evidence, limit_claim
@@ -56,9 +56,9 @@ def constant_velocity(run: Trajectory) -> Hypothesis:
     target, name = run.law.target, "the leader's velocity is constant"
     if type(target) in (LinearTarget, StaticTarget):
         return Hypothesis(name, "met", detail=type(target).__name__)
-    told = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
-    spread = float(np.abs(told - told[0, 1]).max())
-    if spread > 64.0 * EPS * float(np.abs(told).max()):
+    feedforward = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
+    spread = float(np.abs(feedforward - feedforward[0, 1]).max())
+    if spread > 64.0 * EPS * float(np.abs(feedforward).max()):
         return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or is not what is told")
     return Hypothesis(name, "assumed", detail="it is, at all steps")
 
@@ -68,26 +68,28 @@ def as_the_leader_sees(seen: Observed) -> Observed:
 
     Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs away.
     """
-    return seen.remembered("leader's frame", lambda: seen.transformed(_seen))
+    return seen.cached("leader's frame", lambda: seen.transformed(_seen))
 
 
 def _seen(run: Trajectory) -> Trajectory:
     law, (pull, match) = run.law, gains_of(run)
     gains = replace(law.gains, c1_gamma=tuple(pull.tolist()), c2_gamma=tuple(match.tolist()))
     still = Algorithm2(law.alpha, gains, StaticTarget((0.0,) * run.m))
-    told = bool(getattr(law, "told", False))
+    feedforward = bool(getattr(law, "feedforward", False))
     between = (
-        None if run.between is None else Between(**_shifted(law.target, run.between, told), slack=run.between.slack)
+        None
+        if run.between is None
+        else Between(**_shifted(law.target, run.between, feedforward), slack=run.between.slack)
     )
-    return replace(run, **_shifted(law.target, run, told), law=still, extra={}, between=between)
+    return replace(run, **_shifted(law.target, run, feedforward), law=still, extra={}, between=between)
 
 
-def _shifted(target: Any, course: Any, told: bool) -> dict[str, Any]:
+def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
     """t, q, p and u of samples, or of the steps between them, less those of the leader."""
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
     place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
-    push = np.array([acceleration(target.harmonic, float(t)) if told else np.zeros(shape[1]) for t in course.t])
+    push = np.array([acceleration(target.harmonic, float(t)) if feedforward else np.zeros(shape[1]) for t in course.t])
     apart = {"q": course.q - place[:, None], "p": course.p - speed[:, None]}
     return {"t": course.t, **apart, "u": course.u - push.reshape(shape)[:, None]}
 

@@ -1,4 +1,4 @@
-"""Links that are kept for ever: below an energy level none reaches the range, so a connected net stays connected."""
+"""Links that a tension keeps: below an energy level none reaches the range, so the net stays connected and agrees."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from flockana.kernels.paths import control_points
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
+from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is
@@ -64,21 +65,26 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS)
     level = f"no link is longer than the {longest.mid:.5g} at which it alone has H(0) = {energy.mid:.5g}"
     whole = "the links, all shorter than r, join all agents always"
-    return [joined], [
+    damped = condition("c > 0", law.c > 0.0, law.c, f"c = {law.c:g}")
+    return [joined, damped], [
         never_rises(seen, [], proof=_PROOF),
         balance(seen, [], tolerances, proof=_PROOF),
         _below(seen, "links", longest, level, []),
         _below(seen, "connected", Enclosure.of(law.r), whole, [joined]),
+        velocities_match(seen, [joined, damped], name="velocities", proof="matched-velocities"),
     ]
 
 
 THEOREM = Theorem(
     id="links-kept",
-    title="A tension without bound at the range keeps the net connected",
+    title="A tension without bound at the range keeps the links of the start, and velocities agree",
     statement=(
         "Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy "
         "H = Σ ψ + ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the "
-        "length at which it alone has H(0), which is below r; if the links join all agents, they do so for ever."
+        "length at which it alone has H(0), which is below r; if the links join all agents, they do so at all times, "
+        "and with c > 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded "
+        "at contact too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a "
+        "first-order rendezvous. Of both this is a part, in our words."
     ),
     source=(
         "Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that of the start, "
@@ -87,6 +93,7 @@ THEOREM = Theorem(
     kind="trajectory",
     check=_check,
     law=law_is("link-keeping", LinkKeeping),
-    claims=("rate", "balance", "links", "connected"),
+    claims=("rate", "balance", "links", "connected", "velocities"),
     references=("zavlanos-2007", "ji-egerstedt-2007"),
+    author="flockana",
 )

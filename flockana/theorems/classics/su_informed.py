@@ -32,7 +32,7 @@ def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
     who = linked_to_informed(run) & ~informed(run)
     count, of = int(who.sum()), int((~informed(run)).sum())
     text = f"{count} of {of} uninformed agents, in each of {WINDOWS} windows of the last half of the run"
-    name = "uninformed agents are joined to informed ones by links in each of endlessly many bounded windows of time"
+    name = "uninformed agents are joined to informed ones across each of contiguous, bounded windows, without end"
     return Hypothesis(name, "assumed" if count else "unmet", float(count), text), who
 
 
@@ -62,9 +62,10 @@ THEOREM = Theorem(
         "The virtual leader keeps its velocity, a few agents feel it with c1, c2 > 0, the others do not. Let Q be the "
         "energy seen from the leader, c1α V + ½ c1 Σ ‖q_i − q_r‖² of the informed + ½ Σ ‖p_i − p_r‖². Then Q never "
         "rises; (i) every informed agent stays within sqrt(2 Q(0)/c1) of the leader; (ii) the informed take on its "
-        "velocity; (iii) so does an uninformed agent that is joined to an informed one by a chain of links in each of "
-        "endlessly many windows of bounded length; (iv) with Q(0) < (k+1) c*, at most k distinct pairs collide. (iv) "
-        "holds at each instant, and for k = 0; over time more pairs can (erratum E13)."
+        "velocity; (iii) so does an uninformed agent with an infinite sequence of contiguous, nonempty, uniformly "
+        "bounded intervals from t0 on, across each of which a joint path leads from it to an informed one; (iv) "
+        "with Q(0) < (k+1) c*, at most k distinct pairs collide. (iv) holds at each instant, and for k = 0; over time "
+        "more pairs can (erratum E13)."
     ),
     source="Su, Wang and Lin 2009, on a minority of informed agents",
     kind="trajectory",
@@ -73,4 +74,5 @@ THEOREM = Theorem(
     claims=CLAIMS,
     leads={"pairs": pairs_apart, "one-instant": pairs_apart},
     references=("su-2009", "olfati-saber-2006"),
+    corrected=("one-instant",),
 )

@@ -11,9 +11,9 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.terms.feedforward import TargetFeedforward
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.terms.told import ToldAcceleration
 from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
@@ -51,7 +51,7 @@ def _only_told(run: Trajectory) -> Hypothesis:
         steady = constant_velocity(run)
         return Hypothesis(name, steady.status, steady.margin, f"it is not told; {steady.name}: {steady.detail}")
     terms = [type(term) for term in law.terms]
-    alike = terms == [PairTerm, Navigation, ToldAcceleration] and law.unit is None
+    alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
     known = alike and type(law.alpha) is AlphaInteraction
     return condition(name, known, detail=", ".join(term.__name__ for term in terms))
 

@@ -31,9 +31,9 @@ THEOREM = Theorem(
     title="A fixed connected net with potentials flocks",
     statement=(
         "Let agents steer by u_i = -Σ (p_i - p_j) - Σ ∇V_ij over their neighbours in a fixed connected net, V being "
-        "unbounded at contact, with one minimum. Then velocities become the same, neighbours do not collide, and the "
-        "flock tends to a state in which no force acts: the total potential is extremal. (The paper says that the "
-        "potentials of all agents are minimised: erratum tanner-minimum.)"
+        "unbounded at contact and at infinity, with one minimum. Then velocities become the same, neighbours do not "
+        "collide, and the flock tends to a state in which no force acts: the total potential is extremal. (The paper "
+        "says that the potentials of all agents are minimised: erratum tanner-minimum.)"
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
     kind="trajectory",

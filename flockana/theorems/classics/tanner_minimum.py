@@ -2,8 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from flockana.theorems.claims import equal, erratum, exact
 from flockana.theorems.theorem import Claim, Tolerances
+
+
+def _own_block() -> Any:
+    """Second derivatives of the total potential along one agent, less those of the agent's own potential."""
+    import sympy as sp
+
+    V, places = sp.Function("V"), [sp.symbols(f"x{i} y{i}", real=True) for i in range(3)]
+
+    def pair(i: int, j: int) -> Any:
+        return V(sp.sqrt(sum((a - b) ** 2 for a, b in zip(places[i], places[j], strict=True))))
+
+    own = pair(0, 1) + pair(0, 2)
+    total = own + pair(1, 2)
+    return [sp.simplify(sp.diff(total - own, a, b)) for a in places[0] for b in places[0]]
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -23,23 +39,33 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=str(hill),
             stated="the potentials of all agents are minimised",
             witness="three agents, all joined, at rest on a line, √3/2 d apart",
-            detail=f"the second derivative of the middle agent's potential to the side is {hill} k/d² < 0",
+            detail=f"the second derivative of the middle agent's potential to the side is {hill} k/d² < 0; the total "
+            "falls there as well, so that all but a thin set of starts leave",
         ),
         equal("corrected", outer, stated="the total potential is extremal: no force acts", detail="and on no agent"),
+        equal(
+            "second-order",
+            _own_block(),
+            stated="at a minimum of the total no second derivative of an agent's own potential is negative",
+            detail="along one agent the total and its own potential have the same second derivatives, for every pair "
+            "potential: where the total is least each agent's own is, to second order",
+        ),
     ]
 
 
 THEOREM = erratum(
     "tanner-minimum",
-    title="Potentials become extremal, not minimal",
     statement=(
         "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of "
         "all agents. Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and "
-        "√3/2 d apart, stay there for ever, and the potential of the one in the middle falls to either side. With many "
-        "links even a stable limit presses agents off the minima of single pairs."
+        "√3/2 d apart, stay there for ever, and the potential of the one in the middle falls to either side. But that "
+        "state is unstable: at a minimum of the total each agent's own potential is least to second order, so that "
+        "the printed claim fails on a thin set of starts. With many links even a stable limit presses agents off the "
+        "minima of single pairs."
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
     check=_check,
     references=("tanner-2007", "flockana"),
-    expected={"printed": "refuted", "corrected": "verified"},
+    expected={"printed": "refuted", "corrected": "verified", "second-order": "verified"},
+    corrected=("corrected", "second-order"),
 )

@@ -105,4 +105,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("bound",),
     references=("olfati-saber-2006", "flockana"),
+    author="flockana",
 )

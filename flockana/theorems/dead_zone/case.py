@@ -60,7 +60,7 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
         off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
         return components_of(q, p, law, dt, off=off, p_off=p_off, energy_off=energy_off)
 
-    return seen.remembered("dead-zone components", compute)
+    return seen.cached("dead-zone components", compute)
 
 
 def settling(end: Components) -> Certificate:

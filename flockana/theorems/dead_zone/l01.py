@@ -64,7 +64,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L1",
-    title="Direction and sum occur once",
     statement=(
         "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
         "of two vectors is undefined; by components it depends on the axes. The scalar force once and n once is meant."
@@ -73,4 +72,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

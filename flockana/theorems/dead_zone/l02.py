@@ -44,7 +44,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L2",
-    title="n points from i to j",
     statement=(
         "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into "
         "each other. q_j - q_i is meant throughout."
@@ -53,4 +52,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -38,7 +38,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L3",
-    title="φ_z is a force, unbounded as 1/r²",
     statement=(
         "φ_z is called a bounded potential. It is a force, unbounded as 1/r²; its potential is unbounded too, but only "
         "logarithmically, because n ~ ρ."
@@ -47,4 +46,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

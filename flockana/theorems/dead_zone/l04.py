@@ -60,7 +60,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L4",
-    title="Cohesion is not implied",
     statement=(
         "No leader appears in (9), and nothing keeps the net connected: two agents 14 m apart that leave each other at "
         "12 m/s separate, and from wide starts the share of connected flocks falls towards 0."
@@ -69,4 +68,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "wide-starts": "verified"},
+    ours=("wide-starts",),
 )

@@ -52,7 +52,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L5",
-    title="The energy of neighbours jumps",
     statement=(
         "H summed over neighbours jumps up by ψ(r) whenever a pair comes into range. With the potential saturated at "
         "r, dH̄/dt = -k₂ pᵀL̂p across all switches."
@@ -61,4 +60,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "corrected": "verified", "across-the-switch": "verified"},
+    corrected=("corrected", "across-the-switch"),
 )

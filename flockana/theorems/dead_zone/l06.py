@@ -1,4 +1,4 @@
-"""Erratum L6: no two agents collide, by an explicit bound on distances, exponentially small in the energy."""
+"""L6, confirmed: no two agents collide, by an explicit bound on distances, exponentially small in the energy."""
 
 from __future__ import annotations
 
@@ -56,7 +56,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L6",
-    title="No collision, with an explicit bound",
     statement=(
         "True for distinct starts and k_r > 0: the distance stays above an explicit bound, which is exponentially "
         "small in the energy, and attained without damping."
@@ -65,4 +64,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "verified", "bound": "verified"},
+    ours=("bound",),
 )

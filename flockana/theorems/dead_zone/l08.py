@@ -50,7 +50,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L8",
-    title="No α-lattice of all pairs, and contacts at r_b - δ",
     statement=(
         "All pairs at one distance d is impossible for n > 3 in the plane. Contacts sit where repulsion ends, at r_b - "
         "δ, not at the balance distance r_b."
@@ -59,4 +58,5 @@ THEOREM = erratum(
     check=_check,
     references=("li-dead-zone",),
     expected={"printed": "refuted", "balance-distance": "refuted", "contact": "verified"},
+    corrected=("contact",),
 )

@@ -32,7 +32,7 @@ def led_run(leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], 
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
-    law = LedDeadZoneFlocking(pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, told=told)
+    law = LedDeadZoneFlocking(pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, feedforward=told)
     return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
@@ -152,7 +152,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "L9",
-    title="Leaders and pinned agents appear in the text, not in (9)",
     statement=(
         "Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders "
         "whose acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these "
@@ -171,4 +170,5 @@ THEOREM = erratum(
         "acceleration": "verified",
         "acceleration-needed": "verified",
     },
+    ours=("energy",),
 )

@@ -84,4 +84,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("rate", "balance", "components", "distance"),
     references=("li-dead-zone",),
+    author="corrected",
 )

@@ -171,6 +171,7 @@ THEOREM = (
         source="ours; the statement is textbook knowledge",
         check=_check,
         expected={"decay": "verified", "random": "verified", "range": "verified"},
+        author="flockana",
     ),
     Theorem(
         id="linearised-decay-terminal",
@@ -181,5 +182,6 @@ THEOREM = (
         check=_check_terminal,
         claims=_NAMES,
         reason="no stable equilibrium to return to",
+        author="flockana",
     ),
 )

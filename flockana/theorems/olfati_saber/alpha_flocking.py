@@ -54,7 +54,7 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
     before = int(np.searchsorted(t, start, side="right")) - 1
     lead = t[before] < start and not seen.is_map  # a map is nowhere between its steps
     begin = float(t[before]) if lead else start
-    part = seen.remembered(f"window from {begin!r}", lambda: seen.window(begin, float(t[-1])))
+    part = seen.cached(f"window from {begin!r}", lambda: seen.window(begin, float(t[-1])))
     count = len(part.t) - int(lead)
     detail = f"from t = {part.t[-count]:.4g} to {part.t[-1]:.4g}, at {count} samples"
     return condition("judged over a window", count > 1, detail=detail), _Window(part, int(lead), start)

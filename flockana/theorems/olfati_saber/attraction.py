@@ -38,8 +38,8 @@ def attraction(
 ) -> Basin:
     """Return the basin of the minimum beside a state that is known to some distance.
 
-    Its barrier is 0 where nothing is known: at a saddle, in a flexible net, and of a flock with more coordinates than a
-    dense Hessian is made for.
+    Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
+    of a flock with more coordinates than a dense Hessian is made for.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def attraction(
     """
     if q.shape[0] == 1:
         return ALONE
-    if q.size > DENSE_LIMIT:
+    if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
         return Basin()
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
     if not (everywhere or law.gains.c2_alpha > 0.0):
@@ -84,7 +84,7 @@ def final_basin(seen: Observed) -> Basin:
     """Return the basin beside the last state of a run, as far as that is known; kept with the run."""
     q, p, q_error, p_error = seen.end
     off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
-    return seen.remembered("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
+    return seen.cached("attraction at the end", lambda: attraction(seen.law, q, p, off=off, p_off=p_off))
 
 
 def _translations(q: FloatArray) -> FloatArray:

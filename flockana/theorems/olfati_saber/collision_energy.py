@@ -55,4 +55,5 @@ THEOREM = Theorem(
     enclosed=enclosed_by("collision_energy"),
     claims=tuple(_MULTIPLES),
     references=("olfati-saber-2006", "flockana"),
+    ours=("twice",),
 )

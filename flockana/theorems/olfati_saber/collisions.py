@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
@@ -22,6 +23,7 @@ from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.claims import counted, judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, positive_room
+from flockana.theorems.meeting import above_least, meeting
 from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
@@ -34,7 +36,7 @@ IndexArray = npt.NDArray[np.intp]
 def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
     """Return contacts of a run: pairs whose interpolated paths come within the contact distance."""
     tol = tolerances.contact * run.law.alpha.length
-    return run.remembered(
+    return run.cached(
         f"contacts within {tol!r}", lambda: contacts(*run.path[:4], tol=tol, intervals=_intervals(run, tol)[0])
     )
 
@@ -63,7 +65,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
     """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
-    return seen.remembered(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
+    return seen.cached(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
 
 def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
@@ -129,9 +131,13 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
     """
     from flockana.equilibria.barrier import collision_bounds
 
-    low, high = (seen.law.gains.c1_alpha * bound for bound in collision_bounds(seen.law.alpha, seen.n, seen.m))
+    if isinstance(seen.law.alpha, AlphaInteraction):
+        low, high = (seen.law.gains.c1_alpha * bound for bound in collision_bounds(seen.law.alpha, seen.n, seen.m))
+    else:
+        low, high = sum(meeting(seen)), np.inf
     status: HypothesisStatus = "met" if energy.hi < low else "unmet" if energy.lo >= high else "assumed"
-    detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}, and a state of {high:.5g} is known"
+    detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}"
+    detail += f", and a state of {high:.5g} is known" if np.isfinite(high) else ""
     bound = high if status == "unmet" else low
     margin = float(bound - energy.mid)
     return Hypothesis("H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width))
@@ -180,8 +186,7 @@ def distinct_pairs(
     seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, disproof: str | None = None
 ) -> Claim:
     """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
-    c_star = seen.law.gains.c1_alpha * seen.law.alpha.c_star
-    energy, pairs = seen.energy[0], seen.n * (seen.n - 1) // 2
+    c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
     least, most = (int(np.clip(np.floor(end / c_star), 0, pairs)) for end in (energy.lo, energy.hi))
     bites = condition("k < n(n-1)/2", least < pairs, float(pairs - least - 1))
     certain, possible = passed(seen, tolerances), set().union(*near(seen, tolerances))
@@ -211,8 +216,8 @@ def pairs_at_one_instant(
     Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
     than the contact distance at a sample, as coincident there.
     """
-    c_star = seen.law.gains.c1_alpha * seen.law.alpha.c_star
-    allowed, at_most = np.floor(seen.energy.lo / c_star), np.floor(seen.energy.hi / c_star)
+    c_star, above = meeting(seen).c_star, above_least(seen, seen.energy)
+    allowed, at_most = np.floor(above.lo / c_star), np.floor(above.hi / c_star)
     together = np.array([len(pairs) for pairs in near(seen, tolerances)])
     exactly = _at_one_place(seen.run.q)  # nothing else is certain at an instant
     spare = np.minimum(allowed[:-1], allowed[1:]) - together

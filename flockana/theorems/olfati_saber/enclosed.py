@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
-from flockana.certified.intervals import c_star, exact
+from flockana.certified.intervals import c_star, exact, far_potential
 from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
 from flockana.certified.structural_energy import BITS, scaled
 from flockana.certified.tube import Tube, down, up
@@ -63,7 +63,7 @@ def _below_barrier(tube: Tube) -> Hypothesis:
 
 
 def _stays_together(tube: Tube) -> Hypothesis:
-    """The hypothesis of Theorem 1 on all solutions from Ω_c, which a tube can only break."""
+    """The hypothesis of Theorem 1 on all solutions from Ω_c: met by too little energy to part, broken by a tube."""
     name = "every solution from Ω_c is a cohesive dynamic flock"
     reach = arb(exact(tube.law.alpha.r))
     for k, t in enumerate(tube.t[:-1]):
@@ -73,8 +73,11 @@ def _stays_together(tube: Tube) -> Hypothesis:
     with ctx.workprec(BITS):
         apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
         excess = arb(0) if apart is None else tube.energy(0) - gain(tube.law) * apart
+        room = gain(tube.law) * (tube.n - 1) * far_potential(scaled(tube.law.alpha)) - tube.energy(0)
     if excess > 0:
         return condition(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
+    if room > 0:
+        return condition(name, True, down(room.lower()), "H(0) < (n-1) c1α ψ_α(r_α), which a disconnected state has")
     return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; the others are not known")
 
 
@@ -85,9 +88,13 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
         return needs, []
     case, needs = Enclosed.of(tube, basin), [*needs, _stays_together(tube)]
     low, barrier, matched = _below_c_star(tube), _below_barrier(tube), "velocities match in the moving frame"
+    whole = tube.status == "complete"
+    matching: dict[str, Any] = {"name": "ii", "stated": "K̃ -> 0", "detail": matched}
     return [*needs, low, barrier], [
         without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
-        without_assumed(needs, lambda given: converges(case, given, name="ii", stated="K̃ -> 0", detail=matched)),
+        converges(case, needs, proof="any-potential-limits" if whole else None, **matching)
+        if needs[-1].status == "met"
+        else without_assumed(needs, lambda given: converges(case, given, **matching)),
         no_collision(case, [*needs, low], name="iii"),
         no_collision(case, [*needs, barrier], name="iii-barrier"),
     ]
@@ -109,7 +116,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     """Theorem 3 for the starts of a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
-    case = Enclosed.of(tube, basin)
+    case, whole = Enclosed.of(tube, basin), tube.status == "complete"
     claims = [
         _cohesive(case, needs),
         converges(
@@ -119,7 +126,29 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
             stated="every start of the tube converges to a strict local minimum of U_λ (modulo rotations)",
             detail="the limit is a local minimum",
         ),
-        converges(case, needs, name="iii", stated="K̃ -> 0", detail="velocities match in the moving frame"),
+        converges(
+            case,
+            needs,
+            name="ii-converges",
+            stated="every start converges to one equilibrium, ∇U_λ(x) = 0",
+            detail="one limit",
+            proof="convergence" if whole else None,
+        ),
+        in_the_limit(
+            Enclosed(tube, None, ""),  # a basin says nothing of other starts
+            needs,
+            name="ii-semidefinite",
+            stated="almost every start tends to an equilibrium with ∇²U_λ >= 0",
+            proof="convergence" if whole else None,
+        ),
+        converges(
+            case,
+            needs,
+            name="iii",
+            stated="K̃ -> 0",
+            detail="velocities match in the moving frame",
+            proof="any-potential-limits" if whole else None,
+        ),
     ]
     names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
     if unmet([repels]):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair, weight_nonnegative
@@ -190,7 +192,45 @@ def declared(run: Observed) -> list[Hypothesis]:
     return [declared_rate_is_true(run.run)] if run.law.target is not None and not run.law.moving else []
 
 
+def is_own(law: Any) -> bool:
+    """Return whether a law is a sum of terms other than Algorithms 1 to 3 and compositions of their terms."""
+    return isinstance(law, SumOfTerms) and not isinstance(law, Algorithm1 | Algorithm2 | Algorithm3 | Composition)
+
+
+def _law(seen: Observed) -> Hypothesis:
+    """The hypothesis that the law is a sum of terms that give their energy and its rate."""
+    if not is_own(seen.law):
+        return law_is_or_composed("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3)(seen)
+    terms = ", ".join(type(term).__name__ for term in seen.law.terms)
+    return condition("the law is a sum of terms", True, detail=f"{type(seen.law).__name__}: {terms}")
+
+
+def _rates(run: Trajectory) -> FloatArray:
+    """What each term adds to dH/dt at each sample, shape (T, terms)."""
+    rows = zip(run.t.tolist(), run.q, run.p, strict=True)
+    return np.array([[term.act(t, q, p, np.zeros_like(q)) for term in run.law.terms] for t, q, p in rows])
+
+
+def _sizes(run: Trajectory) -> FloatArray:
+    """Magnitude of all terms of dH/dt at each sample, which may cancel each other."""
+    sizes: FloatArray = np.abs(_rates(run)).sum(axis=1)
+    return sizes
+
+
+def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
+    """Both claims for a law of the user's: no term is seen to add energy, and the balance is its own."""
+    rates = _rates(seen.run)
+    most, largest = float(rates.max(initial=0.0)), float(np.abs(rates).max(initial=0.0))
+    status: HypothesisStatus = "unmet" if most > (seen.n**2 + 64) * EPS * largest else "assumed"
+    name = "no term adds energy"
+    falls = Hypothesis(name, status, -most, f"at the samples a term adds {max(most, 0.0):.3g} per time at most")
+    claims = [] if status == "unmet" else [never_rises(seen, [falls], cancels=_sizes)]
+    return [falls], [*claims, balance(seen, smooth_where_needed(seen), tolerances)]
+
+
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    if is_own(seen.law):
+        return _own_terms(seen, tolerances)
     rest, rates, proof = nothing_adds_energy(seen), declared(seen), proved(seen)
     return [*rest, *rates], [
         never_rises(seen, rest, proof=proof),
@@ -206,11 +246,12 @@ THEOREM = Theorem(
         "and the form of Theorem 6, with the work of a moving γ-agent, under Algorithm 3: the closed form agrees with "
         "the energy of the integrated run. It is never positive under Algorithms 1 and 2, nor under Algorithm 3 with "
         "a γ-agent at rest and all agents outside the obstacles. The same holds of every composition of their terms, "
-        "a consensus over a net of its own, a told acceleration and drag included; a thrust adds energy."
+        "a consensus over a net of its own, a told acceleration and drag included; a thrust adds energy. Of a sum of "
+        "terms of your own the rates that they give are held against the energy of the run."
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",
-    law=law_is_or_composed("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3),
+    law=_law,
     check=_check,
     claims=("rate", "balance"),
 )

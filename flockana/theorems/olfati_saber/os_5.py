@@ -34,6 +34,7 @@ CLAIMS = (
     "extension-links",
     "extension-quantitative",
 )
+_OURS = tuple(name for name in CLAIMS if name == "ii-sharp" or name.startswith("extension"))
 LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
@@ -97,7 +98,7 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
     if (missed := unmet(needs)) is not None:
-        return vacuous(name, missed, computed=count, stated="no crossing", proof=_CROSSINGS)
+        return vacuous(name, missed, computed=count, stated="no two links cross", proof=_CROSSINGS)
     if count:
         margin, error, which, near = -float(len(net.crossings)), 0.0, None, ""
     else:
@@ -111,7 +112,7 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
         error,
         needs,
         computed=count,
-        stated="no crossing",
+        stated="no two links cross",
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
         proof=_CROSSINGS,
         detail=f"{text}: {net.crossing_text}{near}",
@@ -267,19 +268,21 @@ THEOREM = (
         id="os-5",
         title="α-lattices: no crossing, few links, not complete",
         statement=_STATEMENT,
-        source="Olfati-Saber 2006, Theorem 5; the extension is flockana's",
+        source="Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
         kind="configuration",
         check=check,
         references=_REFERENCES,
+        ours=_OURS,
     ),
     Theorem(
         id="os-5-terminal",
         title="Theorem 5 on the last state of a run",
         statement=f"Checked on the last state of a run. {_STATEMENT}",
-        source="Olfati-Saber 2006, Theorem 5; the extension is flockana's",
+        source="Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
         kind="trajectory",
         check=_check_terminal,
         claims=CLAIMS,
         references=_REFERENCES,
+        ours=_OURS,
     ),
 )

@@ -57,12 +57,11 @@ def _momentum() -> Claim:
     u = law.acceleration(0.0, [[0.0], [7.5]], [[0.0], [0.0]])
     total = abs(float(u.sum())) / (law.law.gains.c1_alpha * law.alpha.strength)
     return of_state(
-        "momentum",
-        -total,
+        "momentum-lost",
+        total,
         _ROUNDING,
-        about="all",
         computed=total,
-        stated="Σ u_i = 0",
+        stated="momentum is not conserved: Σ u_i ≠ 0 of a pair of which one sees the other",
         witness={"q": [0.0, 7.5], "u": u.ravel().tolist()},
         detail=f"one of two agents 7.5 apart is drawn to the other, unanswered: Σ u_i = {float(u.sum()):.4g}",
     )
@@ -94,11 +93,10 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     length = seen.distances([0], [1])[-1, 0] / law.alpha.d
     return [
         judged(
-            "energy",
-            -rise,
-            about="all",
+            "energy-rises",
+            rise,
             computed=float(rise.mid),
-            stated="H = V + ½Σ‖p_i‖² never rises",
+            stated="H = V + ½Σ‖p_i‖² can rise",
             witness={"H": [float(energy.mid[0]), float(energy.mid[-1])]},
             detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: from start to end H changes by "
             f"{rise.mid:.6g}; ½v² = {0.5 * speed**2:g}",
@@ -138,9 +136,10 @@ THEOREM = erratum(
     check=_check,
     expected={
         "undirected": "verified",
-        "momentum": "refuted",
-        "energy": "refuted",
+        "momentum-lost": "verified",
+        "energy-rises": "verified",
         "follower": "verified",
         "leader": "verified",
     },
+    author="flockana",
 )

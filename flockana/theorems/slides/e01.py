@@ -42,10 +42,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E1",
-    title="The Hamiltonian is V + ½ Σ‖p_i‖²",
     statement="The slides print H = V + Σ‖p_i‖² and take its derivative to be -pᵀL̂p; that needs the factor ½.",
     source="slides, collective dynamics",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "refuted", "printed-state": "refuted", "printed-run": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

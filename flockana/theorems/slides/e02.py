@@ -45,10 +45,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E2",
-    title="V_α of Algorithm 3 counts every pair once",
     statement="The slides print V_α = Σ_i Σ_(j≠i) ψ_α for Algorithm 3; its gradient is twice u^α. The factor is ½.",
     source="slides, Algorithm 3",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "refuted", "printed-state": "refuted", "printed-run": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

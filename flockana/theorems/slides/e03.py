@@ -181,7 +181,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E3",
-    title="The limit need not be an α-lattice",
     statement=(
         "Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. A strict "
         "local minimum of V that is none, modulo rigid motions, attracts an open set of starts; Algorithm 2's λJ "

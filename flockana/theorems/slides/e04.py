@@ -1,4 +1,4 @@
-"""Erratum E4: c < c* excludes collisions, but soon no state at all is below c*; a barrier that does not go vacuous."""
+"""E4: c < c* excludes collisions, as said, and soon no state is below c*; a barrier that does not go vacuous."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flockana.equilibria.barrier import (
     collision_bounds,
     energy_floor,
     lattice_reach,
-    none_from,
+    least_infeasible_size,
 )
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
@@ -80,9 +80,12 @@ def _reached(alpha: AlphaInteraction) -> Claim:
 
 def _none(alpha: AlphaInteraction) -> Claim:
     """The claim that no state of 23 agents has V < c*: two distances of four points differ by a factor √2."""
-    n = none_from(alpha)
+    n = least_infeasible_size(alpha)
     shortest, longest = bound_range(alpha)
-    table = {name: {m: [lattice_reach(own, m), none_from(own, m)] for m in (1, 2, 3)} for name, own in _SETS.items()}
+    table = {
+        name: {m: [lattice_reach(own, m), least_infeasible_size(own, m)] for m in (1, 2, 3)}
+        for name, own in _SETS.items()
+    }
     return of_state(
         "vacuous",
         float("nan") if n is None else energy_floor(alpha, n) - alpha.c_star,
@@ -120,7 +123,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E4",
-    title="c < c* soon certifies nothing",
     statement=(
         "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
         "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 "
@@ -131,4 +133,5 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "verified", "found": "verified", "vacuous": "verified", "barrier": "verified"},
+    ours=("found", "vacuous", "barrier"),
 )

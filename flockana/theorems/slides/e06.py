@@ -65,7 +65,6 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E6",
-    title="At most 3n − 6 links, for three agents or more",
     statement=(
         "Theorem 5(ii) is printed without a condition on n, and fails for n = 2 (1 link, 3n - 6 = 0). It holds for "
         "n >= 3; the sharp bound ⌊3n - √(12n - 3)⌋ (Harborth) holds for every n and is reached by hexagonal spirals."
@@ -74,4 +73,6 @@ THEOREM = erratum(
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
     expected={"printed": "refuted", "corrected": "verified", "sharp": "verified"},
+    corrected=("corrected",),
+    ours=("sharp",),
 )

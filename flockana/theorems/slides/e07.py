@@ -58,7 +58,6 @@ def _number(name: str, share: float, of: int, count: int, stated: str, witness: 
 
 THEOREM = erratum(
     "E7",
-    title="C* is a share of nodes, not of edges",
     statement=(
         "The slides define C* = |E(Γ*)|/|E(G)| and give 0.96 for components of 1, 1, 1, 1, 96 agents. Isolated agents "
         "have no edges, so that formula gives 1; the example counts nodes. C = 95/99 there and for five components of "
@@ -74,4 +73,5 @@ THEOREM = erratum(
         "connectivity-2": "verified",
         "share-2": "verified",
     },
+    corrected=("corrected",),
 )

@@ -37,7 +37,6 @@ def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Clai
 
 THEOREM = erratum(
     "E8",
-    title="Connectivity is the rank of the Laplacian",
     statement=(
         "The MSN project measures connectivity by C = rank(A)/n of the adjacency matrix, to be 1 on a connected net. A "
         "path of three agents is connected and gives 2/3; C = rank(L)/(n - 1) gives 1."
@@ -46,4 +45,5 @@ THEOREM = erratum(
     check=_check,
     references=("isola-2024", "olfati-saber-2006"),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -73,7 +73,6 @@ def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
 
 THEOREM = erratum(
     "E9",
-    title="The MSN project's step moves the agents u dt² too far",
     statement=(
         "The MSN project takes v' = v + u dt first and then q' = q + v' dt + ½ u dt². Under a constant u the "
         "displacement is v dt + ½ u dt²; the printed one is v dt + (3/2) u dt², an excess of u dt²."
@@ -82,4 +81,6 @@ THEOREM = erratum(
     check=_check,
     references=("isola-2024",),
     expected={"printed": "refuted", "corrected": "verified", "excess": "verified"},
+    corrected=("corrected",),
+    ours=("excess",),
 )

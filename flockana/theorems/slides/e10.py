@@ -43,10 +43,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 THEOREM = erratum(
     "E10",
-    title="The bump function at h = 1 jumps",
     statement="The slides say that with h = 1 the bump becomes an indicator function and stays differentiable.",
     source="slides, bump functions",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
     expected={"printed": "refuted", "corrected": "verified"},
+    corrected=("corrected",),
 )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import SolverError
-from flockana.equilibria.collapse import CONTACT, natural_ratio, nudged, squeezed, threshold
+from flockana.equilibria.collapse import CONTACT, natural_ratio, perturbed, pulled_law, threshold
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
@@ -19,6 +19,7 @@ from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.errata import printed
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.observed import Observed
@@ -32,8 +33,8 @@ _HALVINGS = 3
 
 def collapses(law: Algorithm2, rings: int, ratio: float) -> bool:
     """Whether a hexagonal patch, slightly disturbed, flows to coincident agents at this c1γ/c1α."""
-    pressed = squeezed(paper_pair(law), ratio)
-    limit = gradient_flow(pressed, nudged(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
+    pressed = pulled_law(paper_pair(law), ratio)
+    limit = gradient_flow(pressed, perturbed(hexagonal_patch(rings, law.alpha.length), law.alpha.length))
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
     return coincident_pairs(limit.q, CONTACT * law.alpha.length) > 0
@@ -95,7 +96,7 @@ def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Cla
 @lru_cache(maxsize=32)
 def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
     """Brackets of the ratio by number of agents; or why there are none."""
-    law = squeezed(alpha, natural_ratio(alpha))
+    law = pulled_law(alpha, natural_ratio(alpha))
     try:
         return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
     except SolverError as error:
@@ -124,7 +125,7 @@ def _thresholds(law: Algorithm2) -> Claim:
 
 THEOREM = Theorem(
     id="E11",
-    title="Algorithm 2 collapses when c1γ/c1α is too large",
+    title=printed("E11"),
     statement=(
         "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
         "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
@@ -136,4 +137,5 @@ THEOREM = Theorem(
     claims=("printed", "minimum", "threshold"),
     reason="not so: {name}",
     references=("geschwender-2016", "isola-2024", "notebook-r2"),
+    ours=("minimum", "threshold"),
 )

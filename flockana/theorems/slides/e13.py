@@ -10,6 +10,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.theorems.errata import printed
 from flockana.theorems.hypotheses import alpha_gain, law_is
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.observed import Observed
@@ -40,7 +41,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
 
 THEOREM = Theorem(
     id="E13",
-    title="At most k pairs collide at one instant, not in all",
+    title=printed("E13"),
     statement=(
         "Theorem 3(iv) says that with H_λ(0) < (k+1) c* at most k distinct pairs could collide. Energy bounds only the "
         "pairs that coincide at the same instant; one agent can run through several others, one after the other."
@@ -52,4 +53,5 @@ THEOREM = Theorem(
     claims=("printed", "corrected"),
     references=("geschwender-2016", "olfati-saber-2006"),
     leads={"printed": pairs_apart, "corrected": pairs_apart},
+    corrected=("corrected",),
 )

@@ -92,7 +92,6 @@ def _state() -> Claim:
 
 THEOREM = erratum(
     "E14",
-    title="Reynolds' form keeps −S_i q_i",
     statement=(
         "The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive "
         "friends and the push from that of the negative ones. −S_i q_i is lost, and the force depends on the origin. "
@@ -101,4 +100,5 @@ THEOREM = erratum(
     source="slides, Algorithm 1 against Reynolds' rules",
     check=_check,
     expected={"printed": "refuted", "translation": "refuted", "corrected": "verified", "state": "verified"},
+    corrected=("corrected", "state"),
 )

@@ -23,7 +23,7 @@ def motion(decay, closing=1.0, times=(0.0, 1.0, 3.0)):
                    -closing * P * np.exp(-closing * t))  # fmt: skip
 
 
-@pytest.mark.parametrize("decay", [0.0, 0.25, 0.49])
+@pytest.mark.parametrize("decay", [0.0, 0.25, 0.49, 0.5])
 def test_the_spread_stays_below_that_of_the_sharp_functional(decay):
     """∫φ from √2 to x_M is 1/√2, with φ(s) = 3 (1 + 2 s²/4)^−β, as sums of two are not divided."""
     verdict = judged("cucker-smale", motion(decay))
@@ -35,7 +35,7 @@ def test_the_spread_stays_below_that_of_the_sharp_functional(decay):
     seen = sqrt(2.0) + sqrt(0.5) * (1.0 - np.exp(-3.0))
     bounded = verdict.claim("bounded")
     assert verdict.hypotheses[-1].margin == pytest.approx(0.5 - decay, rel=1e-14)
-    assert (verdict.hypotheses[-1].name, verdict.hypotheses[-1].detail) == ("β < ½", f"β = {decay:g}")
+    assert (verdict.hypotheses[-1].name, verdict.hypotheses[-1].detail) == ("β <= ½", f"β = {decay:g}")
     assert bounded.computed == pytest.approx(seen, rel=1e-12)
     assert bounded.margin == pytest.approx(1.0 - seen / x_m, rel=1e-9)
     assert (bounded.status, bounded.contradicts) == ("inconclusive", "cucker-smale")
@@ -45,16 +45,17 @@ def test_the_spread_stays_below_that_of_the_sharp_functional(decay):
 
 def test_what_falls_faster_is_bounded():
     verdict = judged("cucker-smale", motion(0.25, closing=9.0))
-    assert statuses(verdict) == {"bounded": "verified", "velocities": "verified"}
+    assert statuses(verdict) == dict.fromkeys(("bounded", "rate", "velocities"), "verified")
+    assert verdict.claim("rate").computed == pytest.approx(9.0, rel=1e-9)
 
 
-@pytest.mark.parametrize(("decay", "text"), [(0.5, "0.5"), (0.8, "0.8")])
-def test_from_one_half_on_it_says_nothing(decay, text):
+@pytest.mark.parametrize(("decay", "text"), [(0.500001, "0.500001"), (0.8, "0.8")])
+def test_beyond_one_half_it_says_nothing(decay, text):
     verdict = judged("cucker-smale", motion(decay))
     need = verdict.hypotheses[-1]
     assert (need.status, need.margin) == ("unmet", pytest.approx(0.5 - decay, abs=1e-15))
-    assert statuses(verdict) == {"bounded": "vacuous", "velocities": "vacuous"}
-    assert verdict.claim("bounded").detail == f"β < ½: β = {text}"
+    assert statuses(verdict) == dict.fromkeys(("bounded", "rate", "velocities"), "vacuous")
+    assert verdict.claim("bounded").detail == f"β <= ½: β = {text}"
 
 
 @pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])

@@ -57,20 +57,20 @@ def test_positions_and_velocities_are_less_those_of_the_leader():
     assert [x.tolist() for x in gains_of(seen)] == [[1.0, 1.0], [2.0, 2.0]]
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_of_a_leader_on_a_circle_its_acceleration_is_taken_off_if_all_are_told(told):
+@pytest.mark.parametrize("feedforward", [True, False])
+def test_of_a_leader_on_a_circle_its_acceleration_is_taken_off_if_all_are_told(feedforward):
     """R (cos ωt, sin ωt): at t = 0 at R along x, with R ω along y, and −R ω² along x."""
     radius, omega = 9.0, 0.05
     own = compose(
         pair=AlphaInteraction(),
         consensus=9.0,
         navigation=CircleTarget((0.0, 0.0), radius, omega / (2.0 * np.pi)),
-        told=told,
+        feedforward=feedforward,
     )
     seen = seen_by_leader(made_up(own, np.zeros((1, 2, 2)), t=[0.0]))
     assert seen.q[0] == pytest.approx(np.tile([-radius, 0.0], (2, 1)), abs=1e-12)
     assert seen.p[0] == pytest.approx(np.tile([0.0, -radius * omega], (2, 1)), abs=1e-12)
-    assert seen.u[0] == pytest.approx(np.tile([radius * omega**2 if told else 0.0, 0.0], (2, 1)), abs=1e-12)
+    assert seen.u[0] == pytest.approx(np.tile([radius * omega**2 if feedforward else 0.0, 0.0], (2, 1)), abs=1e-12)
 
 
 def dying(speeds, who, **options):

@@ -20,7 +20,7 @@ def test_a_chain_holds():
     run = fl.scenario("links-kept").run()
     verdict = fl.verify("links-kept", run)
     assert {claim.name: claim.status for claim in verdict.claims} == dict.fromkeys(
-        ("rate", "balance", "links", "connected"), "verified"
+        ("rate", "balance", "links", "connected", "velocities"), "verified"
     )
     longest = max(np.linalg.norm(np.diff(q, axis=0), axis=1).max() for q in run.q)
     links = verdict.claim("links")
@@ -30,9 +30,15 @@ def test_a_chain_holds():
 
 def test_what_no_link_joins_is_vacuous():
     verdict = fl.verify("links-kept", fl.scenario("links-parted").run())
-    assert verdict.claim("connected").status == "vacuous"
+    assert verdict.claim("connected").status == verdict.claim("velocities").status == "vacuous"
     assert verdict.claim("links").status == "verified"
     assert "2 parts" in next(each.detail for each in verdict.hypotheses if each.status == "unmet")
+
+
+def test_without_damping_velocities_swing():
+    run = fl.scenario("links-kept").run()
+    verdict = fl.verify("links-kept", law=replace(run.law, c=0.0), q0=run.q[0], p0=run.p[0], t_span=(0.0, 1.0))
+    assert {claim.name for claim in verdict.claims if claim.status == "vacuous"} == {"velocities"}
 
 
 @pytest.mark.parametrize("level", [True, False])

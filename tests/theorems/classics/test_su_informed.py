@@ -44,7 +44,7 @@ def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
 
 
 def test_told_acceleration_makes_the_leader_s_frame_one_of_rest():
-    run = simulate(compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True), Q, P, (0.0, 3.0))
+    run = simulate(compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True), Q, P, (0.0, 3.0))
     seen = leader_frame.as_the_leader_sees(Observed.alone(run)).run
     forces = [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)]
     np.testing.assert_allclose(forces, seen.u, atol=1e-9)
@@ -99,7 +99,7 @@ def test_vacuous_where_a_hypothesis_fails(law, text):
 
 @pytest.mark.parametrize(("c1", "c2"), [(1.1, 2.0 * 1.1**0.5), (1.0, 5.0), (4.0, 0.5)])
 def test_the_centre_follows_its_closed_form(c1, c2):
-    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, pull=c1, match=c2)
+    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True, pull=c1, match=c2)
     claim = verify("su-varying", simulate(law, Q, P, (0.0, 6.0))).claim("centre")
     assert (claim.status, claim.computed < 1e-8) == ("verified", True)
     assert convergence_rate(law.gains) == pytest.approx(-np.roots([1.0, c2, c1]).real.max(), rel=1e-7)
@@ -107,11 +107,11 @@ def test_the_centre_follows_its_closed_form(c1, c2):
 
 def test_a_wrong_acceleration_is_found(monkeypatch):
     """Told 1 % too much, the centre leaves the closed form."""
-    from flockana.laws.terms import told
+    from flockana.laws.terms import feedforward
 
-    right = told.acceleration
-    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True)
-    monkeypatch.setattr(told, "acceleration", lambda path, t: 1.01 * right(path, t))
+    right = feedforward.acceleration
+    law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True)
+    monkeypatch.setattr(feedforward, "acceleration", lambda path, t: 1.01 * right(path, t))
     run = simulate(law, Q, P, (0.0, 6.0), method="scipy-DOP853")
     claim = verify("su-varying", run).claim("centre")
     assert (claim.status, claim.contradicts) == ("inconclusive", "informed-agents")
@@ -122,9 +122,9 @@ def test_a_wrong_acceleration_is_found(monkeypatch):
     "law",
     [
         Algorithm2(target=CIRCLE),
-        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, informed=(0, 1), agents=7),
-        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, drag=0.1),
-        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, told=True, bounded=True),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True, informed=(0, 1), agents=7),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True, drag=0.1),
+        compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True, bounded=True),
     ],
 )
 def test_varying_leader_is_vacuous_otherwise(law):
@@ -138,7 +138,7 @@ class Said:
         self.told, self.moving = told, moving
 
     def state(self, t):
-        return [5.0 * t, 0.0], self.told(t)
+        return [5.0 * t, 0.0], self.format_value(t)
 
     def rate(self, t):
         return self.moving(t)

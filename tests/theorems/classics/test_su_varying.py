@@ -93,11 +93,13 @@ def test_what_it_is_off_by_is_a_share_of_where_it_starts():
 
 @pytest.mark.parametrize(
     ("changes", "status"),
-    [({}, "met"), ({"pair": OTHER}, "unmet"), ({"told": False}, "unmet"), ({"drag": 0.1}, "unmet")],
+    [({}, "met"), ({"pair": OTHER}, "unmet"), ({"feedforward": False}, "unmet"), ({"drag": 0.1}, "unmet")],
     ids=["its own", "another pair law", "not told", "with drag"],
 )
 def test_the_law_is_that_of_the_paper_and_told(changes, status):
-    law = compose(**({"pair": AlphaInteraction(), "consensus": 9.0, "navigation": CIRCLE, "told": True} | changes))
+    law = compose(
+        **({"pair": AlphaInteraction(), "consensus": 9.0, "navigation": CIRCLE, "feedforward": True} | changes)
+    )
     verdict = judged("su-varying", made_up(law, [APART, APART]))
     assert hypothesis(verdict, "told the leader's acceleration").status == status
     assert (statuses(verdict)["centre"] == "vacuous") == (status == "unmet")

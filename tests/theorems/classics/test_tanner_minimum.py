@@ -12,7 +12,7 @@ def potential(s):
 
 
 def test_three_at_rest_on_a_line(verdict_of):
-    printed, corrected = (verdict_of("tanner-minimum").claim(name) for name in ("printed", "corrected"))
+    printed, corrected, second = verdict_of("tanner-minimum").claims
     spacing, h = 0.5 * sqrt(3.0), 1e-4
     hill = 2.0 * (2.0 * potential(hypot(spacing, h)) - 2.0 * potential(spacing)) / h**2
     pulls = [(potential(s + h) - potential(s - h)) / (2.0 * h) for s in (spacing, 2.0 * spacing)]
@@ -20,4 +20,6 @@ def test_three_at_rest_on_a_line(verdict_of):
     assert hill == pytest.approx(-16.0 / 9.0, rel=1e-6)
     assert (printed.status, printed.rigour, printed.computed) == ("refuted", "symbolic", "-16/9")
     assert "is -16/9 k/d² < 0" in printed.detail
+    assert (second.status, second.rigour, second.by) == ("verified", "symbolic", "corrected")
+    assert second.witness == ["0"] * 4
     assert (corrected.status, corrected.rigour, corrected.computed) == ("verified", "symbolic", "residual 0")

@@ -28,7 +28,7 @@ FALLING = {
     "drag": {"pair": PAIR, "consensus": 2.0, "drag": 0.3},
     "net": {"pair": PAIR, "consensus": 2.0, "net": AlphaInteraction(r=14.0)},
     "pull and drag": {"pair": PAIR, "navigation": LinearTarget((0.0, 0.0), (1.0, 0.0)), "drag": 0.3},
-    "told": {"pair": PAIR, "consensus": 2.0, "navigation": CircleTarget((0.0, 0.0), 5.0, 0.1), "told": True},
+    "told": {"pair": PAIR, "consensus": 2.0, "navigation": CircleTarget((0.0, 0.0), 5.0, 0.1), "feedforward": True},
     "obstacles": {"pair": PAIR, "navigation": HERE, "obstacles": (Sphere((30.0, 0.0), 3.0),)},
     "few and drag": {"pair": PAIR, "navigation": HERE, "informed": (0, 3), "agents": 7, "drag": 0.1},
     "dead zone": {"pair": DeadZoneInteraction(), "gradient": 1.0, "navigation": HERE, "drag": 0.1},

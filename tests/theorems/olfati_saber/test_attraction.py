@@ -16,7 +16,8 @@ from flockana.equilibria.gradient_flow import structural_force
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.olfati_saber.attraction import attraction, lipschitz_within
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.olfati_saber.attraction import _action, attraction, lipschitz_within
 from flockana.theorems.rounding import pair_force_error
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
@@ -173,3 +174,16 @@ def test_a_pull_rounds_with_the_place():
     found, force = attraction(law, state(s), np.zeros((2, 2))), np.linalg.norm(structural_force(law, state(s)))
     rounding = 2.0 * (2.0 * pair_force_error(law.alpha) + 16.0 * np.finfo(float).eps * s)
     assert 0.5 * found.distance * found.curvature == pytest.approx(force + rounding, rel=1e-9, abs=0.0)
+
+
+def test_the_enclosed_action_and_its_slopes_are_those_of_the_law():
+    """φ_α and φ_α' of the law itself, and its second derivative by central differences."""
+    alpha = AlphaInteraction(7.0, 8.4, 0.1, 0.4, 7.0, 9.0)
+    z = np.linspace(0.1, 0.99, 40) * alpha.r_alpha
+    found, slope, bend = _action(alpha, Enclosure.around(z, 0.0))
+    step = 1e-5 * alpha.r_alpha
+    differences = (alpha.phi_alpha_slope(z + step) - alpha.phi_alpha_slope(z - step)) / (2.0 * step)
+    np.testing.assert_allclose(found.mid, alpha.phi_alpha(z), rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(slope.mid, alpha.phi_alpha_slope(z), rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(bend.mid, differences, rtol=0.0, atol=1e-6 * np.abs(differences).max())
+    assert (found.hi - found.lo).max() < 1e-12

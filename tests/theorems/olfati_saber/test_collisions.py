@@ -169,7 +169,7 @@ def test_what_a_path_may_be_off_by_brings_agents_near(slack, pairs):
         path=(t, q, zeros, zeros, np.full((1, 2), slack)),
         closest_approach=lambda: SimpleNamespace(lower_by_interval=np.zeros(1)),
     )
-    seen = SimpleNamespace(run=run, law=run.law, between_error=np.zeros(1), remembered=lambda key, compute: compute())
+    seen = SimpleNamespace(run=run, law=run.law, between_error=np.zeros(1), cached=lambda key, compute: compute())
     assert near(seen, Tolerances()) == [pairs]
 
 

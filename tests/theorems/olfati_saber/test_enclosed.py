@@ -80,13 +80,13 @@ def test_a_flock_that_is_apart_does_not_stay_together(distance):
 
 
 def test_what_has_the_energy_to_part_has_a_neighbour_in_the_set_that_does():
-    """Two have 30 ψ_α(r) at rest out of range: a faster start has that much more, a slower one less."""
+    """Two have 30 ψ_α(r) at rest out of range, and no less apart: a faster start has that much more, a slower less."""
     far = 30.0 * float(LAW.alpha.energy_at(np.array([9.0]))[0])
     slow, fast = (
         hypothesis(verify("os-1", tube_of(0.0, 7.0, speed=sqrt(share * far))), "cohesive dynamic flock")
         for share in (0.9, 1.25)
     )
-    assert (slow.status, fast.status) == ("assumed", "unmet")
+    assert (slow.status, fast.status) == ("met", "unmet")
     assert fast.margin == pytest.approx(-0.25 * far, rel=1e-9)
     assert fast.detail == "Ω_c holds a disconnected state at rest"
 
@@ -116,3 +116,24 @@ def test_more_pairs_than_the_energy_pays_for(speed, least):
     law = Algorithm2(gains=Gains(c1_gamma=1e-3), target=StaticTarget((3.5,)))
     verdict = verify("os-3", tube_of(0.0, 7.0, speed=speed, law=law))
     assert (verdict.claim("iv-printed").status == "vacuous") == (least >= 1)
+
+
+@pytest.mark.parametrize(("speed", "said"), [(0.0, "met"), (4.6, "met"), (4.8, "unmet")])
+def test_two_that_cannot_part_stay_together(speed, said):
+    """H = v² against c1α ψ_α(r_α) = 22.08, which two agents far apart have too."""
+    verdict = verify("os-1", tube_of(0.0, 7.0, speed=speed))
+    need = hypothesis(verdict, "cohesive dynamic flock")
+    room = 30.0 * 0.73590113426239231 - speed**2
+    assert (need.status, need.margin) == (said, pytest.approx(room, rel=1e-9))
+    assert statuses(verdict)["ii"] == ("verified" if said == "met" else "vacuous")
+
+
+def test_what_is_proved_of_every_start_needs_no_basin():
+    law = Algorithm2(target=StaticTarget((0.0,)))
+    verdict = verify("os-3", tube_of(0.0, 7.0, 15.0, speed=1.0, law=law))
+    assert [statuses(verdict)[name] for name in ("ii", "ii-converges", "ii-semidefinite", "iii")] == [
+        "inconclusive",
+        "verified",
+        "verified",
+        "verified",
+    ]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,13 +13,15 @@ from flockana.dynamics.simulate import simulate
 from flockana.environment.obstacles import Sphere
 from flockana.environment.target import Target
 from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
+from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.terms.pairs import PairTerm
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises, stays_outside
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.toys.laws.toy_swarm import ToyDrag, ToySwarm
 
 LAW = Algorithm1()
 
@@ -171,6 +174,41 @@ def test_a_subclass_is_another_law():
     law = Wind(target=StaticTarget((0.0, 0.0)))
     for name in ("energy", "os-6", "energy-printed"):
         assert verify(name, law=law, q0=[[5.0, 0.0]], p0=[[0.0, 1.0]], t_span=(0.0, 0.5)).status == "vacuous"
+
+
+@dataclass(frozen=True)
+class Swelling(ToyDrag):
+    """A drag that says of itself that it takes no energy out."""
+
+    def act(self, t, q, p, u):
+        super().act(t, q, p, u)
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Unsaid(ToySwarm):
+    """The toy, with that drag."""
+
+    @cached_property
+    def terms(self):
+        return (PairTerm(self.pair, 1.0, 0.0), Swelling(self.k))
+
+
+@pytest.mark.parametrize(
+    ("law", "k", "rate", "balance"),
+    [
+        (ToySwarm, 0.5, "verified", "verified"),
+        (ToySwarm, 0.0, "verified", "verified"),
+        (ToySwarm, -0.5, "vacuous", "verified"),  # it adds energy, and says so
+        (Unsaid, 0.5, "verified", "refuted"),  # the rate that it gives is 0, and its energy falls
+    ],
+)
+def test_a_law_of_one_s_own_is_judged_by_what_its_terms_give(law, k, rate, balance):
+    q, p = np.array([[0.0, 0.0], [7.5, 0.0], [3.0, 6.0]]), np.array([[1.0, 0.0], [0.0, 0.5], [-0.5, 0.0]])
+    verdict = verify("energy", law=law(AlphaInteraction(), k), q0=q, p0=p, t_span=(0.0, 3.0))
+    assert statuses(verdict) == {"rate": rate, "balance": balance}
+    assert hypothesis(verdict, "sum of terms").detail.startswith(f"{law.__name__}: PairTerm, ")
+    assert hypothesis(verdict, "no term adds energy").status == ("unmet" if rate == "vacuous" else "assumed")
 
 
 @pytest.mark.parametrize("scaling", SCALINGS)

@@ -16,7 +16,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.os_1 import disconnected_energy
+from flockana.theorems.olfati_saber.any_potential import disconnected_energy
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Hypothesis
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses

@@ -16,7 +16,7 @@ from flockana.equilibria.barrier import (
     energy_floor,
     largest_clique,
     lattice_reach,
-    none_from,
+    least_infeasible_size,
     turan_pairs,
 )
 from flockana.interactions import AlphaInteraction
@@ -108,8 +108,8 @@ def test_no_random_state_lies_below_the_proved_floor():
 
 def test_n_max_for_every_parameter_set():
     msn, one = AlphaInteraction(15.0, 18.0, 0.1, 0.1, 3.0, 3.0), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0)
-    assert [(lattice_reach(a), none_from(a)) for a in (ALPHA, msn, one)] == [(14, 23), (16, 26), (5, 11)]
-    assert (lattice_reach(ALPHA, 1), none_from(ALPHA, 1), lattice_reach(ALPHA, 3)) == (13, 18, None)
+    assert [(lattice_reach(a), least_infeasible_size(a)) for a in (ALPHA, msn, one)] == [(14, 23), (16, 26), (5, 11)]
+    assert (lattice_reach(ALPHA, 1), least_infeasible_size(ALPHA, 1), lattice_reach(ALPHA, 3)) == (13, 18, None)
     assert lattice_reach(AlphaInteraction(7.0, 13.0)) is None  # κ > √3: the triangular lattice is none
 
 

@@ -30,7 +30,7 @@ def acceleration(path: Harmonic, t: float) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class ToldAcceleration(Term):
+class TargetFeedforward(Term):
     """u_i = d²q_r/dt², the same for all agents.
 
     It moves the centre of mass alone: its power is 0 under an energy in the moving frame, and Σ⟨p_i, d²q_r/dt²⟩ under
@@ -47,7 +47,7 @@ class ToldAcceleration(Term):
     --------
     >>> from flockana.environment.targets import CircleTarget
     >>> circle, u = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi), np.zeros((1, 2))
-    >>> ToldAcceleration(circle, True).act(0.0, 0.0 * u, 0.0 * u, u), u.tolist()
+    >>> TargetFeedforward(circle, True).act(0.0, 0.0 * u, 0.0 * u, u), u.tolist()
     (0.0, [[-2.0, 0.0]])
     """
 

@@ -1,0 +1,73 @@
+"""The explorer for a flock of the user's own."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+import threading
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+from flockana.base.errors import ArgumentError
+from flockana.scenarios.flock import as_scenario, chosen
+
+
+def explore(
+    scenario: Any = None,
+    *,
+    law: Any = None,
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
+    seed: int = 0,
+    port: int = 0,
+    browser: bool = True,
+) -> None:
+    """Open the explorer's page with a flock; Ctrl-C ends it, and in a notebook it lives as long as the kernel.
+
+    Parameters
+    ----------
+    scenario : str, Scenario or Flock, optional
+        What to explore.
+    law, q0, p0, t_span : optional
+        Instead of a scenario: the parts of a `Flock`.
+    seed : int
+        Seed of its start.
+    port : int
+        Port of the page; 0 picks a free one.
+    browser : bool
+        Open the page in the browser; its address is printed in any case.
+
+    Raises
+    ------
+    ArgumentError
+        If tornado is not installed, or the law cannot be written to a file.
+    """
+    try:
+        from flockana.explore.server import Server, kept_token, serve
+    except ModuleNotFoundError as error:
+        raise ArgumentError(f"{error.name} is not installed: pip install tornado") from error
+    given = chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
+    folder = tempfile.TemporaryDirectory(prefix="flockana-")
+    first = {"kind": "scenario", "name": given}
+    if not isinstance(given, str):
+        item = as_scenario(given, seed)
+        path = item.run().save(Path(folder.name) / f"{item.name.replace(' ', '-')}.nc")
+        first = {"kind": "file", "name": str(path)}
+
+    def opened(address: str) -> None:
+        print(f"the flock is explored at {address}")  # noqa: T201  # a page without an address cannot be opened
+        if browser:
+            webbrowser.open(address)
+
+    def serving() -> None:
+        with folder:
+            asyncio.run(serve(Server(kept_token(), first, 60.0), port, opened))
+
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        serving()
+    else:
+        threading.Thread(target=serving, daemon=True).start()

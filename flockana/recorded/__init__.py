@@ -1,0 +1,1 @@
+"""Recorded flocks: reading, velocities, measures, comparison with a law, fits."""

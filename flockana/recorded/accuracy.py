@@ -1,0 +1,76 @@
+"""How far recorded numbers may be off: a bound, or a band that holds of all samples at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any, Literal
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_nonnegative
+from flockana.base.errors import ArgumentError
+
+Kind = Literal["bound", "sd", "estimated", "unknown"]
+
+CONFIDENCE = 0.99  # of the band that holds of all samples at once
+
+
+@dataclass(frozen=True, eq=False)
+class Accuracy:
+    """Half widths of recorded positions and velocities, and how they are known.
+
+    Parameters
+    ----------
+    place, speed : float or ndarray, shape (T, n)
+        Largest distance of a recorded position, and of a velocity, from the true one.
+    kind : {"bound", "sd", "estimated", "unknown"}
+        A bound; a simultaneous 0.99 band from a stated or an estimated standard deviation; nothing.
+    """
+
+    place: Any
+    speed: Any
+    kind: Kind
+
+    @property
+    def decides(self) -> bool:
+        """Whether a verdict may rest on it: it was stated, not estimated."""
+        return self.kind in ("bound", "sd")
+
+    def __str__(self) -> str:
+        if self.kind == "unknown":
+            return "an accuracy that is not stated"
+        known = {"bound": "bound", "sd": "0.99 band", "estimated": "estimated 0.99 band"}[self.kind]
+        return f"positions to {np.nanmax(self.place):.3g}, velocities to {np.nanmax(self.speed):.3g} ({known})"
+
+
+def band(samples: int, m: int) -> float:
+    """Return the radius, in standard deviations of a coordinate, that holds of all samples at once with 0.99.
+
+    Examples
+    --------
+    >>> round(band(1, 1), 4), band(1000, 2) > 4.0
+    (2.5758, True)
+    """
+    from scipy.stats import chi2
+
+    return float(sqrt(chi2.isf((1.0 - CONFIDENCE) / samples, m)))
+
+
+def ensure_error(name: str, value: Any, shape: tuple[int, int]) -> float | FloatArray | None:
+    """Return a stated error: None, one number >= 0, or one for each sample of each agent, shape (T, n).
+
+    Examples
+    --------
+    >>> ensure_error("bound", 0.5, (3, 2))
+    0.5
+    """
+    if value is None:
+        return None
+    if np.ndim(value) == 0:
+        return ensure_nonnegative(name, value)
+    array = np.array(value, dtype=np.float64)
+    if array.shape != shape or (array < 0.0).any():
+        raise ArgumentError(f"{name} has shape {array.shape}: expected a number >= 0, or an array of them of {shape}")
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,121 @@
+"""Measures of a recorded flock over time, each with the error that the accuracy of the samples leaves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
+from flockana.measures.measure import Flock, measures
+from flockana.measures.metrics import connectivity, giant_share
+from flockana.measures.nets import link_lengths, links
+from flockana.recorded.recording import Recording, scaled_alpha
+from flockana.recorded.unknown import UnknownLaw
+
+if TYPE_CHECKING:
+    import xarray
+
+_OF_NETS = {"connectivity": connectivity, "giant_share": giant_share}  # they grow with the range
+_OF_VELOCITIES = ("normalised_velocity_mismatch", "velocity_diameter", "order", "coordination")
+
+
+def measured(rec: Recording, d: float, r: float) -> xarray.Dataset:
+    """See `Recording.metrics`: agents that are missing at a sample are left out there."""
+    import xarray
+
+    if rec.p is None:
+        rec = rec.with_velocities()
+    law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)
+    names = [name for name, it in measures().items() if it.over_time is not None and it.defined(law)]
+    values = {name: np.full(len(rec.t), np.nan) for name in names}
+    errors = {name: np.full(len(rec.t), np.nan) for name in names}
+    assert rec.p is not None
+    moving = rec.present & ~np.isnan(rec.p[:, :, 0])
+    for seen, samples in _alike(rec.present):
+        _fill(names, values, errors, law, rec, samples, seen, velocities=False)
+    for seen, samples in _alike(moving):
+        _fill(names, values, errors, law, rec, samples, seen, velocities=True)
+    data: dict[str, Any] = {"agents": ("time", rec.present.sum(axis=1), {"long_name": "agents seen"})}
+    for name in names:
+        it = measures()[name]
+        data[name] = ("time", values[name], {"long_name": it.text, "units": it.unit})
+        data[f"{name}_error"] = ("time", errors[name], {"long_name": f"error of: {it.text}", "units": it.unit})
+    return xarray.Dataset(data, coords={"time": rec.t}, attrs={"accuracy": str(rec.accuracy), "d": d, "r": r})
+
+
+def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
+    """Sets of agents with the samples at which exactly these were seen; not the empty one."""
+    sets, which = np.unique(seen, axis=0, return_inverse=True)
+    found = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
+    return [(agents, samples) for agents, samples in found if agents.size]
+
+
+def _fill(
+    names: list[str],
+    values: dict[str, FloatArray],
+    errors: dict[str, FloatArray],
+    law: UnknownLaw,
+    rec: Recording,
+    samples: npt.NDArray[np.intp],
+    agents: npt.NDArray[np.intp],
+    *,
+    velocities: bool,
+) -> None:
+    """Measures of velocities, or of positions, of some agents at some samples, with errors."""
+    at = np.ix_(samples, agents)
+    assert rec.p is not None
+    q, p = rec.q[at], np.nan_to_num(rec.p[at])
+    off_q, off_p = (
+        np.broadcast_to(np.asarray(each, dtype=np.float64), rec.q.shape[:2])[at].max(axis=1)
+        for each in (rec.accuracy.place, rec.accuracy.speed)
+    )
+    flock = Flock(law, q, p)
+    for name in names:
+        if (name in _OF_VELOCITIES) == velocities:
+            series = measures()[name].over_time(flock)  # type: ignore[misc]
+            values[name][samples] = series
+            errors[name][samples] = _error(name, flock, series, off_q, off_p)
+
+
+def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p: FloatArray) -> FloatArray:
+    """Largest change of a measure when every position or velocity moves by its error."""
+    n = flock.q.shape[1]
+    if not np.isfinite(off_q).all():
+        return np.full(len(values), np.inf)
+    if name in ("cohesion_radius", "min_distance", "position_diameter"):
+        return np.multiply(2.0, off_q)
+    if name == "velocity_diameter":
+        return np.multiply(2.0, off_p)
+    if name in ("inertia", "normalised_velocity_mismatch"):  # half a square of a norm, which moves by √n off, over n
+        off, share = (off_q, 1.0) if name == "inertia" else (off_p, float(n))
+        size = np.sqrt(2.0 * values * share)
+        grown: FloatArray = (0.5 * (size + np.sqrt(n) * off) ** 2) / share - values
+        return grown
+    if name in ("order", "coordination"):
+        speed = lengths(flock.p)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turn = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
+        turned = np.minimum(turn, 2.0).mean(axis=1) * (1.0 if name == "order" else 2.0)
+        return np.minimum(turned, 1.0 if name == "order" else 2.0)
+    return np.array([_net_error(name, flock, k, float(values[k]), float(off_q[k])) for k in range(len(values))])
+
+
+def _net_error(name: str, flock: Flock, k: int, value: float, off: float) -> float:
+    """Error of a measure of the net, whose links may come and go when positions move."""
+    d, r = flock.law.lattice
+    q = flock.q[k]
+    least, most = max(r - 2.0 * off, 1e-12 * r), r + 2.0 * off
+    if name in _OF_NETS:
+        return max(abs(_OF_NETS[name](q, x) - value) for x in (least, most))
+    # Ẽ: links that stay change by 2 off each, those that may come or go by what they add at most
+    pairs = links(q, most)
+    apart = link_lengths(q, pairs)
+    sure = apart <= least
+    squares = (np.abs(apart - d) + 2.0 * off) ** 2 / d**2
+    high = 2.0 * float(squares.sum()) / (2.0 * int(sure.sum()) + 1.0)
+    kept = np.maximum(np.abs(apart[sure] - d) - 2.0 * off, 0.0) ** 2 / d**2
+    low = 2.0 * float(kept.sum()) / (2.0 * len(pairs) + 1.0)
+    return max(abs(high - value), abs(value - low))

@@ -1,0 +1,122 @@
+"""`read_recording`: files, arrays and tables of many kinds as a `Recording`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError, FileError, format_value
+from flockana.base.files import ensure_path
+from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
+from flockana.recorded.reading.lammps import dimension, ensure_rising, places, snapshots, stacked, time_of
+from flockana.recorded.reading.table import table_arrays
+from flockana.recorded.reading.text import read_text
+from flockana.recorded.recording import Recording
+
+_ARRAYS = {".npz": npz_arrays, ".npy": npz_arrays, ".mat": mat_arrays, ".nc": netcdf_arrays}
+_DUMPS = (".dump", ".lammpstrj", ".lammps")
+_ITEM = b"ITEM:"
+
+
+def read_recording(
+    source: Any,
+    *,
+    columns: Mapping[str, Any] | Sequence[str] | None = None,
+    dt: float | None = None,
+    clock: float | None = None,
+    m: int | None = None,
+    bound: Any = None,
+    sd: Any = None,
+    p_bound: Any = None,
+    p_sd: Any = None,
+) -> Recording:
+    """Return a recording from a file, a table or arrays.
+
+    Files are CSV or TSV tables (long: time, id, x, y, vx, vy; wide: time, x1, y1, x2, y2), npz, MATLAB (.mat), netCDF
+    (a run of flockana, too) and text dumps of LAMMPS, whose places are unwrapped. A row without an agent's position is
+    a gap.
+
+    Parameters
+    ----------
+    source : path, pandas.DataFrame or mapping of str to array_like
+        The file, the table, or arrays t (T,) and q (T, n, m), and p and u if there are any.
+    columns : mapping or sequence of str, optional
+        Names in the file, by "t", "frame", "id", "q", "p", "u" (lists of columns for the last three); or the names of
+        the columns of a table without a header.
+    dt : float, optional
+        Time of a frame or a step, where there are no times.
+    clock : float, optional
+        Seconds in one time unit of the law, where times are dates.
+    m : int, optional
+        Dimension, of a dump; by default that of its positions.
+    bound, sd, p_bound, p_sd : float or array_like, optional
+        Accuracy, as in `Recording`.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or is damaged; the message names row and column.
+    ArgumentError
+        If columns, times or the accuracy are missing or wrong.
+
+    Examples
+    --------
+    >>> read_recording({"t": [0.0, 0.1], "q": [[[0.0], [7.0]], [[0.1], [7.0]]]}, bound=1e-3).n
+    2
+    """
+    accuracy = {"bound": bound, "sd": sd, "p_bound": p_bound, "p_sd": p_sd}
+    if isinstance(source, Mapping):
+        by_name = columns if isinstance(columns, Mapping) else None
+        return Recording(**named_arrays(source, "the mapping", columns=by_name, dt=dt), **accuracy)
+    if hasattr(source, "columns") and hasattr(source, "iloc"):
+        return Recording(**table_arrays(source, columns=columns, dt=dt, clock=clock), source="a frame", **accuracy)
+    if not isinstance(source, str | os.PathLike):
+        raise ArgumentError(
+            f"source = {format_value(type(source).__name__)}: expected a file, a pandas frame, or arrays by name"
+        )
+    path = ensure_path(source)
+    if not path.exists():
+        raise FileError(f"no file {path}: expected CSV, TSV, npz, mat, netCDF or a dump of LAMMPS")
+    try:
+        return Recording(**_contents(path, columns, dt, clock, m), source=path.name, **accuracy)
+    except FileError:
+        raise
+    except ArgumentError as error:
+        text = str(error)
+        raise error if str(path) in text else ArgumentError(f"{path}: {text}") from None
+
+
+def _contents(
+    path: Path, columns: Mapping[str, Any] | Sequence[str] | None, dt: float | None, clock: float | None, m: int | None
+) -> dict[str, Any]:
+    suffix = path.suffix.lower()
+    if suffix in _ARRAYS:
+        by_name = columns if isinstance(columns, Mapping) else None
+        return named_arrays(_ARRAYS[suffix](path), str(path), columns=by_name, dt=dt)
+    if suffix in _DUMPS or _starts_with_item(path):
+        return _dumped(path, dt, m)
+    names = None if columns is None or isinstance(columns, Mapping) else list(columns)
+    return table_arrays(read_text(path, names), columns=columns, dt=dt, clock=clock)
+
+
+def _starts_with_item(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(len(_ITEM)) == _ITEM
+    except OSError:
+        return False  # the reader of tables says why
+
+
+def _dumped(path: Path, dt: float | None, m: int | None) -> dict[str, Any]:
+    """Snapshots of LAMMPS; velocities and forces where the dump has them."""
+    found = snapshots(path)
+    t = np.array([time_of(snapshot, dt, path) for snapshot in found])
+    ensure_rising(t, path)
+    size, columns = dimension(found[0], m, path), found[0].columns
+    arrays: dict[str, Any] = {"t": t, "q": np.stack([places(each, size, path) for each in found])}
+    arrays |= {kind: stacked(found, name, size, path) for kind, name in (("p", "vx"), ("u", "fx")) if name in columns}
+    return arrays | {"ids": [f"{i:g}" for i in columns["id"]]}

@@ -1,0 +1,121 @@
+"""Arrays by name: npz, MATLAB and netCDF files, mappings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError, FileError
+from flockana.recorded.reading.names import TIMES
+
+_NAMES = {
+    "t": TIMES,
+    "q": ("q", "positions", "position", "pos", "x", "xy", "xyz"),
+    "p": ("p", "velocities", "velocity", "vel", "v"),
+    "u": ("u", "accelerations", "acceleration", "acc", "a", "inputs"),
+}
+
+
+def named_arrays(
+    arrays: Mapping[str, Any], where: str, *, columns: Mapping[str, Any] | None = None, dt: float | None = None
+) -> dict[str, Any]:
+    """Return t, q, p and u among arrays by name.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array_like
+        As they are in a file.
+    where : str
+        The file, for messages.
+    columns : mapping, optional
+        Their names, by "t", "q", "p", "u".
+    dt : float, optional
+        Interval between samples, where there are no times.
+
+    Examples
+    --------
+    >>> sorted(named_arrays({"time": [0.0], "pos": [[[1.0]]], "mass": 2.0}, "it.npz"))
+    ['q', 't']
+    """
+    lower = {name.lower(): name for name in arrays}
+    found: dict[str, Any] = {}
+    for kind, names in _NAMES.items():
+        if columns is not None and kind in columns:
+            if columns[kind] not in arrays:
+                raise ArgumentError(f"{where} has no array {columns[kind]!r}: expected one of {', '.join(arrays)}")
+            found[kind] = np.asarray(arrays[columns[kind]])
+        elif (name := next((lower[each] for each in names if each in lower), None)) is not None:
+            found[kind] = np.asarray(arrays[name])
+    shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
+    if "q" not in found:
+        raise ArgumentError(
+            f'{where} holds {shown}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
+        )
+    _check_numbers(found, where)
+    q = found["q"]
+    if q.ndim != 3:
+        raise ArgumentError(
+            f"{where}: {shown}: expected positions of shape (T, n, m), such as q.reshape(T, n, m) or stack([x, y], 2)"
+        )
+    if "t" not in found:
+        if dt is None:
+            raise ArgumentError(f"{where} holds {shown} and no times: expected t, or dt=, the interval between samples")
+        found["t"] = dt * np.arange(len(q))
+    found["t"] = found["t"].reshape(-1)  # MATLAB has no vectors
+    if len(found["t"]) != len(q):
+        turned = [k for k in range(3) if q.shape[k] == len(found["t"])]
+        hint = f"; its axis {turned[0]} is that long: give numpy.moveaxis(q, {turned[0]}, 0)" if turned else ""
+        raise ArgumentError(f"{where}: {len(found['t'])} times and q of shape {q.shape}: expected (T, n, m){hint}")
+    return found
+
+
+def _check_numbers(found: Mapping[str, Any], where: str) -> None:
+    for kind, array in found.items():
+        if array.dtype.kind not in "fiu":
+            raise ArgumentError(f"{where}: {kind} is an array of {array.dtype}: expected real numbers")
+
+
+def npz_arrays(path: Path) -> dict[str, Any]:
+    """Return the arrays of an npz file; objects are refused, as they can run code."""
+    import zipfile
+
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            if not hasattr(file, "files"):
+                return {"q": np.asarray(file)}
+            return {name: file[name] for name in file.files}
+    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, zipfile.error) as error:
+        raise FileError(f"cannot read {path} as npz: {' '.join(str(error).split())}; write it by numpy.savez") from None
+    except Exception as error:  # zlib and tokenize raise kinds of their own on damaged bytes
+        raise FileError(f"cannot read {path} as npz: {type(error).__name__}; write it by numpy.savez") from None
+
+
+def mat_arrays(path: Path) -> dict[str, Any]:
+    """Return the arrays of a MATLAB file."""
+    from scipy.io import loadmat
+
+    try:
+        found = loadmat(path, squeeze_me=False)
+    except NotImplementedError:
+        raise FileError(f"{path} is a MATLAB file of version 7.3: expected save(..., '-v7')") from None
+    except Exception as error:  # scipy raises many kinds on damaged bytes
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FileError(f"cannot read {path} as a MATLAB file: {reason}; expected save(..., '-v7')") from None
+    return {name: value for name, value in found.items() if not name.startswith("__")}
+
+
+def netcdf_arrays(path: Path) -> dict[str, Any]:
+    """Return the arrays of a netCDF file, coordinates among them; of a run that flockana saved, too."""
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+            data = dataset.load()
+    except Exception as error:  # h5py raises many kinds on damaged bytes
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FileError(f"cannot read {path} as netCDF-4: {reason}; expected q over (time, agent, axis)") from None
+    found = {str(name): np.asarray(data[name]) for name in (*data.coords, *data.data_vars)}
+    return {name: value for name, value in found.items() if value.dtype.kind in "fiu"}

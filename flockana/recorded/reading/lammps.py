@@ -1,0 +1,195 @@
+"""Text dumps of LAMMPS: snapshots with their boxes, places unwrapped."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, FileError
+from flockana.recorded.reading.box import AXES, Box
+
+_WORDS = ("element", "typelabel")  # columns of words
+_LARGEST = 2**53  # up to which every whole number is a float
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """One snapshot of a dump: step, time and box if they are there, columns by name, agents in the order of their ids.
+
+    A column of words, such as element, is NaN.
+    """
+
+    step: int
+    time: float | None
+    box: Box | None
+    columns: dict[str, FloatArray]
+
+
+def time_of(snapshot: Snapshot, dt: float | None, path: object) -> float:
+    """Return the time of a snapshot, by its step where the dump has no times."""
+    if snapshot.time is not None:
+        return snapshot.time
+    if dt is None:
+        raise ArgumentError(f"dt = None: {path} has no times; give the step, or dump with `dump_modify ... time yes`")
+    return snapshot.step * dt
+
+
+def ensure_rising(t: FloatArray, path: object) -> None:
+    """Raise unless the times rise."""
+    if not (np.diff(t) > 0.0).all():
+        k = int(np.argmin(np.diff(t)))
+        raise FileError(f"{path}: snapshot {k + 1} at t = {t[k + 1]:g} follows t = {t[k]:g}; expected rising times")
+
+
+def dimension(snapshot: Snapshot, m: int | None, path: object) -> int:
+    """Return the dimension that is asked for, by default that of the positions in the dump."""
+    there = 0
+    while there < 3 and ({AXES[there], f"{AXES[there]}u"} & snapshot.columns.keys()):
+        there += 1
+    if there == 0:
+        raise ArgumentError(
+            f"{path} has the columns {', '.join(snapshot.columns)}: expected positions x, y, z or xu, yu, zu "
+            "(not scaled ones), such as `dump ... custom N FILE id x y vx vy fx fy`"
+        )
+    if m is None:
+        return there
+    if m not in range(1, there + 1):
+        raise ArgumentError(f"m = {m!r}: expected 1 to {there}, of which {path} has positions")
+    return m
+
+
+def places(snapshot: Snapshot, m: int, path: object) -> FloatArray:
+    """Return the positions of a snapshot, shape (n, m), unwrapped."""
+    columns, wrapped = snapshot.columns, [k for k in range(m) if f"{AXES[k]}u" not in snapshot.columns]
+    q = np.stack([columns[AXES[k] if k in wrapped else f"{AXES[k]}u"] for k in range(m)], axis=1)
+    if snapshot.box is None or not wrapped:
+        return q
+    images = [k for k in range(3) if f"i{AXES[k]}" in columns]
+    lost = [k for k in snapshot.box.crossed(wrapped) if k not in images]
+    if lost:
+        known = "is periodic" if snapshot.box.periodic else "may be periodic"
+        faces, axes = ", ".join(AXES[k] for k in lost), [AXES[k] for k in wrapped]
+        raise ArgumentError(
+            f"{path}: the box {known} in {faces}, and {' '.join(axes)} are wrapped into it: expected "
+            f"{' '.join(f'{axis}u' for axis in axes)}, or {' '.join(f'i{AXES[k]}' for k in lost)} beside them; "
+            "dump them, or run LAMMPS with `boundary s s s`"
+        )
+    for k in images:
+        q[:, wrapped] += columns[f"i{AXES[k]}"][:, None] * snapshot.box.edges[k, wrapped]
+    return q
+
+
+def stacked(snapshots: list[Snapshot], name: str, m: int, path: object) -> FloatArray:
+    """Return velocities or forces over time, shape (T, n, m)."""
+    axes = [name.replace("x", axis) for axis in AXES[:m]]
+    if not all(axis in snapshots[0].columns for axis in axes):
+        there = ", ".join(snapshots[0].columns)
+        raise ArgumentError(f"{path} has the columns {there}: expected {' '.join(axes)} among them")
+    return np.stack([np.stack([s.columns[axis] for axis in axes], axis=1) for s in snapshots])
+
+
+def snapshots(path: Path) -> list[Snapshot]:
+    """Return the snapshots of a dump, all of the same agents."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise FileError(f"cannot read {str(path)!r}: it is no regular file; expected a text dump of LAMMPS")
+    try:
+        with path.open(encoding="utf-8") as file:
+            found = list(_parsed(file, path))
+    except (OSError, UnicodeDecodeError) as error:
+        if isinstance(error, FileError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"cannot read {str(path)!r}: {reason}; expected a text dump of LAMMPS") from error
+    if not found:
+        raise FileError(f"{path} holds no snapshot: expected a text dump of LAMMPS, style custom")
+    ids = found[0].columns["id"]
+    for before, after in pairwise(found):
+        if after.step <= before.step:
+            raise FileError(f"{path}: step {after.step} follows step {before.step}; expected rising steps")
+    for k, snapshot in enumerate(found):
+        if snapshot.columns.keys() != found[0].columns.keys() or not np.array_equal(snapshot.columns["id"], ids):
+            raise FileError(
+                f"{path}: snapshot {k} has {len(snapshot.columns['id'])} agents or columns that are not those of the "
+                f"first ({len(ids)}); were agents lost? expected the same agents throughout"
+            )
+    return found
+
+
+def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
+    """The snapshots of a dump, each a series of items that ends with its atoms."""
+    step, time, count, box = None, None, None, None
+    for line in file:
+        if not line.startswith("ITEM:"):
+            if line.strip():
+                raise FileError(f"{path}: {line.strip()[:40]!r} where an ITEM was expected; is it a damaged dump?")
+            continue
+        item = line[len("ITEM:") :].split()
+        if item[:1] == ["TIMESTEP"]:
+            step = _whole(file, "step", 0, path)
+        elif item[:1] == ["TIME"]:
+            time = float(_numbers(file, 1, 1, path)[0, 0])
+        elif item[:3] == ["NUMBER", "OF", "ATOMS"]:
+            count = _whole(file, "number of atoms", 1, path)
+        elif item[:2] == ["BOX", "BOUNDS"]:
+            box = Box.of(item[2:], _numbers(file, 3, None, path))
+            if box is None:
+                raise FileError(f"{path}: {line.strip()[:60]!r} has bounds that are none; expected a box of LAMMPS")
+        elif item[:1] == ["UNITS"]:
+            next(file, "")
+        elif item[:1] == ["ATOMS"]:
+            if step is None or count is None or "id" not in item:
+                raise FileError(
+                    f"{path}: atoms without a step, a number or ids; expected a dump of style custom with id"
+                )
+            yield Snapshot(step, time, box, _columns(file, item[1:], count, path))
+            step, time, count, box = None, None, None, None
+        else:
+            raise FileError(f"{path}: unknown item {line.strip()[:40]!r}; expected a dump of atoms, style custom")
+    if step is not None:
+        raise FileError(f"{path} ends within the snapshot of step {step}; was it cut off? expected its atoms")
+
+
+def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str, FloatArray]:
+    """Columns by name, the agents in the order of their ids."""
+    values = _numbers(file, count, len(names), path, words=[k for k, name in enumerate(names) if name in _WORDS])
+    columns = {name: values[:, k] for k, name in enumerate(names)}
+    order = np.argsort(columns["id"], kind="stable")
+    if (np.diff(columns["id"][order]) == 0.0).any():
+        raise FileError(f"{path}: a snapshot has two agents of one id; expected each once")
+    return {name: column[order] for name, column in columns.items()}
+
+
+def _whole(file: TextIO, name: str, least: int, path: Path) -> int:
+    value = float(_numbers(file, 1, 1, path)[0, 0])
+    if not least <= value <= _LARGEST or value != int(value):
+        raise FileError(f"{path}: {name} {value:g}; expected a whole number >= {least}; is it a damaged dump?")
+    return int(value)
+
+
+def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: Sequence[int] = ()) -> FloatArray:
+    """The next lines as numbers, (rows, width), or an error that says what is wrong; NaN in columns of words."""
+    lines = list(islice(file, rows))
+    cells = [line.split() for line in lines]
+    width = len(cells[0]) if width is None and cells else width
+    bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
+    cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
+    if len(lines) < rows or bad is not None or cut:
+        shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
+        raise FileError(f"{path}: {shown} where {rows} lines of {width} numbers were expected; was it cut off?")
+    for row in cells:
+        for k in words:
+            row[k] = "nan"
+    try:
+        values = np.array(cells, dtype=np.float64)
+    except ValueError as error:
+        raise FileError(f"{path}: {error}; expected numbers in every column") from error
+    if not np.isfinite(np.delete(values, words, axis=1)).all():
+        raise FileError(f"{path}: a number that is not finite; the run of LAMMPS blew up")
+    return values

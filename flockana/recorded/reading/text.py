@@ -1,0 +1,177 @@
+"""Tables in text files: CSV and TSV, with messages that name row, column and remedy."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import FileError
+
+_GAPS = ("", "nan", "NaN", "NA", "N/A", "null", "None", "-")
+_SHOWN = 40  # characters of a cell or a line that a message repeats
+_QUOTE, _NEWLINE = ord('"'), ord("\n")
+
+
+def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
+    """Return a table as a pandas frame: delimiter by its first line, header by its names or `names`.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    names : sequence of str, optional
+        Names of the columns of a file without a header.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, is no text, has no header, or a row has other columns than the first.
+    """
+    import pandas as pd
+
+    data = _bytes(path)
+    first = next((line for line in data.split(b"\n", 20) if line.strip()), b"").decode("utf-8")
+    delimiter = _delimiter(first)
+    cells = [cell.strip().strip('"') for cell in first.split(delimiter)]
+    if names is None and all(_is_number(cell) for cell in cells):
+        raise FileError(
+            f"{path}, line 1: {first.strip()[:_SHOWN]!r} are numbers; expected a header such as time,id,x,y; add one, "
+            'or name the columns by columns=["t", "id", "x", "y"]'
+        )
+    twice = sorted({cell for cell in cells if cells.count(cell) > 1}) if names is None else []
+    if twice:
+        raise FileError(f"{path}, line 1: the column {twice[0]!r} stands twice; expected each once")
+    width = len(cells)
+    if names is not None and len(names) != width:
+        raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
+    if _QUOTE not in data:
+        _ensure_rectangular(data, ord(delimiter), width, path)
+    lines = [k for k, line in enumerate(data.split(b"\n"), 1) if line.strip()] if b"\n\n" in data.strip() else None
+    try:
+        frame = pd.read_csv(
+            io.BytesIO(data),
+            sep=delimiter,
+            header=0 if names is None else None,
+            names=cells if names is None else list(names),
+            na_values=list(_GAPS),
+            keep_default_na=False,
+            skipinitialspace=True,
+            index_col=False,
+        )
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+        raise FileError(f"cannot read {path}: {' '.join(str(error).split())}; expected a table of numbers") from None
+    if not len(frame):
+        raise FileError(f"{path} has a header and no rows: expected one for each sample of an agent")
+    frame.attrs |= {"where": str(path), "first": 1 if names is not None else 2}
+    if lines is not None:  # pandas leaves out empty ones
+        frame.attrs["lines"] = lines[1:] if names is None else lines
+    return frame
+
+
+def numbers(frame: Any, column: str) -> Any:
+    """Return a column as floats with NaN for gaps; raise on the first cell that is no finite number.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> numbers(pd.DataFrame({"x": [1, None]}), "x").tolist()
+    [1.0, nan]
+    """
+    import pandas as pd
+
+    series = frame[column]
+    if series.dtype.kind in "fiu":
+        values = series.to_numpy(dtype=np.float64)
+    else:
+        found = pd.to_numeric(series, errors="coerce")
+        refused = (series.notna() & found.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
+        if refused.any():
+            k = int(np.argmax(refused))
+            raise _bad_cell(frame, k, column, series.iloc[k])
+        values = found.to_numpy(dtype=np.float64)
+    if np.isinf(values).any():
+        k = int(np.argmax(np.isinf(values)))
+        raise _bad_cell(frame, k, column, series.iloc[k])
+    return values
+
+
+def row_name(frame: Any, k: int) -> str:
+    """Return where a row stands, for a message: its line in a file, or its index in a frame.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> row_name(pd.DataFrame({"x": [1.0]}), 0)
+    'the frame, row 0'
+    """
+    where, first = frame.attrs.get("where", "the frame"), frame.attrs.get("first")
+    if first is None:
+        return f"{where}, row {frame.index[k]}"
+    lines = frame.attrs.get("lines")
+    return f"{where}, line {k + first if lines is None else lines[k]}"
+
+
+def _bad_cell(frame: Any, k: int, column: str, value: Any) -> FileError:
+    return FileError(
+        f"{row_name(frame, k)}, column {column!r}: {str(value)[:_SHOWN]!r}; expected a finite number, or nothing for a "
+        "gap"
+    )
+
+
+def _bytes(path: Path) -> bytes:
+    """Contents of a text file, line ends as newlines; raise on what is no text."""
+    try:
+        if path.exists() and not path.is_file():
+            raise FileError(f"cannot read {path}: it is no regular file; expected a table")
+        data = path.read_bytes()
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror or error}; expected a table") from error
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise FileError(f"cannot read {path}: it is UTF-16; expected UTF-8; save it as such")
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    if b"\0" in data:
+        raise FileError(f"cannot read {path}: it holds null bytes; expected a text table in UTF-8")
+    try:
+        if not data.isascii():
+            data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise FileError(f"{path}, line {line}: byte {data[error.start]:#x} is no UTF-8; save it as UTF-8") from None
+    if not data.strip():
+        raise FileError(f"{path} is empty: expected a header and rows")
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").lstrip(b"\n")
+
+
+def _delimiter(line: str) -> str:
+    """Tab, semicolon or comma: the one that the first line has most of."""
+    return max("\t,;", key=line.count)
+
+
+def _ensure_rectangular(data: bytes, delimiter: int, width: int, path: Path) -> None:
+    """Raise on the first row with another number of cells than the header; pandas would fill short ones."""
+    raw = np.frombuffer(data, dtype=np.uint8)
+    ends = np.flatnonzero(raw == _NEWLINE)
+    ends = ends if raw[-1] == _NEWLINE else np.append(ends, len(raw))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    cells = np.diff(np.searchsorted(np.flatnonzero(raw == delimiter), np.append(starts, len(raw)))) + 1
+    bad = np.flatnonzero((cells != width) & (ends > starts))
+    for k in bad.tolist():
+        if text := data[starts[k] : ends[k]].strip():
+            raise FileError(
+                f"{path}, line {k + 1}: {cells[k]} values, expected {width} as in the header: "
+                f"{text[:_SHOWN].decode('utf-8', 'replace')!r}; was it cut off?"
+            )
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return text in _GAPS
+    return True

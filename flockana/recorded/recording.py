@@ -1,0 +1,359 @@
+"""A flock that was recorded elsewhere: samples, gaps, and how accurate they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.memory import ResultCache
+from flockana.base.units import times
+from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import AlphaInteraction
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.recorded.accuracy import Accuracy, band, ensure_error
+from flockana.recorded.unknown import UnknownLaw
+
+if TYPE_CHECKING:
+    import xarray
+
+_ERRORS = ("bound", "sd", "p_bound", "p_sd")
+_UNITS = {"t": (0, 1), "q": (1, 0), "p": (1, -1), "u": (1, -2)} | {
+    "bound": (1, 0),
+    "sd": (1, 0),
+    "p_bound": (1, -1),
+    "p_sd": (1, -1),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Recording(ResultCache):
+    """Samples of a flock that was recorded elsewhere, with gaps as NaN and the accuracy of its numbers.
+
+    Parameters
+    ----------
+    t : array_like, shape (T,)
+        Sample times, rising.
+    q : array_like, shape (T, n, m)
+        Positions; NaN where an agent was not seen.
+    p, u : array_like, shape (T, n, m), optional
+        Velocities and accelerations. At a map's sample, u is the input that is applied from there on.
+    bound : float or array_like of shape (T, n), optional
+        Largest distance of a recorded position from the true one; 0 for numbers that are exact but for rounding.
+    sd : float or array_like of shape (T, n), optional
+        Standard deviation of each coordinate, independent and Gaussian; instead of `bound`. Enclosures are the band
+        that holds of all samples at once with probability 0.99, and verdicts have the rigour "statistical".
+    p_bound, p_sd : float or array_like of shape (T, n), optional
+        The same of velocities; by default those of the positions over the interval between samples.
+    estimated : bool
+        Whether the accuracy was estimated from the data: then it decides nothing.
+    ids : sequence of str, optional
+        Names of the agents; by default their numbers.
+    source : str
+        Where it comes from.
+
+    Raises
+    ------
+    ArgumentError
+        On arrays that do not fit each other, infinite numbers, times that do not rise, an agent that is never seen, or
+        an accuracy given twice.
+
+    Examples
+    --------
+    >>> rec = Recording([0.0, 0.1], [[[0.0], [7.0]], [[0.1], [np.nan]]], bound=1e-3)
+    >>> rec.n, rec.gaps
+    (2, 1)
+    """
+
+    t: FloatArray
+    q: FloatArray
+    p: FloatArray | None = None
+    u: FloatArray | None = None
+    _: KW_ONLY
+    bound: Any = None
+    sd: Any = None
+    p_bound: Any = None
+    p_sd: Any = None
+    estimated: bool = False
+    ids: Sequence[str] = ()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        q = _with_gaps("q", self.q)
+        if q.ndim != 3 or 0 in q.shape or q.shape[2] > 3:
+            raise ArgumentError(
+                f"q has shape {q.shape}: expected (T, n, m), T >= 1 samples of n >= 1 agents in m = 1, 2 or 3"
+            )
+        t = np.ascontiguousarray(_with_gaps("t", self.t))
+        if t.shape != q.shape[:1] or np.isnan(t).any():
+            raise ArgumentError(
+                f"t has shape {t.shape}: expected {len(q)} times without gaps, one for each sample of q"
+            )
+        if len(t) > 1 and not (np.diff(t) > 0.0).all():
+            k = int(np.argmax(~(np.diff(t) > 0.0)))
+            raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times; sort them")
+        object.__setattr__(self, "t", _frozen(t))
+        object.__setattr__(self, "q", _frozen(_whole_vectors(q)))
+        for name in ("p", "u"):
+            if (value := getattr(self, name)) is not None:
+                array = _with_gaps(name, value)
+                if array.shape != q.shape:
+                    raise ArgumentError(f"{name} has shape {array.shape}: expected {q.shape}, as q has")
+                object.__setattr__(self, name, _frozen(_whole_vectors(array)))
+        unseen = np.flatnonzero(~self.present.any(axis=0))
+        if unseen.size:
+            raise ArgumentError(f"q[:, {unseen[0]}] is NaN throughout: expected agents that are seen; leave it out")
+        self._check_accuracy()
+        object.__setattr__(self, "ids", tuple(str(i) for i in self.ids) or tuple(map(str, range(self.n))))
+        if len(self.ids) != self.n:
+            raise ArgumentError(f"ids has {len(self.ids)} names: expected {self.n}, one for each agent")
+
+    def _check_accuracy(self) -> None:
+        ensure_flag("estimated", self.estimated)
+        for one, other in (("bound", "sd"), ("p_bound", "p_sd")):
+            if getattr(self, one) is not None and getattr(self, other) is not None:
+                raise ArgumentError(f"{one} and {other} are both given: expected one of them")
+        for name in _ERRORS:
+            object.__setattr__(self, name, ensure_error(name, getattr(self, name), self.q.shape[:2]))
+        if self.p_bound is not None and self.sd is not None:
+            raise ArgumentError("sd and p_bound are given: expected p_sd, as one kind of accuracy holds of a recording")
+        if self.p_sd is not None and self.bound is not None:
+            raise ArgumentError("bound and p_sd are given: expected p_bound, as one kind of accuracy holds of both")
+
+    def __repr__(self) -> str:
+        gaps = f", {self.gaps} gaps" if self.gaps else ""
+        span = f"t = {self.t[0]:g} to {self.t[-1]:g}"
+        return f"<Recording of {self.n} agents, m = {self.m}, {len(self.t)} samples, {span}{gaps}, {self.accuracy}>"
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return int(self.q.shape[1])
+
+    @property
+    def m(self) -> int:
+        """Dimension of space."""
+        return int(self.q.shape[2])
+
+    @property
+    def interval(self) -> float:
+        """Median interval between samples; 1 of a single one."""
+        return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 1.0
+
+    @cached_property
+    def present(self) -> npt.NDArray[np.bool_]:
+        """Whether an agent was seen at a sample, shape (T, n)."""
+        return ~np.isnan(self.q[:, :, 0])
+
+    @property
+    def gaps(self) -> int:
+        """Number of positions that are missing."""
+        return int((~self.present).sum())
+
+    @cached_property
+    def accuracy(self) -> Accuracy:
+        """Half widths of positions and velocities, and how they are known."""
+        if self.bound is None and self.sd is None:
+            return Accuracy(np.inf, np.inf, "unknown")
+        speed: Any
+        if self.bound is not None:
+            place, speed = self.bound, self.p_bound
+            kind = "estimated" if self.estimated else "bound"
+        else:
+            width = band(2 * self.q.shape[0] * self.n, self.m)
+            place = width * self.sd
+            speed = None if self.p_sd is None else width * self.p_sd
+            kind = "estimated" if self.estimated else "sd"
+        return Accuracy(place, place / self.interval if speed is None else speed, kind)  # type: ignore[arg-type]
+
+    def window(self, start: float, end: float) -> Recording:
+        """Return the samples between two times.
+
+        Parameters
+        ----------
+        start, end : float
+            First and last time.
+
+        Raises
+        ------
+        ArgumentError
+            If there is no sample in between.
+        """
+        return self.select(samples=(self.t >= start) & (self.t <= end))
+
+    def select(self, *, samples: Any = slice(None), agents: Any = slice(None)) -> Recording:
+        """Return some samples of some agents.
+
+        Parameters
+        ----------
+        samples, agents : index array, bool array or slice
+            Which ones.
+        """
+        change: dict[str, Any] = {"t": self.t[samples], "ids": np.array(self.ids)[agents].tolist()}
+        if not (len(change["t"]) and len(change["ids"])):
+            raise ArgumentError("no sample or no agent is left: expected a selection that holds one")
+        for name in ("q", "p", "u", *_ERRORS):
+            value = getattr(self, name)
+            change[name] = value[samples][:, agents] if isinstance(value, np.ndarray) else value
+        return replace(self, **change)
+
+    def in_units(self, length: float, time: float) -> Recording:
+        """Return the same recording in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors of lengths and times.
+        """
+        return replace(self, **{k: times(getattr(self, k), length**a * time**b) for k, (a, b) in _UNITS.items()})
+
+    def ensure_complete(self, purpose: str) -> None:
+        """Raise if there are gaps, naming the first one.
+
+        Parameters
+        ----------
+        purpose : str
+            What needs every agent.
+        """
+        if self.gaps:
+            k, i = (int(x) for x in np.argwhere(~self.present)[0])
+            raise ArgumentError(
+                f"{purpose} needs every agent at every sample, and agent {self.ids[i]} is missing at t = "
+                f"{self.t[k]:g} ({self.gaps} gaps): fill short gaps by filled(), or choose samples and agents by "
+                "window(start, end) or select(samples=, agents=)"
+            )
+
+    def filled(self, *, longest: float | None = None) -> Recording:
+        """Return the recording with short gaps filled by splines, each filled position with its own error.
+
+        Parameters
+        ----------
+        longest : float, optional
+            Longest gap that is filled, in time; by default what the data carry.
+        """
+        from flockana.recorded.velocities import filled
+
+        return filled(self, longest)
+
+    def with_velocities(self) -> Recording:
+        """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
+        from flockana.recorded.velocities import with_velocities
+
+        return with_velocities(self)
+
+    def metrics(self, *, d: float, r: float) -> xarray.Dataset:
+        """Return measures of the flock over time, each with its error as ``<name>_error``.
+
+        Parameters
+        ----------
+        d, r : float
+            Scale and interaction range that nets and lattices are measured with.
+        """
+        from flockana.recorded.measured import measured
+
+        return measured(self, d, r)
+
+    def trajectory(self, law: Any = None, *, d: float | None = None, r: float | None = None) -> Trajectory:
+        """Return the samples as a `Trajectory`, for plots, films and the player; it is never judged.
+
+        Parameters
+        ----------
+        law : Law, optional
+            A law whose links and obstacles are drawn.
+        d, r : float, optional
+            Without a law: scale and interaction range, d = r/1.2 by default.
+
+        Raises
+        ------
+        ArgumentError
+            If there are gaps.
+        """
+        self.ensure_complete("a trajectory")
+        rec = self if self.p is not None else self.with_velocities()
+        assert rec.p is not None
+        speed = float(np.sqrt(np.nanmean(rec.p**2) * rec.m))
+        if law is None:
+            alpha = None if d is None and r is None else scaled_alpha(d, r)
+            length = 1.0 if alpha is None else alpha.length
+            law = UnknownLaw(alpha, length / speed if speed > 0.0 else self.interval, self.interval)
+        u = np.zeros(rec.q.shape) if rec.u is None else np.nan_to_num(rec.u)
+        return Trajectory(rec.t, rec.q, rec.p, u, ensure_law(law), {}, "complete", f"recorded: {self.source}")
+
+    def player(self, *, d: float | None = None, r: float | None = None, height: int = 760) -> Any:
+        """Return the recording in the player: a notebook shows it, ``.save(path)`` writes a page.
+
+        Parameters
+        ----------
+        d, r : float, optional
+            Scale and interaction range.
+        height : int
+            Height of its frame in a notebook, in pixels.
+        """
+        return self.trajectory(d=d, r=r).player(height=height)
+
+
+def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
+    """Return the paper's pair law of a scale and a range, the other 1.2 times larger or smaller if one is missing.
+
+    Examples
+    --------
+    >>> round(scaled_alpha(5.0, None).r, 12)
+    6.0
+    """
+    d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
+    return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))
+
+
+def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
+    """Return the samples of a run as a recording.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    **accuracy
+        As of `Recording`.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.dynamics.simulate import simulate
+    >>> recording_of(simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0)), bound=0.0).n
+    2
+    """
+    u = None if isinstance(run.law, DiscreteLaw) else run.u
+    return Recording(run.t, run.q, run.p, u, source=f"a run of {type(run.law).__name__}", **accuracy)
+
+
+def _with_gaps(name: str, values: Any) -> FloatArray:
+    """Real numbers, masked ones and NaN as gaps; raise on anything else and on infinite ones."""
+    try:
+        masked = isinstance(values, np.ma.MaskedArray)
+        array = np.array(np.ma.filled(values.astype(np.float64), np.nan) if masked else values)
+    except (ValueError, TypeError):
+        raise ArgumentError(f"{name}: expected an array of numbers, got rows of different lengths") from None
+    if array.dtype.kind not in "fiu":
+        raise ArgumentError(f"{name}: expected real numbers, got {format_value(array.dtype.name)}")
+    array = array.astype(np.float64)
+    if np.isinf(array).any():
+        where = ", ".join(str(int(k)) for k in np.argwhere(np.isinf(array))[0])
+        raise ArgumentError(f"{name}[{where}] is infinite: expected finite numbers, and NaN for a gap")
+    return array
+
+
+def _whole_vectors(x: FloatArray) -> FloatArray:
+    """The vectors, one with a component missing wholly missing."""
+    x[np.isnan(x).any(axis=2)] = np.nan
+    return x
+
+
+def _frozen(array: FloatArray) -> FloatArray:
+    array = np.ascontiguousarray(array)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,157 @@
+"""Smoothing splines with an error at every sample, through series with gaps.
+
+A spline of degree five that smooths samples of known noise is the mean of a motion whose jerk is white noise, given the
+samples; the same computation, a Kalman filter forth and back, gives the variance of position, velocity and acceleration
+at each sample, across gaps too. The intensity of the jerk is the largest that the samples nearby do not
+reject, so that a flock that settles is smoothed more than one that has just been let go, and an encounter less.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+
+_FINEST = 1e-7  # noise, over the spread of a series, below which it counts as exact
+_DIFFUSE = 6.0  # deviation of the state before the first sample, over the largest differences of the samples
+_JERKS = 12  # intensities that are tried, each a factor of e from the next
+_WINDOW = 6  # samples to each side over which a likelihood is local
+_DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
+
+
+class Smoothed(NamedTuple):
+    """Means (T, K, 3) of position, velocity and acceleration, their standard deviations, and the noise."""
+
+    mean: FloatArray
+    sd: FloatArray
+    noise: float
+
+
+class _Filtered(NamedTuple):
+    """Means, standard deviations and log-likelihoods (T, K) of a filter, or of a filter that went back, too."""
+
+    mean: FloatArray
+    sd: FloatArray
+    likelihood: FloatArray
+
+
+def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
+    """Return the smoothing spline through each series, with the largest intensity of its jerk that they allow.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Sample times.
+    y : ndarray, shape (T, K)
+        Series; NaN in gaps.
+    noise : ndarray, shape (T, K), optional
+        Standard deviation of each sample; estimated, one for all, if it is not given.
+    groups : int
+        How many series in a row share an intensity: the coordinates of an agent.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 21)
+    >>> fit = smoothed(t, np.sin(3.0 * t)[:, None], np.full((21, 1), 1e-6))
+    >>> bool(np.abs(fit.mean[:, 0, 1] - 3.0 * np.cos(3.0 * t)).max() < 0.02)
+    True
+    """
+    unit = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
+    middle = np.nanmean(y, axis=0)
+    spread = float(np.nanmax(np.abs(y - middle))) or 1.0
+    x, clock = (y - middle) / spread, (t - t[0]) / unit
+    sd = _likeliest_noise(clock, x) if noise is None else noise / spread
+    sd = np.maximum(np.broadcast_to(sd, x.shape), _FINEST)
+    fit = _filtered(clock, x, sd, _local_jerk(clock, x, sd, groups), backwards=True)
+    factors = spread * unit ** -np.arange(3.0)
+    mean = fit.mean * factors
+    mean[:, :, 0] += middle
+    return Smoothed(mean, fit.sd * factors, float(sd.max()) * spread)
+
+
+def _steepest(x: FloatArray) -> float:
+    """Logarithm of the size of third differences: what the jerk is at most, as noise adds to them."""
+    third = np.diff(x, 3, axis=0)
+    size = float(np.sqrt(np.nanmean(third**2))) if np.isfinite(third).any() else 1.0
+    return float(np.log(max(size, 1e-14))) + 2.0
+
+
+def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, groups: int) -> FloatArray:
+    """Intensity of the jerk at each sample of each series, by the likelihood of the samples nearby, shape (T, K)."""
+    top, (count, series) = _steepest(x), x.shape
+    tried = np.maximum(top - np.arange(_JERKS, dtype=np.float64), np.log(sd.min()) - 6.0)
+    weights = np.minimum(np.arange(1.0, 2 * _WINDOW + 2), np.arange(2 * _WINDOW + 1.0, 0.0, -1.0)) / (_WINDOW + 1.0)
+    local = np.empty((_JERKS, count, series // groups))
+    for g, jerk in enumerate(tried):
+        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), backwards=False).likelihood
+        own = own.reshape(count, -1, groups).sum(axis=2)
+        local[g] = np.apply_along_axis(np.convolve, 0, own, weights, "full")[_WINDOW : _WINDOW + count]
+    largest = tried[np.argmax(local >= local.max(axis=0) - _DROP, axis=0)]
+    return np.repeat(np.exp(largest), groups, axis=1)
+
+
+def _likeliest_noise(t: FloatArray, x: FloatArray) -> FloatArray:
+    """Standard deviation of the noise, one for all series, by maximum likelihood with one jerk for all."""
+    from scipy.optimize import minimize
+
+    def cost(z: FloatArray) -> float:
+        sd = np.full(x.shape, max(float(np.exp(z[1])), _FINEST))
+        return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), backwards=False).likelihood.sum())
+
+    start = np.array([_steepest(x) - 4.0, _steepest(x) - 3.0])
+    best = minimize(cost, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "maxfev": 120})
+    return np.array(np.exp(best.x[1]))
+
+
+def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *, backwards: bool) -> _Filtered:
+    """Means and deviations of the state by a Kalman filter, given all samples if it goes backwards too."""
+    count, series = y.shape
+    seen: npt.NDArray[np.bool_] = ~np.isnan(y)
+    alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk))  # then all have the same covariances
+    wide = 1 if alike else series
+    state, cov = np.zeros((series, 3)), np.broadcast_to(np.diag(_spread(y, sd)), (wide, 3, 3))
+    means, covs = np.empty((count, series, 3)), np.empty((count, wide, 3, 3))
+    before, cov_before = np.empty_like(means), np.empty_like(covs)
+    likelihood, use, variance = np.zeros((count, series)), seen[:, :wide], sd[:, :wide] ** 2
+    turns, kicks = zip(*(_transition(h) for h in np.diff(t, prepend=t[0]).tolist()), strict=True)
+    for k in range(count):
+        if k:
+            state, cov = state @ turns[k].T, turns[k] @ cov @ turns[k].T + jerk[k, :wide, None, None] ** 2 * kicks[k]
+        before[k], cov_before[k] = state, cov
+        if use[k].any():
+            size = np.maximum(cov[:, 0, 0], 0.0) + variance[k]
+            gain = np.where(use[k][:, None], cov[:, :, 0] / size[:, None], 0.0)
+            off = np.where(seen[k], np.nan_to_num(y[k]) - state[:, 0], 0.0)
+            likelihood[k] = -0.5 * (off**2 / size + np.log(size)) * seen[k]
+            state = state + gain * off[:, None]
+            keep = np.broadcast_to(np.eye(3), (wide, 3, 3)).copy()
+            keep[:, :, 0] -= gain
+            noise = (variance[k] * use[k])[:, None, None] * gain[:, :, None] * gain[:, None, :]
+            cov = keep @ cov @ keep.swapaxes(1, 2) + noise
+            cov = 0.5 * (cov + cov.swapaxes(1, 2))
+        means[k], covs[k] = state, cov
+    for k in range(count - 2 if backwards else -1, -1, -1):
+        way = np.linalg.solve(cov_before[k + 1], turns[k + 1] @ covs[k]).swapaxes(1, 2)
+        means[k] += np.einsum("kij,kj->ki", np.broadcast_to(way, (series, 3, 3)), means[k + 1] - before[k + 1])
+        covs[k] += way @ (covs[k + 1] - cov_before[k + 1]) @ way.swapaxes(1, 2)
+    deviations = np.sqrt(np.maximum(np.diagonal(covs, axis1=2, axis2=3), 0.0))
+    return _Filtered(means, np.broadcast_to(deviations, means.shape).copy(), likelihood)
+
+
+def _spread(y: FloatArray, sd: FloatArray) -> FloatArray:
+    """Variances of position, velocity and acceleration before the first sample: what the samples show at most."""
+    sizes = [np.abs(np.diff(y, k, axis=0)) if len(y) > k else y for k in range(3)]
+    largest = np.array([float(np.nanmax(x)) if np.isfinite(x).any() else 1.0 for x in sizes])
+    return (_DIFFUSE * (largest + float(sd.max()))) ** 2
+
+
+def _transition(h: float) -> tuple[FloatArray, FloatArray]:
+    """Of (position, velocity, acceleration) over a step h: matrix, and covariance that white jerk of size 1 adds."""
+    turn = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
+    kick = np.array(
+        [[h**5 / 20.0, h**4 / 8.0, h**3 / 6.0], [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0], [h**3 / 6.0, h**2 / 2.0, h]]
+    )
+    return turn, kick

@@ -1,0 +1,48 @@
+"""Stand-in for the law of a flock that was recorded elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.base.units import Powers
+from flockana.interactions import AlphaInteraction
+from flockana.laws.discrete import DiscreteLaw
+
+
+@dataclass(frozen=True)
+class UnknownLaw(DiscreteLaw):
+    """Law of a recorded flock, of which only scale and range are stated; nothing is known between its samples.
+
+    Parameters
+    ----------
+    alpha : AlphaInteraction, optional
+        Its d and r are those that nets and lattices are measured with.
+    time : float
+        Time unit of thresholds.
+    dt : float
+        Interval between samples.
+    """
+
+    alpha: AlphaInteraction | None = None
+    time: float = 1.0
+    dt: float = 1.0
+
+    units: ClassVar[Mapping[str, Powers]] = {"time": (0, 1), "dt": (0, 1)}
+
+    def __post_init__(self) -> None:
+        for name in ("time", "dt"):
+            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return None if self.alpha is None else Scales(self.alpha.length, self.time)
+
+    def step(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        raise ArgumentError("the law of this recording is not known: expected a law to step; see flockana.recognise")

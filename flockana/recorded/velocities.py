@@ -1,0 +1,140 @@
+"""Velocities and accelerations from recorded positions, each with its error, and short gaps filled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
+from flockana.recorded.smoothing import smoothed
+
+if TYPE_CHECKING:
+    from flockana.recorded.recording import Recording
+
+_TOLD = 2.0  # times the usual acceleration: a gap in which it is known less well is not filled
+_FEWEST = 4  # samples of an agent from which velocities are made
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """Positions, velocities and accelerations by smoothing splines, shape (T, n, m), and standard deviations (T, n).
+
+    Before an agent's first sample and after its last all are NaN.
+    """
+
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    q_sd: FloatArray  # q_sd, p_sd, u_sd: of each coordinate
+    p_sd: FloatArray
+    u_sd: FloatArray
+    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the data still tell the acceleration
+    noise: float  # standard deviation of a coordinate, stated or estimated
+
+
+def motions(rec: Recording) -> Motions:
+    """Return the smoothing splines of a recording; its noise is the stated one, else the likeliest.
+
+    Parameters
+    ----------
+    rec : Recording
+        The recording; of a bound, half of it counts as standard deviation.
+
+    Raises
+    ------
+    ArgumentError
+        If an agent has fewer than four samples.
+    """
+    return rec.cached("motions", lambda: _motions(rec))
+
+
+def _motions(rec: Recording) -> Motions:
+    few = np.flatnonzero(rec.present.sum(axis=0) < _FEWEST)
+    if few.size:
+        i = int(few[0])
+        raise ArgumentError(
+            f"agent {rec.ids[i]} has {int(rec.present[:, i].sum())} samples: expected {_FEWEST} or more for velocities "
+            "from positions; leave it out by select(agents=...)"
+        )
+    stated = rec.sd if rec.sd is not None else None if rec.bound is None else 0.5 * np.asarray(rec.bound)
+    count, n, m = rec.q.shape
+    noise = None
+    if stated is not None:
+        noise = np.repeat(np.broadcast_to(np.asarray(stated, dtype=np.float64), (count, n)), m, axis=1)
+    fit = smoothed(rec.t, rec.q.reshape(count, n * m), noise, groups=m)
+    (q, p, u), deviations = ([x[:, :, k].reshape(count, n, m) for k in range(3)] for x in (fit.mean, fit.sd))
+    q_sd, p_sd, u_sd = (each.max(axis=2) for each in deviations)
+    within = np.maximum.accumulate(rec.present) & np.maximum.accumulate(rec.present[::-1])[::-1]
+    for x in (q, p, u, q_sd, p_sd, u_sd):
+        x[~within] = np.nan
+    usual = np.sqrt(np.nanmean(np.where(rec.present, lengths(u) ** 2, np.nan), axis=0) / m)
+    told = within & (np.nan_to_num(u_sd, nan=np.inf) <= _TOLD * usual)
+    return Motions(q, p, u, q_sd, p_sd, u_sd, _whole_gaps(rec, told), fit.noise)
+
+
+def with_velocities(rec: Recording) -> Recording:
+    """See `Recording.with_velocities`: what rests on splines holds in a 0.99 band, so a bound turns into `sd`."""
+    fit, seen = motions(rec), rec.present
+    p = np.where(seen[:, :, None], fit.p, np.nan)
+    u = np.where(seen[:, :, None], fit.u, np.nan)
+    p_sd = np.where(seen, fit.p_sd, 0.0)
+    sd = rec.sd if rec.sd is not None else fit.noise if rec.bound is None else rec.bound
+    unknown = rec.bound is None and rec.sd is None
+    return replace(rec, p=p, u=u, sd=sd, bound=None, p_sd=p_sd, p_bound=None, estimated=rec.estimated or unknown)
+
+
+def filled(rec: Recording, longest: float | None) -> Recording:
+    """See `Recording.filled`."""
+    if not rec.gaps:
+        return rec
+    fit = motions(rec)
+    fill = ~rec.present & fit.carried
+    if longest is not None:
+        fill &= _gap_lengths(rec) <= ensure_positive("longest", longest)
+    q = np.where(fill[:, :, None], fit.q, rec.q)
+    shape = rec.present.shape
+    sd = rec.sd if rec.sd is not None else fit.noise if rec.bound is None else rec.bound
+    sd = np.where(fill, np.nan_to_num(fit.q_sd), np.broadcast_to(np.asarray(sd, dtype=np.float64), shape))
+    unknown = rec.bound is None and rec.sd is None
+    change: dict[str, Any] = {"q": q, "sd": sd, "bound": None, "estimated": rec.estimated or unknown}
+    if rec.p is not None:
+        own = rec.p_sd if rec.p_sd is not None else rec.p_bound
+        base = sd / rec.interval if own is None else np.broadcast_to(np.asarray(own, dtype=np.float64), shape)
+        change |= {
+            "p": np.where(fill[:, :, None], fit.p, rec.p),
+            "p_sd": np.where(fill, np.nan_to_num(fit.p_sd), base),
+            "p_bound": None,
+        }
+    if rec.u is not None:
+        change["u"] = np.where(fill[:, :, None], fit.u, rec.u)
+    return replace(rec, **change)
+
+
+def _gaps(rec: Recording) -> Iterator[tuple[int, int, int]]:
+    """Gaps as (agent, last sample before, first sample after)."""
+    for i in range(rec.n):
+        seen = np.flatnonzero(rec.present[:, i])
+        for k in np.flatnonzero(np.diff(seen) > 1).tolist():
+            yield i, int(seen[k]), int(seen[k + 1])
+
+
+def _whole_gaps(rec: Recording, told: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Samples that were seen, and gaps throughout which the motion is told, shape (T, n)."""
+    carried = rec.present.copy()
+    for i, a, b in _gaps(rec):
+        carried[a + 1 : b, i] = told[a + 1 : b, i].all()
+    return carried
+
+
+def _gap_lengths(rec: Recording) -> FloatArray:
+    """Length in time of the gap that each missing sample lies in, shape (T, n); 0 where an agent was seen."""
+    durations = np.zeros(rec.present.shape)
+    for i, a, b in _gaps(rec):
+        durations[a + 1 : b, i] = rec.t[b] - rec.t[a]
+    return durations

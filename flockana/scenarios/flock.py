@@ -1,0 +1,197 @@
+"""A flock of the user's own: a law, a start and a time span, for all that also takes a scenario of the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import ensure_seed, ensure_state, ensure_time_span
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import ensure_law
+from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.scenario import scenario as named_scenario
+from flockana.theorems import Tolerances
+from flockana.theorems.catalogue import T_SPAN
+from flockana.theorems.together import Verdicts, theorems_about, verify_together
+
+_SOURCE = "a flock of the user's own"
+
+
+@dataclass(frozen=True, eq=False)
+class Flock:
+    """A law with a start and a time span.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        The law of motion.
+    q0, p0 : array_like, shape (n, m), or callable
+        Positions and velocities, or a function of a seed that returns them; at rest by default. A `q0` that returns
+        two arrays gives both.
+    t_span : (float, float)
+        First and last time.
+    options : mapping
+        Further arguments of `simulate`, such as ``{"rtol": 1e-6}``.
+    name : str
+        A name for tables.
+
+    Raises
+    ------
+    ArgumentError
+        On something that is no law, start or time span.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> flock = Flock(Algorithm1(), lambda seed: 6.0 * np.random.default_rng(seed).normal(size=(5, 2)), t_span=(0, 1))
+    >>> flock.scenario(seed=1).q0.shape, flock.run(seed=1).status
+    ((5, 2), 'complete')
+    """
+
+    law: Any
+    q0: Any
+    p0: Any = None
+    t_span: tuple[float, float] = T_SPAN
+    options: Mapping[str, Any] = field(default_factory=dict)
+    name: str = "own flock"
+
+    def __post_init__(self) -> None:
+        ensure_law(self.law)
+        object.__setattr__(self, "t_span", ensure_time_span(self.t_span))
+        if not (self.drawn or self.p0 is None):
+            ensure_state(self.q0, self.p0)
+
+    @property
+    def drawn(self) -> bool:
+        """Whether the start depends on a seed."""
+        return callable(self.q0) or callable(self.p0)
+
+    def start(self, seed: int = 0) -> tuple[Any, Any]:
+        """Return positions and velocities, each of shape (n, m).
+
+        Parameters
+        ----------
+        seed : int
+            Seed of a start that is a function.
+        """
+        q = self.q0(ensure_seed(seed)) if callable(self.q0) else self.q0
+        p = self.p0(seed) if callable(self.p0) else self.p0
+        if p is None and isinstance(q, tuple) and len(q) == 2 and np.ndim(q[0]) == 2:
+            q, p = q
+        return ensure_state(q, np.zeros(np.shape(q)) if p is None else p)
+
+    def scenario(self, seed: int = 0, **parameters: Any) -> Scenario:
+        """Return the flock as a scenario.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of a start that is a function.
+        **parameters
+            Numbers of the law by dotted name, such as ``{"gains.c1_gamma": 2.0}``.
+        """
+        law, (q, p) = self.law, self.start(seed)
+        for path, value in parameters.items():
+            law = with_parameter(law, path, value)
+        return Scenario(self.name, self.name, _SOURCE, law, q, p, self.t_span, seed, options=self.options)
+
+    def run(self, seed: int = 0, *, progress: bool = False) -> Trajectory:
+        """Simulate the flock.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of a start that is a function.
+        progress : bool
+            Show a progress bar.
+        """
+        return self.scenario(seed).run(progress=progress)
+
+    def theorems(self, seed: int = 0) -> tuple[str, ...]:
+        """Return the ids of the theorems that are about this law.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of a start that is a function.
+        """
+        return theorems_about(self.law, *self.start(seed), self.t_span[0])
+
+    def verify(self, seed: int = 0, *, tolerances: Tolerances | None = None, progress: bool = False) -> Verdicts:
+        """Simulate the flock and check every theorem that is about its law.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of a start that is a function.
+        progress : bool
+            Show a progress bar.
+        """
+        run = self.run(seed, progress=progress)
+        return verify_together(run, tolerances=tolerances, subject=self.name, progress=progress)
+
+
+def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = None, t_span: Any = None) -> Any:
+    """Return the scenario that was given, or the flock made of a law and a start.
+
+    Examples
+    --------
+    >>> chosen("hexagon")
+    'hexagon'
+    """
+    parts = {key: v for key, v in {"law": law, "q0": q0, "p0": p0, "t_span": t_span}.items() if v is not None}
+    if scenario is not None and parts:
+        raise ArgumentError(f"a scenario and {', '.join(parts)}: expected the one or the other")
+    if scenario is None and not {"law", "q0"} <= parts.keys():
+        raise ArgumentError(f"got {', '.join(parts) or 'no flock'}: expected a scenario, or law=..., q0=...")
+    return Flock(**parts) if scenario is None else scenario
+
+
+def as_scenario(given: Any, seed: int = 0) -> Scenario:
+    """Return a scenario from its name, a flock, or itself.
+
+    Raises
+    ------
+    ArgumentError
+        On anything else.
+
+    Examples
+    --------
+    >>> as_scenario("hexagon").name
+    'hexagon'
+    """
+    if isinstance(given, str):
+        return named_scenario(given, seed)
+    if isinstance(given, Flock):
+        return given.scenario(seed)
+    if not isinstance(given, Scenario):
+        raise ArgumentError(f"scenario = {given!r}: expected a name of the catalogue, a Scenario or a Flock")
+    return given
+
+
+def law_parameter(law: Any, name: str) -> Any:
+    """Return the value of a law's parameter by its dotted name, such as ``"gains.c1_alpha"``."""
+    return reduce(getattr, name.split("."), law)
+
+
+def with_parameter(law: Any, name: str, value: Any) -> Any:
+    """Return the law with another value of a parameter.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> with_parameter(Algorithm1(), "gains.c1_alpha", 2.0).gains.c1_alpha
+    2.0
+    """
+    head, _, rest = name.partition(".")
+    try:
+        return replace(law, **{head: with_parameter(getattr(law, head), rest, value) if rest else value})
+    except (AttributeError, TypeError):
+        raise ArgumentError(
+            f"{name}: {type(law).__name__} has no such number; expected a dotted name, such as gains.c1_alpha"
+        ) from None

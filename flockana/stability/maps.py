@@ -1,0 +1,323 @@
+"""Maps linearised about an equilibrium: multipliers, modes, a discrete python-control system.
+
+A map q' = q + h p + f h² u, p' = p + h u with u at the start of the step has the multipliers z = 1 + h w, where
+(w² + w (D + f h K) + K) v = 0: those of a flow whose damping is D + f h K. So all that is known of the modes of a flow
+serves (`flockana.stability.modes`): zero modes come out as multipliers that are exactly 1. Agent by agent in place,
+K_L and D_L the entries that act on agents moved before, the equation is
+(w² (1 + h D_L + f h² K_L) + w (D + f h K + h K_L) + K) v = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_fits
+from flockana.base.errors import ArgumentError
+from flockana.laws.discrete import DiscreteLaw
+from flockana.stability.mode_names import translations
+from flockana.stability.modes import Mode, SecondOrder
+from flockana.stability.rounding import eigen
+from flockana.stability.signals import axes_of, labels
+
+if TYPE_CHECKING:
+    import control
+
+    from flockana.stability.linearisation import Linearisation
+
+ComplexArray = npt.NDArray[np.complex128]
+
+_PARALLEL = 1e-9  # radians: headings that differ by no more are one
+
+
+@dataclass(frozen=True)
+class MapMode:
+    """Mode of a map near its fixed motion: after k steps Re(shape · multiplier^k).
+
+    Parameters
+    ----------
+    multiplier : complex
+        z; of a conjugate pair the one with Im z >= 0.
+    shape : ndarray, shape (n, m) or (n,)
+        Displacements of the agents (of a map of headings: turns), of unit length together.
+    name : str
+        As of a `Mode`; numbers count from the slowest.
+    dt : float
+        Step.
+    error : float
+        Largest rounding error of the multiplier.
+
+    Examples
+    --------
+    >>> flip = MapMode(-0.5, np.ones((1, 1)), "1", 0.1)
+    >>> flip.decay_per_step, round(flip.frequency * 0.1, 6), flip.decays
+    (0.5, 3.141593, True)
+    """
+
+    multiplier: complex
+    shape: npt.NDArray[Any] = field(repr=False)
+    name: str
+    dt: float
+    error: float = field(default=0.0, repr=False)
+
+    @property
+    def decay_per_step(self) -> float:
+        """Share of the mode that one step takes away, 1 − |z|; negative if the mode grows."""
+        return 1.0 - abs(self.multiplier)
+
+    @property
+    def decay_rate(self) -> float:
+        """−ln|z|/dt, per time unit; infinite if one step ends the mode."""
+        return -float(np.log(abs(self.multiplier))) / self.dt if self.multiplier else float("inf")
+
+    @property
+    def frequency(self) -> float:
+        """arg z/dt, in radians per time unit; π/dt of a mode that changes sign at each step."""
+        return abs(float(np.angle(self.multiplier))) / self.dt
+
+    @property
+    def decays(self) -> bool:
+        """Return whether the mode decays, beyond rounding."""
+        return self.decay_per_step > self.error
+
+
+@dataclass(frozen=True, eq=False)
+class MapLinearisation:
+    """δx(k+1) = A δx(k) near the fixed motion of a map, in the frame that moves with it.
+
+    Parameters
+    ----------
+    law : DiscreteLaw
+        The map.
+    q, p : ndarray, shape (n, m)
+        Positions and velocities, all agents with the velocity of the frame.
+    t : float
+        Time.
+    residual : float
+        Distance from a fixed motion, relative to the law's forces (of headings: in radians).
+    A, B : ndarray, shapes (N, N) and (N, F)
+        Step of the state, and effect of a force on each agent that lasts the step (of a turn of each heading).
+    states, inputs : tuple of str
+        Their names: q0_x, …, p0_x, …, or heading0, ….
+    second_order : SecondOrder or None
+        The equation of w = (z − 1)/dt, None for a map of headings.
+
+    Examples
+    --------
+    The R² notebook's step of a pair at its distance: what rotates or translates it stays.
+
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.laws.taylor_step import TaylorStep
+    >>> from flockana.stability import linearise
+    >>> pair = linearise(TaylorStep(Algorithm1(), 0.01), [[0.0, 0.0], [7.0, 0.0]])
+    >>> [(mode.name, round(mode.decay_per_step, 4)) for mode in pair.modes], pair.stable
+    ([('breathing', 0.0085), ('rotation', 0.0393)], True)
+    """
+
+    law: DiscreteLaw
+    q: FloatArray = field(repr=False)
+    p: FloatArray = field(repr=False)
+    t: float
+    residual: float
+    A: FloatArray = field(repr=False)
+    B: FloatArray = field(repr=False)
+    states: tuple[str, ...] = field(repr=False)
+    inputs: tuple[str, ...] = field(repr=False)
+    second_order: SecondOrder | None = field(repr=False, default=None)
+
+    @property
+    def dt(self) -> float:
+        """Step, in time units."""
+        return self.law.dt
+
+    @cached_property
+    def _headings(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+        """Multipliers, vectors and errors of a map of headings; what rounding parts from 1 is 1."""
+        values, vectors, errors = eigen(self.A)
+        return np.where(np.abs(values - 1.0) <= errors, 1.0, values), vectors, errors
+
+    @property
+    def multipliers(self) -> ComplexArray:
+        """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
+        values = self._headings[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
+        ordered: ComplexArray = values[np.lexsort((values.imag, -np.abs(values)))]
+        return ordered
+
+    @property
+    def zero_modes(self) -> tuple[Mode, ...]:
+        """Motions whose multiplier is 1: translations, rotations, soft modes; of headings none is listed."""
+        return () if self.second_order is None else self.second_order.invariant.zero
+
+    @cached_property
+    def modes(self) -> tuple[MapMode, ...]:
+        """All other modes, slowest first; one for each real multiplier or conjugate pair."""
+        if self.second_order is None:
+            values, vectors, errors = self._headings
+            kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
+            found = [MapMode(complex(values[k]), vectors[:, k], "", self.dt, float(errors[k])) for k in kept]
+        else:
+            found = [
+                MapMode(
+                    1.0 + self.dt * mode.eigenvalue,
+                    mode.shape,
+                    "" if mode.name.isdigit() else mode.name,
+                    self.dt,
+                    self.dt * mode.error,
+                )
+                for mode in self.second_order.modes
+            ]
+        found.sort(key=lambda mode: mode.decay_per_step)
+        numbered = [(mode, mode.name or str(k)) for k, mode in enumerate(found, start=1)]
+        return tuple(MapMode(mode.multiplier, mode.shape, name, self.dt, mode.error) for mode, name in numbered)
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest |z| off the neutral motions; NaN without other modes."""
+        return 1.0 - self.modes[0].decay_per_step if self.modes else float("nan")
+
+    @property
+    def stable(self) -> bool:
+        """Return whether every mode off the neutral motions decays, beyond rounding; True without such modes."""
+        return all(mode.decays for mode in self.modes)
+
+    @cached_property
+    def state_space(self) -> control.StateSpace:
+        """Python-control system with this dt: a force on each agent to the centre and the deviations from it.
+
+        Of a map of headings: a turn of each to the headings.
+        """
+        import control
+
+        if self.second_order is None:
+            read, outputs = np.eye(len(self.A)), list(self.states)
+        else:
+            n, m = self.q.shape
+            unit = translations(n, m)
+            own = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T])
+            read = np.hstack([own, np.zeros_like(own)])
+            outputs = axes_of("qc", m) + labels("x", n, m)
+        return control.ss(
+            self.A,
+            self.B,
+            read,
+            np.zeros((len(read), self.B.shape[1])),
+            self.dt,
+            states=list(self.states),
+            inputs=list(self.inputs),
+            outputs=outputs,
+            name="map",
+        )
+
+
+def stepped_equation(
+    stiffness: Any, damping: Any, dt: float, factor: float, m: int, *, in_place: bool = False
+) -> tuple[Any, Any]:
+    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse.
+
+    Parameters
+    ----------
+    stiffness, damping : sparse array, shape (n m, n m)
+        K and D of the law that is stepped.
+    dt : float
+        Step h.
+    factor : float
+        f of q' = q + h p + f h² u.
+    m : int
+        Dimension.
+    in_place : bool
+        Agents move one after the other, and each sees those before it already moved.
+
+    Examples
+    --------
+    >>> from scipy.sparse import csr_array
+    >>> one = csr_array(np.array([[2.0]]))
+    >>> [part.toarray().tolist() for part in stepped_equation(one, one, 0.5, 1.0, 1)]
+    [[[2.0]], [[3.0]]]
+    """
+    k, d = stiffness.tocsr(), damping + factor * dt * stiffness
+    if not in_place:
+        return k, d
+    from scipy.sparse import csr_array, eye_array
+    from scipy.sparse.linalg import spsolve
+
+    before = _moved_before(k, m), _moved_before(damping, m)
+    mass = eye_array(k.shape[0]) + dt * before[1] + factor * dt * dt * before[0]
+    solved: Any = (spsolve(mass.tocsc(), part.tocsc()) for part in (k, d + dt * before[0]))
+    return tuple(csr_array(part) for part in solved)  # type: ignore[return-value]
+
+
+def _moved_before(matrix: Any, m: int) -> Any:
+    """Entries of a matrix that act on an agent with a smaller index."""
+    entries = matrix.tocoo(copy=True)
+    entries.data = np.where(entries.coords[1] // m < entries.coords[0] // m, entries.data, 0.0)
+    return entries.tocsr()
+
+
+def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
+    """Linearisation of a map q' = q + h p + f h² u, p' = p + h u from that of the law that it steps.
+
+    Parameters
+    ----------
+    law : DiscreteLaw
+        With `position_factor`.
+    flow : Linearisation
+        Of the continuous law.
+    """
+    q, (n, m), size = flow.q, flow.q.shape, flow.q.size
+    ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")
+    h, f = law.dt, float(law.position_factor or 0.0)
+    stiffness, damping = flow.stiffness, flow.damping
+    one, zero, known = np.eye(size), np.zeros((size, size)), flow.A[size:]
+    move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
+    if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
+        moved = -np.hstack([_moved_before(part, m).toarray() for part in (stiffness, damping)])
+        own = np.eye(2 * size) - push @ moved
+        a, b = (np.linalg.solve(own, part) for part in (move + push @ (known - moved), push))
+    else:
+        a, b = move + push @ known, push
+    equation = stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place)
+    names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
+    return MapLinearisation(
+        law, q, flow.p, flow.t, flow.residual, a, b, *names, SecondOrder(q, *equation, zero=flow.zero)
+    )
+
+
+def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
+    """Linearisation of a map of headings about parallel motion: its net then stays as it is.
+
+    Parameters
+    ----------
+    law : DiscreteLaw
+        With `averaging_matrix`.
+    q, p : ndarray, shape (n, 2)
+        Positions, and one velocity of all agents.
+    t : float
+        Time.
+
+    Raises
+    ------
+    ArgumentError
+        If velocities differ, or two agents are at the edge of each other's circle, where the map jumps.
+    """
+    if not p.any():
+        raise ArgumentError(f"{type(law).__name__} is a map of its own: expected the velocities p of a parallel motion")
+    law.check_start(q, p)
+    if law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is None:
+        raise ArgumentError(
+            f"{type(law).__name__} gives no derivatives: expected a map that steps a law, such as TaylorStep(...), or "
+            "one of headings"
+        )
+    heading = np.arctan2(p[:, 1], p[:, 0])
+    off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
+    if off > _PARALLEL:
+        raise ArgumentError(
+            f"headings differ by up to {off:.3g} radians: expected one velocity of all agents, with which the net stays"
+        )
+    matrix: FloatArray = law.averaging_matrix(q, heading).toarray()
+    n = len(q)
+    names = tuple(f"heading{i}" for i in range(n)), tuple(f"turn{i}" for i in range(n))
+    return MapLinearisation(law, q, p, t, off, matrix, np.eye(n), *names)

@@ -1,0 +1,369 @@
+"""Largest sampling period or step for which a flock near its equilibrium is stable.
+
+A sampled loop holds the input u for a period h. With K and D of the flow, q' = q + h p + f h² u, p' = p + h u, where
+f = ½ is the exact motion under a held input and the Taylor step, 0 explicit and 1 semi-implicit Euler, 3/2 the MSN
+project's map. With z = (1 + hs/2)/(1 − hs/2) the multipliers z lie in the unit disc where M s² + C s + K has its roots
+in the left half plane, M = 1 − hD/2 + (1 − 2f)h²K/4 and C = D − (1 − f)hK. For one mode that is
+
+    k > 0,  d > (1 − f) h k,  4 − 2hd + (1 − 2f)h²k > 0.
+
+For symmetric K and D that do not commute, M > 0 and C > 0 suffice, and a root leaves at z = −1 exactly where M is
+singular, so that for f >= 1 the margin is the least h with a singular M. Explicit Euler multiplies by 1 + hλ, so that
+its margin is the least −2 Re λ/|λ|². Else the margin lies between the bound and the first growth that a search meets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import inf, nan, sqrt
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_fits, ensure_known, ensure_nonnegative, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.equilibria.curvature import EPS
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.law import Law
+from flockana.stability.linearisation import Linearisation
+from flockana.stability.linearise import linearise
+from flockana.stability.maps import stepped_equation
+
+SCHEMES = {"hold": 0.5, "euler": 0.0, "semi-implicit": 1.0, "taylor": 0.5, "msn": 1.5, "msn-in-place": 1.5}
+CLOSE = 1e-6  # relative: a certified bound lies that close to the margin
+_COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
+_TRIALS = 24  # steps at which a search looks
+_NEAR, _FAR = 0.02, 4.0  # times the first guess: where a search begins and ends
+_MANY = 80  # coordinates: of more, only the mode that flips first is found
+_UNDAMPED = 1e-10  # of the largest damping rate
+
+
+@dataclass(frozen=True)
+class ModePeriod:
+    """Largest period for one mode.
+
+    Parameters
+    ----------
+    period : float
+        h at which the mode stops to decay; infinite if it always decays.
+    multiplier : complex
+        z there, on the unit circle: −1 where the mode changes sign at each sample.
+    shape : ndarray, shape (n, m)
+        Displacements, of unit length together.
+    """
+
+    period: float
+    multiplier: complex
+    shape: npt.NDArray[Any] = field(repr=False)
+
+    @property
+    def frequency(self) -> float:
+        """arg z/h, in radians per time unit, of the oscillation that neither grows nor decays there."""
+        return abs(float(np.angle(self.multiplier))) / self.period if 0.0 < self.period < inf else nan
+
+
+@dataclass(frozen=True)
+class SamplingMargin:
+    """Largest period for which the sampled flock is stable, and the mode that goes first.
+
+    Parameters
+    ----------
+    scheme : str
+        Name of the scheme.
+    period : float
+        Margin: below it, and above `least`, no growth was found; beyond it one mode grows. 0 if none is stable.
+    least : float
+        Certified: every shorter period is stable. By default the margin itself.
+    modes : tuple of ModePeriod
+        Modes with their periods, the first to go first. In closed form where K and D commute; else those that flip (of
+        explicit Euler all), and the one that goes first.
+
+    Examples
+    --------
+    >>> SamplingMargin("hold", 0.2, 0.2, ()).times(0.05), SamplingMargin("hold", 0.2, 0.1, ()).certified
+    (4.0, False)
+    """
+
+    scheme: str
+    period: float
+    least: float
+    modes: tuple[ModePeriod, ...] = field(repr=False)
+
+    @property
+    def certified(self) -> bool:
+        """Return whether the margin is known to a millionth; else it is at most `period`."""
+        return self.least >= (1.0 - CLOSE) * self.period
+
+    @property
+    def first(self) -> ModePeriod | None:
+        """Mode that goes first; None if there is none."""
+        return self.modes[0] if self.modes else None
+
+    def times(self, dt: float) -> float:
+        """Return how many times the step `dt` the margin is; above 1 the sampled flock is stable.
+
+        Parameters
+        ----------
+        dt : float
+            Step in use.
+        """
+        return self.period / ensure_positive("dt", dt)
+
+
+def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, complex]:
+    """(largest period, multiplier there) of x'' = −k x − d x', sampled with `factor` (see the module), in closed form.
+
+    A damper alone, k = 0, keeps the multiplier 1 of its place, which is neutral.
+
+    Parameters
+    ----------
+    k, d : float
+        Stiffness and damping, both >= 0.
+    factor : float
+        f of q' = q + h p + f h² u.
+
+    Examples
+    --------
+    A mass with a spring under a held input needs damping, and bears h < 2d/k if it is weak:
+
+    >>> scalar_period(4.0, 0.1)[0], scalar_period(4.0, 0.0)[0], scalar_period(0.0, 4.0)
+    (0.05, 0.0, (0.5, (-1+0j)))
+
+    Semi-implicit Euler bears a damped swing up to nearly h = 2/ω:
+
+    >>> round(scalar_period(4.0, 1e-9, 1.0)[0], 8)
+    1.0
+    """
+    k, d = ensure_nonnegative("k", k), ensure_nonnegative("d", d)
+    flip = _flip(k, d, factor)
+    if k == 0.0:
+        return (flip, -1.0 + 0.0j) if d > 0.0 else (0.0, 1.0 + 0.0j)
+    if factor >= 1.0:
+        return (flip, -1.0 + 0.0j) if d > 0.0 or factor > 1.0 else (0.0, 1.0 + 0.0j)
+    turn = d / ((1.0 - factor) * k)
+    if flip <= turn:
+        return flip, -1.0 + 0.0j
+    half = 1.0 - 0.5 * turn * (d + factor * turn * k)  # cos of the angle: half the trace, of determinant 1
+    return turn, complex(half, sqrt(max(0.0, 1.0 - half * half)))
+
+
+def _flip(k: float, d: float, factor: float) -> float:
+    """Least h > 0 with 4 − 2hd + (1 − 2f)h²k = 0, infinite if there is none."""
+    a, square = (1.0 - 2.0 * factor) * k, d * d - 4.0 * (1.0 - 2.0 * factor) * k
+    if square < 0.0 or d + sqrt(square) <= 0.0:
+        return inf
+    return 4.0 / (d + sqrt(square)) if a != 0.0 or d > 0.0 else inf
+
+
+def sampling_margin(
+    law: Any, equilibrium: Any, p: Any = None, *, scheme: str | None = None, t: float = 0.0
+) -> SamplingMargin:
+    """Return the largest sampling period, or step of a scheme, for which a flock is stable near its equilibrium.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        A continuous law; of a map, the law that it steps, and its own scheme.
+    equilibrium, p, t
+        As in `linearise`.
+    scheme : {"hold", "euler", "semi-implicit", "taylor", "msn", "msn-in-place"}
+        Zero-order hold (the default) or a scheme; a hold and the Taylor step are the same map.
+
+    Raises
+    ------
+    ArgumentError
+        On a map that steps no law, an unknown scheme, or what `linearise` refuses.
+
+    Examples
+    --------
+    One agent at its γ-agent, c1γ = 4 and c2γ = 1, is held stable for periods below 2 c2γ/c1γ:
+
+    >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.interactions import Gains
+    >>> from flockana.laws.olfati_saber import Algorithm2
+    >>> one = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
+    >>> sampling_margin(one, [[0.0]]).period, sampling_margin(one, [[0.0]], scheme="euler").period
+    (0.5, 0.25)
+    """
+    if isinstance(law, DiscreteLaw):
+        if law.continuous is None or law.position_factor is None:
+            raise ArgumentError(f"law = {law!r}: expected a continuous law, or a map that steps one")
+        if scheme is not None:
+            raise ArgumentError(f"scheme = {scheme!r}: {type(law).__name__} brings its own; expected none, or its law")
+        name, factor, in_place = type(law).__name__, law.position_factor, law.in_place
+        law = law.continuous
+    else:
+        name = "hold" if scheme is None else scheme
+        ensure_known("scheme", name, tuple(SCHEMES))
+        factor, in_place = SCHEMES[name], name == "msn-in-place"
+    if not isinstance(law, Law):
+        raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(...)")
+    flow = linearise(law, equilibrium, p, t=t)
+    ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
+    return _margin(name, flow, factor, in_place=in_place)
+
+
+def _margin(name: str, flow: Linearisation, factor: float, *, in_place: bool) -> SamplingMargin:
+    k, d = flow.stiffness.toarray(), flow.damping.toarray()
+    symmetric, shape = flow.second_order.symmetric, flow.q.shape
+    if factor == 0.0 and not in_place:
+        found = _explicit(flow)
+    elif symmetric and not in_place:
+        found = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
+    else:
+        guess = _guess(k, d, factor)
+        found = 0.0, [*_searched(flow, factor, guess * _NEAR, guess * _FAR, in_place=in_place)]
+    least, modes = found
+    modes = sorted(modes, key=lambda mode: mode.period)
+    period = modes[0].period if modes else inf
+    kept = (ModePeriod(x.period, x.multiplier, np.reshape(x.shape, shape)) for x in modes)
+    return SamplingMargin(name, period, min(least, period), tuple(kept))
+
+
+def _explicit(flow: Linearisation) -> tuple[float, list[ModePeriod]]:
+    """Margins of explicit Euler by eigenvalue: |1 + hλ| < 1 for h < −2 Re λ/|λ|²."""
+    modes = []
+    for mode in flow.modes:
+        value = mode.eigenvalue
+        period = max(0.0, -2.0 * value.real / abs(value) ** 2) if mode.decays else 0.0
+        modes.append(ModePeriod(period, 1.0 + period * value, mode.shape))
+    return inf, modes
+
+
+def _symmetric(flow: Linearisation, k: FloatArray, d: FloatArray, factor: float) -> tuple[float, list[ModePeriod]]:
+    """(certified bound, modes) of symmetric K and D, rigid motions that nothing holds or damps set apart."""
+    scale = float(np.abs(k).max() * np.abs(d).max())
+    if scale == 0.0 or np.abs(k @ d - d @ k).max() <= _COMMUTE * scale:
+        return inf, _modal(k, d, factor)
+    if not flow.stable and factor <= 1.0:
+        return 0.0, [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
+    flips = _flips(k, d, factor)
+    flip = min((mode.period for mode in flips), default=inf)
+    if factor >= 1.0:
+        return inf, flips
+    turn = _least_damped(k, d) / (1.0 - factor)
+    least = min(turn, flip)
+    if flip <= turn:
+        return least, flips
+    return least, [*_searched(flow, factor, least, flip), *flips]
+
+
+def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
+    """Each mode in closed form, where K and D have their modes in common."""
+    sizes = [float(np.abs(x).max()) or 1.0 for x in (k, d)]
+    shapes = np.linalg.eigh(k / sizes[0] + sqrt(2.0) * d / sizes[1])[1]
+    rows = []
+    for v in shapes.T:
+        stiff, drag = (
+            0.0 if abs(x) <= _UNDAMPED * size else x for x, size in zip((v @ k @ v, v @ d @ v), sizes, strict=True)
+        )
+        if stiff < 0.0 or drag < 0.0:
+            rows.append(ModePeriod(0.0, 1.0 + 0.0j, v))
+        elif stiff > 0.0 or drag > 0.0:
+            rows.append(ModePeriod(*scalar_period(stiff, drag, factor), v))
+    return rows
+
+
+def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
+    """Periods at which M is singular: 4 − 2hD + (1 − 2f)h²K, by the eigenvalues 1/h of a linear problem.
+
+    For f >= ½ the first of many coordinates alone is found, where the least eigenvalue of M, which falls, is 0.
+    """
+    size, a = len(k), (1.0 - 2.0 * factor)
+    if a == 0.0:
+        values, vectors = np.linalg.eigh(0.5 * d)
+    elif size > _MANY and a < 0.0:
+        return [_first_flip(k, d, factor)]
+    else:
+        companion = np.block([[np.zeros_like(k), np.eye(size)], [-0.25 * a * k, 0.5 * d]])
+        values, vectors = np.linalg.eig(companion)
+        real = np.abs(values.imag) <= sqrt(EPS) * np.abs(values)
+        values, vectors = values.real[real], vectors.real[:size, real]
+    kept = values > _UNDAMPED * float(np.abs(values).max(initial=0.0))
+    found = zip(1.0 / values[kept], (vectors / np.linalg.norm(vectors, axis=0)).T[kept], strict=True)
+    return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in found]
+
+
+def _first_flip(k: FloatArray, d: FloatArray, factor: float) -> ModePeriod:
+    from scipy.optimize import brentq
+
+    def matrix(h: float) -> FloatArray:
+        return np.eye(len(k)) - 0.5 * h * d + 0.25 * (1.0 - 2.0 * factor) * h * h * k
+
+    low = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), factor)  # no mode flips before
+    high = low
+    while np.linalg.eigvalsh(matrix(high))[0] > 0.0:
+        high *= 2.0
+    h = float(brentq(lambda h: float(np.linalg.eigvalsh(matrix(h))[0]), 0.5 * low, high, xtol=1e-15 * high, rtol=1e-14))
+    return ModePeriod(h, -1.0 + 0.0j, np.linalg.eigh(matrix(h))[1][:, 0])
+
+
+def _least_damped(k: FloatArray, d: FloatArray) -> float:
+    """Largest h for which D − hK is positive definite on what K holds; 0 if D is not."""
+    values, vectors = np.linalg.eigh(k)
+    held = vectors[:, values > 1e-8 * float(np.abs(values).max())]
+    free = vectors[:, values <= 1e-8 * float(np.abs(values).max())]
+    inner = d
+    if free.shape[1]:  # what K does not hold may give way: the Schur complement
+        drag = free.T @ d @ free
+        inner = d - d @ free @ np.linalg.pinv(drag, rcond=1e-10, hermitian=True) @ free.T @ d
+    stiff = np.linalg.eigvalsh(k)[-held.shape[1] :] if held.size else np.zeros(0)
+    half = held / np.sqrt(stiff) if held.size else held
+    return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held.size else inf
+
+
+def _guess(k: FloatArray, d: FloatArray, factor: float) -> float:
+    """Length of step that the norms of K and D would bear."""
+    flip = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), max(factor, 1.0))
+    return flip if flip < inf else 1.0
+
+
+def _searched(
+    flow: Linearisation, factor: float, low: float, high: float, *, in_place: bool = False
+) -> list[ModePeriod]:
+    """First growth that a search meets from a stable step on, located by halving."""
+    if low <= 0.0:
+        return [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
+    zero = flow.second_order.invariant
+    neutral = len(zero.zero) + zero.chains
+
+    def radius(h: float) -> float:
+        """Return the largest |z| off the neutral motions, whose w are the smallest."""
+        k, d = _stepped(flow, h, factor, in_place=in_place)
+        values = np.linalg.eigvals(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
+        return float(np.abs(1.0 + h * values[np.argsort(np.abs(values))[neutral:]]).max())
+
+    before = (1.0 + CLOSE) * low
+    if radius(before) > 1.0:  # the bound is the margin
+        return [_leaving(flow, low, factor, in_place=in_place)]
+    for h in np.geomspace(before, max(high, 2.0 * low), _TRIALS)[1:].tolist():
+        if radius(h) > 1.0:
+            return [_leaving(flow, _halved(radius, before, h), factor, in_place=in_place)]
+        before = h
+    return []
+
+
+def _halved(radius: Callable[[float], float], low: float, high: float) -> float:
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda h: radius(h) - 1.0, low, high, xtol=1e-12 * high, rtol=1e-12))
+
+
+def _stepped(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> tuple[FloatArray, FloatArray]:
+    """K and D of the equation of w = (z − 1)/h, dense."""
+    parts = stepped_equation(flow.stiffness, flow.damping, h, factor, flow.q.shape[1], in_place=in_place)
+    return parts[0].toarray(), parts[1].toarray()
+
+
+def _leaving(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> ModePeriod:
+    """Mode on the unit circle at a step."""
+    k, d = _stepped(flow, h, factor, in_place=in_place)
+    values, vectors = np.linalg.eig(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
+    zero = flow.second_order.invariant
+    moving = np.argsort(np.abs(values), kind="stable")[len(zero.zero) + zero.chains :]
+    z = 1.0 + h * values[moving]
+    worst = int(np.argmax(np.abs(z) + EPS * z.imag))
+    shape = vectors[: len(k), moving[worst]]
+    return ModePeriod(h, complex(z[worst] / abs(z[worst])), shape / np.linalg.norm(shape))

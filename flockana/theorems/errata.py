@@ -1,0 +1,121 @@
+"""Errata of the sources: what each prints and what is right, with the status of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal, get_args
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+
+Sort = Literal["wrong", "incomplete", "vacuous", "confirmed"]
+
+SORTS: dict[Sort, str] = {
+    "wrong": "false as printed",
+    "incomplete": "true with a hypothesis that is missing",
+    "vacuous": "true of nothing, or of next to nothing",
+    "confirmed": "looked into, and true as printed",
+}
+# whose errata they are
+FOREWORD = (
+    "E1 to E16 are of lecture slides and of student projects on Olfati-Saber's paper of 2006; of none is it shown that "
+    "the paper has it, and where that was not looked up, the table says so. The others are of the papers named."
+)
+_COLUMNS = 9
+_MARKS = {"verified": "✓", "refuted": "✗", "": "·"}
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """A statement that a source prints, and the right one.
+
+    Examples
+    --------
+    >>> print(Erratum("E0", "slides", "p. 1", "1 = 2", ("one", "refuted"), "1 = 1", ("all", "verified"), "wrong", "no"))
+    E0 · slides: 1 = 2 ✗ · right: 1 = 1 ✓
+    """
+
+    id: str  # of the theorem that checks it; a misprint that was only read has none of its name
+    printer: str  # who prints it
+    where: str
+    printed: str
+    claim: tuple[str, str]  # name and status of the claim that is the printed statement; empty of what was only read
+    right: str
+    right_claim: tuple[str, str]  # the same of the right statement
+    sort: Sort
+    in_paper: str  # whether the paper that the source presents is known to have it
+
+    def __post_init__(self) -> None:
+        if self.sort not in get_args(Sort):
+            raise ArgumentError(f"erratum {self.id}: sort = {self.sort!r}, expected one of {', '.join(get_args(Sort))}")
+
+    @property
+    def mark(self) -> str:
+        """✗ of what is printed and false, ✓ of what is true, · of what was only read."""
+        return _MARKS[self.claim[1]]
+
+    @property
+    def right_mark(self) -> str:
+        """The same of what is right."""
+        return _MARKS[self.right_claim[1]]
+
+    def __str__(self) -> str:
+        return f"{self.id} · {self.printer}: {self.printed} {self.mark} · right: {self.right} {self.right_mark}"
+
+
+@cache
+def errata() -> tuple[Erratum, ...]:
+    """Return all errata of the sources, from the table beside this module.
+
+    Examples
+    --------
+    >>> print(errata()[0])
+    E1 · slides: H = V + Σ‖p_i‖² falls ✗ · right: V + ½ Σ‖p_i‖² falls ✓
+    >>> {item.id for item in errata() if item.sort == "confirmed"} >= {"J14", "J17", "J18", "L6"}
+    True
+    """
+    _, *lines = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8").splitlines()
+    return tuple(_erratum(line) for line in lines)
+
+
+def _erratum(line: str) -> Erratum:
+    cells = [cell.strip() for cell in line.split("|")]
+    if len(cells) != _COLUMNS:
+        raise ArgumentError(f"{cells[0]}: {len(cells)} columns, expected {_COLUMNS}")
+    name, printer, where, printed, is_, right, right_is, sort, in_paper = cells
+    return Erratum(name, printer, where, printed, _claim(is_), right, _claim(right_is), sort, in_paper)  # type: ignore[arg-type]  # checked by itself
+
+
+def _claim(text: str) -> tuple[str, str]:
+    name, _, status = text.partition(": ")
+    return name, status
+
+
+def erratum_of(theorem: str) -> Erratum | None:
+    """Return the erratum that a theorem checks, if it checks one.
+
+    Parameters
+    ----------
+    theorem : str
+        Its id.
+    """
+    return next((item for item in errata() if item.id == theorem), None)
+
+
+def printed(theorem: str) -> str:
+    """Return what a source prints, which is the title of the theorem that checks it.
+
+    Parameters
+    ----------
+    theorem : str
+        Id of an erratum.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none.
+    """
+    if (item := erratum_of(theorem)) is None:
+        raise UnknownNameError("erratum", theorem, [item.id for item in errata()])
+    return f"{item.printed[:1].upper()}{item.printed[1:]} (as printed)"

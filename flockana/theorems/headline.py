@@ -1,0 +1,66 @@
+"""The status of a verdict with counts, in one line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from flockana.theorems.theorem import Claim, Verdict
+
+# whose a claim is, in words
+BYLINES: Mapping[str, str] = {"source": "the source's", "corrected": "corrected", "flockana": "our extension"}
+_SHORT = 60  # characters of a statement that is quoted; a longer one is named
+
+
+def headline(verdict: Verdict) -> str:
+    """Return the counts of the author's claims by status, then each correction and extension with its status.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On any case.
+    """
+    by_author = _counts(verdict, verdict.main_claims)
+    others = sorted(verdict.further_claims, key=lambda claim: claim.by)
+    return "; ".join(
+        [by_author, *(f"{BYLINES[by]}: {_listed(group)}" for by, group in groupby(others, lambda c: c.by))]
+    )
+
+
+def _counts(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
+    """The count of the deciding status out of all, then the others."""
+    if not claims:
+        return "no claim"
+    order = dict.fromkeys((verdict.status, "refuted", "inconclusive", "verified", "vacuous"))
+    found = {status: sum(claim.status == status for claim in claims) for status in order}
+    texts = [
+        f"{count}{f' of {len(claims)}' if status == verdict.status else ''} {status}"
+        for status, count in found.items()
+        if count
+    ]
+    return ", ".join(texts) + (_reason(verdict, claims) if found["vacuous"] else "")
+
+
+def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
+    """Why claims are vacuous: the first hypothesis that does not hold, or what the claim says itself."""
+    silent = [claim for claim in claims if claim.status == "vacuous"]
+    needs = [need for claim in silent for need in (*claim.needs, *verdict.hypotheses) if need.status == "unmet"]
+    if not needs:
+        return f": {silent[0].detail}" if silent[0].detail else ""
+    name = needs[0].name
+    return f": {name if re.search('[<>=≤≥]', name) else repr(name)} does not hold"
+
+
+def _listed(claims: Iterable[Claim]) -> str:
+    """Each claim in short with its status; vacuous ones only where all are."""
+    given = tuple(claims)
+    told = [claim for claim in given if claim.status != "vacuous"] or list(given[:1])
+    return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in told))
+
+
+def _short(claim: Claim) -> str:
+    """What a claim states where that is short, else its name."""
+    return claim.stated if isinstance(claim.stated, str) and len(claim.stated) <= _SHORT else claim.name

@@ -1,0 +1,214 @@
+"""Theorems 1 and 3 for every pair potential that has what their proofs use; that of the paper is a special case.
+
+They ask for a potential that is C¹ up to its range and at least L, and an adjacency that is nowhere negative. All is
+said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+
+from flockana.equilibria.gradient_flow import structural_force
+from flockana.interactions import AlphaInteraction
+from flockana.lattice import harborth
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
+from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import (
+    by_fact,
+    condition,
+    law_with_common_gains,
+    positive,
+    smooth_pair,
+    weight_nonnegative,
+)
+from flockana.theorems.limits import limit_claim
+from flockana.theorems.meeting import above_least, least_is_known, meeting
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.collisions import (
+    below_multiple,
+    energy_at_end,
+    energy_at_start,
+    no_collision,
+    pairs_at_one_instant,
+)
+from flockana.theorems.sampling import nets_at, radius_over
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+
+PROOF, LIMITS = "any-potential", "any-potential-limits"
+_ROUNDING = 1e-12  # of a potential
+_PARTS = 4  # of the range, on which slopes are bounded
+
+
+def is_paper(seen: Observed) -> bool:
+    """Return whether the pair law is that of the paper, of which everything is proved."""
+    return isinstance(seen.law.alpha, AlphaInteraction)
+
+
+def potential_needs(seen: Observed) -> list[Hypothesis]:
+    """Return what the theorems ask of a pair potential and its adjacency, as far as it is not proved."""
+    low = meeting(seen).floor > -inf
+    needs = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
+    return [need for need in [*needs, *least_is_known(seen)] if need.status != "met"]
+
+
+def weight_inside(seen: Observed) -> list[Hypothesis]:
+    """Return the hypothesis that all pairs in range match velocities, unless it is proved."""
+    inside = by_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
+    return [inside] if inside.status != "met" else []
+
+
+def bounded_at_contact(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
+    """Return the hypothesis that forces and weights are bounded where pairs come, unless it is known to hold."""
+    if apart.status == "met" or is_paper(seen):
+        return []
+    slopes = seen.law.alpha.slopes(_PARTS)
+    if all(np.isfinite([part.force, part.adjacency]).all() for part in slopes):
+        return []
+    name = "force and adjacency are bounded at contact, or no two agents meet"
+    return [Hypothesis(name, "assumed", detail="no bound of their slopes near contact is known")]
+
+
+def continuous_force(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
+    """Return the hypothesis that forces are continuous where pairs come, unless it is known to hold."""
+    if apart.status == "met" or seen.law.alpha.coincidence:
+        return []
+    return [Hypothesis("no two agents meet", "assumed", detail="their force has no limit where they do")]
+
+
+def never_meets(seen: Observed) -> Hypothesis:
+    """Return the hypothesis that the energy at the start keeps all pairs apart, E(0) < c*."""
+    energy = seen.energy[0] if isinstance(seen.law, Algorithm2) else energy_at_start(seen)
+    return below_multiple(above_least(seen, energy), meeting(seen).c_star)
+
+
+def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
+    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away.
+
+    ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
+    """
+    pairs, far = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
+    if n > 1 and not isinstance(law.alpha, AlphaInteraction):
+        return far * pairs
+    if n < 2 or paper_pair(law).kappa >= (2.0 if m == 1 else sqrt(3.0)):
+        return inf
+    return far * (pairs - (n - 2 if m == 1 else harborth(n - 1)))
+
+
+def parting_energy(seen: Observed) -> float:
+    """Least E of a disconnected state that is known: each of n − 1 pairs out of range has ψ(r) − L."""
+    pair = seen.law.alpha
+    least = 0.0 if is_paper(seen) else pair.facts.least[0]
+    room = pair.far_potential - least
+    error = _ROUNDING * (abs(pair.far_potential) + abs(least)) if np.isfinite(room) else 0.0
+    known = seen.law.gains.c1_alpha * (room - error) if room > error else 0.0
+    return (seen.n - 1) * known if seen.n > 1 else inf
+
+
+def stays_together(seen: Observed) -> Hypothesis:
+    """The hypothesis on all solutions from Ω_c: too little energy to part meets it, a disconnected state breaks it."""
+    parts = nets_at(seen).components_least
+    worst = int(np.argmax(parts))
+    name = "every solution from Ω_c is a cohesive dynamic flock"
+    if parts[worst] > 1:
+        detail = f"this run is no flock at t = {seen.t[worst]:.4g}, where it has {int(parts[worst])} components"
+        return Hypothesis(name, "unmet", 1.0 - float(parts[worst]), detail)
+    energy, apart = energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
+    if energy.lo >= apart:
+        detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
+        return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
+    parted, of = parting_energy(seen), "ψ_α(r_α)" if is_paper(seen) else "(ψ(r) - L)"
+    what = "H" if is_paper(seen) else "E"
+    for t, height in ((seen.t[0], energy), (seen.t[-1], energy_at_end(seen))):
+        if (height := above_least(seen, height)).hi < parted:  # limits are those of the start at that time
+            detail = f"at t = {t:.4g} {what} = {height.mid:.5g}: a disconnected state has (n-1) c1α {of} = {parted:.5g}"
+            return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
+    return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
+
+
+def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
+    """Claim R below an explicit bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0), between samples too."""
+    c1_gamma, above = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
+    bound = (2.0 * above / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
+    text = "sqrt(2 H_λ(0)/c1γ)" if is_paper(seen) else "sqrt(2 E(0)/c1γ)"
+    return _within(seen, bound, needs, name, text, proof)
+
+
+def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
+    """Claim that R stays below a bound."""
+    worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
+    return judged(
+        name,
+        bound - radius_over(seen).max(),
+        needs,
+        computed=largest,
+        stated=f"R <= {text} = {bound.mid:.5g}",
+        witness={"time": float(seen.t[worst])},
+        proof=proof,
+        detail=f"cohesive: R <= {largest:.4g}, and {'r' if text.endswith('r') else 'H_λ(0)'} allows {bound.mid:.4g}",
+    )
+
+
+def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
+    """Claim that forces tend to 0: the flock tends to the critical points of its potential."""
+    first, last = (float(np.linalg.norm(structural_force(seen.law, q), axis=1).max()) for q in seen.run.q[[0, -1]])
+    return limit_claim(
+        name,
+        needs,
+        computed=last,
+        stated="the largest force on an agent at rest -> 0",
+        witness={"time": float(seen.t[-1])},
+        proof=LIMITS,
+        detail=f"the largest force goes from {first:.3g} to {last:.3g} at t = {seen.t[-1]:g}",
+    )
+
+
+def _needs(seen: Observed) -> list[Hypothesis]:
+    """Return the theorem's hypotheses on gains, potential and net."""
+    if isinstance(seen.law, Algorithm2):
+        return [positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), *potential_needs(seen)]
+    gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
+    needs = [*gains, *weight_inside(seen), *potential_needs(seen)]
+    return needs if unmet(needs) else [*needs, stays_together(seen)]
+
+
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    needs = _needs(seen)
+    if unmet(needs):
+        return needs, []
+    apart, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
+    bounded, steady = bounded_at_contact(seen, apart), continuous_force(seen, apart)
+    if isinstance(seen.law, Algorithm2):
+        cohesion = cohesive(seen, needs, name="cohesion")
+    else:
+        reach = Enclosure.around(0.5 * (seen.n - 1) * seen.law.alpha.range, 0.0)
+        cohesion = _within(seen, reach, needs, "cohesion", "½ (n - 1) r", PROOF)
+    return [*needs, *bounded, *steady, apart], [
+        cohesion,
+        velocities_match(seen, [*needs, *bounded], name="velocities", proof=LIMITS),
+        critical(seen, [*needs, *bounded, *steady], name="critical"),
+        pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF),
+        no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
+    ]
+
+
+THEOREM = Theorem(
+    id="any-potential",
+    title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
+    statement=(
+        "Let ψ be C¹ on (0, r], constant from r on and at least L, a_ij >= 0, and E = H - c1α L n(n-1)/2. Under "
+        "Algorithm 2 with c1γ, c2γ > 0 R <= sqrt(2 E(0)/c1γ), velocities match, and forces tend to 0. So they do under "
+        "Algorithm 1 with c1α, c2α > 0, a_ij > 0 below r, in a flock that stays connected, as it does if E(0) < "
+        "(n-1) c1α (ψ(r) - L). At most E/c* pairs coincide at one time, c* = c1α (ψ(0) - L), and none ever do if E(0) "
+        "< c*, as where ψ is unbounded at contact."
+    ),
+    source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
+    kind="trajectory",
+    law=law_with_common_gains("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True),
+    check=_check,
+    claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
+    references=("olfati-saber-2006", "flockana"),
+)

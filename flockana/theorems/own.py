@@ -1,0 +1,65 @@
+"""A claim of the user's own, from a function that says how far a run fulfils it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from flockana.base.errors import ArgumentError, format_value
+from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems.claims import judged
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed, by_both_runs
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+
+def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = "") -> Theorem:
+    """Return a theorem with one claim: that a margin is not negative at any sample of a run.
+
+    The margin's numerical error is its difference between the run and a second, tighter one.
+
+    Parameters
+    ----------
+    name : str
+        Name of the claim, and id of the theorem.
+    margin : callable
+        ``margin(run)``: a number, or one for each sample; at least 0 where the claim holds.
+    statement : str
+        The claim in words.
+
+    Raises
+    ------
+    ArgumentError
+        On a name that is no text or a margin that is no function; when it is checked, on a margin that is no number.
+
+    Examples
+    --------
+    >>> from flockana import Algorithm1, verify
+    >>> slow = claim("slow", lambda run: 10.0 - np.linalg.norm(run.p, axis=2).max(axis=1))
+    >>> verify(slow, law=Algorithm1(), q0=[[0.0], [8.0]], t_span=(0, 1)).status
+    'verified'
+    """
+    if not isinstance(name, str) or not name or not callable(margin):
+        given = f"{format_value(name)}, {format_value(margin)}"
+        raise ArgumentError(f"claim({given}): expected a name and a function of a run")
+
+    def of_run(run: Trajectory) -> Claim:
+        given = margin(run)
+        try:
+            values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+        except (TypeError, ValueError):
+            values = np.array([np.nan])
+        if values.size == 0 or np.isnan(values).any():
+            shown = format_value(given)
+            raise ArgumentError(f"the margin of {name!r} is {shown}: expected a number, or one for each sample")
+        k = int(np.argmin(values))
+        at = f"at t = {run.t[k]:.4g}, of {len(run.t)} samples" if values.size == len(run.t) else "of the run"
+        detail = f"{statement or name}: margin {values.flat[k]:.4g} {at}"
+        return judged(name, Enclosure.around(float(values.flat[k]), 0.0), detail=detail)
+
+    def check(seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
+        return [], [by_both_runs(seen, of_run)]
+
+    return Theorem(name, statement or name, statement or name, "own claim", "trajectory", check, references=())

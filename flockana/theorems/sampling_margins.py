@@ -1,0 +1,116 @@
+"""Distance of the sources' time steps from instability."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from flockana.base.checks import FloatArray
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria.solve import find_equilibrium
+from flockana.interactions import AlphaInteraction, Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.minimal import MinimalFlocking
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.taylor_step import TaylorStep
+from flockana.stability.linearise import linearise
+from flockana.stability.sampling import CLOSE, sampling_margin
+from flockana.theorems.claims import spectral
+from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
+
+_MSN = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
+_MSN_GAINS = Gains(c1_alpha=100.0, c2_alpha=20.0, c1_gamma=70.0, c2_gamma=2.0 * 70.0**0.5)
+_NOTEBOOK_1 = AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
+_NOTEBOOK_2 = AlphaInteraction(d=1.7, r=2.5, eps=0.01, h=0.2, a=7.0, b=15.0)
+_UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.0, c2_gamma=0.5)
+_TREE = ((0, 1), (1, 2), (1, 3))
+
+
+@dataclass(frozen=True)
+class Step:
+    """A source's map at an equilibrium of its law."""
+
+    name: str  # of the claim
+    words: str  # whose step, of how many agents
+    law: DiscreteLaw  # the map
+    q: FloatArray  # equilibrium, or where to look for one
+
+
+def sources_steps() -> tuple[Step, ...]:
+    """Return the sources' maps with the equilibria at which they are looked at.
+
+    Examples
+    --------
+    >>> [(step.name, step.law.dt) for step in sources_steps()][:2]
+    [('msn-few', 0.009), ('msn-few-in-place', 0.009)]
+    """
+    rest = StaticTarget((0.0, 0.0))
+    msn = Algorithm2(_MSN, _MSN_GAINS, rest)
+    at_once = MSNDiscretisation(msn, 0.009, in_place=False)
+    first, second = Algorithm1(_NOTEBOOK_1, _UNIT), Algorithm2(_NOTEBOOK_2, _UNIT, rest)
+    tree = MinimalFlocking(edges=_TREE, spacing=2.0)
+    few, many, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
+    return (
+        Step("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
+        Step("msn-few-in-place", "the same agent by agent in place", MSNDiscretisation(msn, 0.009), few),
+        Step("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
+        Step("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
+        Step("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
+        Step(
+            "minimal",
+            "bearing-distance paper, minimal model on a tree of 4",
+            tree.discrete(0.1),
+            2.0 * hexagonal_spiral(4, 1.0)[[1, 0, 2, 3]],
+        ),
+    )
+
+
+def _check(tolerances: Tolerances) -> Checked:
+    return [], [_claim(step) for step in sources_steps()]
+
+
+def _claim(step: Step) -> Claim:
+    """Compare the step with the margin; where that is but an upper bound, judge the multipliers at the step."""
+    law: Any = step.law.continuous
+    rest = step.q if isinstance(law, MinimalFlocking) else find_equilibrium(law, step.q).q
+    found, dt = sampling_margin(step.law, rest), step.law.dt
+    if found.certified:
+        margin, error = found.times(dt) - 1.0, CLOSE
+    else:
+        worst = linearise(step.law, rest).modes[0]
+        margin, error = worst.decay_per_step, worst.error
+    return spectral(
+        step.name,
+        margin,
+        error,
+        computed={"n": len(rest), "dt": dt, "margin": found.period, "margin over dt": found.times(dt)},
+        stated=f"at dt = {dt:g} every mode of the flock at its equilibrium decays",
+        witness={"lost at z": str(found.first and found.first.multiplier)},
+        detail=f"{step.words}: dt = {dt:g}, stable up to {found.period:.4g}, {found.times(dt):.3g} times dt",
+    )
+
+
+THEOREM = Theorem(
+    id="sampling-margins",
+    title="How far from instability the sources' time steps are",
+    statement=(
+        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, the "
+        "map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN project's "
+        "0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly for the step; "
+        "the R² notebook's 0.05 is half of what is stable, and its 0.1 all but all of it."
+    ),
+    source="ours, on the steps of the MSN project, the R² notebook and the bearing-distance paper",
+    kind="fixed",
+    check=_check,
+    references=("isola-2024", "notebook-r2", "jond-2025"),
+    expected={
+        "sampling-margins:msn-few": "verified",
+        "sampling-margins:msn-few-in-place": "verified",
+        "sampling-margins:msn": "refuted",
+        "sampling-margins:notebook-1": "verified",
+        "sampling-margins:notebook-2": "verified",
+        "sampling-margins:minimal": "verified",
+    },
+)

@@ -1,0 +1,125 @@
+"""All theorems about a law at once: which they are, and their verdicts on a run in one table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flockana.base.progress import progress_bar
+from flockana.base.tables import MARKS, html_table, latex_table, tex
+from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems.catalogue import catalogue, theorem, verify
+from flockana.theorems.observed import Observed
+from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
+
+
+class Verdicts(tuple[Verdict, ...]):
+    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook.
+
+    Examples
+    --------
+    >>> print(Verdicts([verify("E8")]))
+    theorem  status     rigour  decided by  title
+    E8       ✗ refuted  smt     printed     Connectivity is the rank of the Laplacian
+    """
+
+    __slots__ = ()
+
+    def rows(self) -> list[tuple[str, str, str, str, str]]:
+        """Return (theorem, status, rigour, name of the deciding claim, title) of each verdict."""
+        return [(v.theorem, v.status, v.rigour, _deciding(v), _title(v.theorem)) for v in self]
+
+    def __str__(self) -> str:
+        rows = [("theorem", "status", "rigour", "decided by", "title")]
+        rows += [(name, f"{MARKS[status]} {status}", *rest) for name, status, *rest in self.rows()]  # type: ignore[misc]
+        widths = [max(len(row[k]) for row in rows) for k in range(4)]
+        return "\n".join("  ".join((*(c.ljust(w) for c, w in zip(row, widths, strict=False)), row[4])) for row in rows)
+
+    def __repr__(self) -> str:
+        return f"<Verdicts on {len(self)} theorems: {', '.join(f'{v.theorem} {v.status}' for v in self)}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(self.rows(), ("theorem", "status", "rigour", "decided by", "title"))
+
+    def to_latex(self) -> str:
+        """Return the table as a LaTeX ``tabular`` in the style of booktabs."""
+        rows = [[tex(cell) for cell in row] for row in self.rows()]
+        return latex_table(rows, ("theorem", "status", "rigour", "decided by", "title"), "llllp{0.4\\linewidth}")
+
+    def to_dict(self) -> list[dict[str, Any]]:
+        """Return plain data for JSON."""
+        return [verdict.to_dict() for verdict in self]
+
+
+def _deciding(verdict: Verdict) -> str:
+    """Return the name of the first claim with the verdict's own status; of a vacuous one, the unmet hypothesis."""
+    missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
+    return next((c.name for c in verdict.claims if c.status == verdict.status), "") if missed is None else missed.name
+
+
+def _title(name: str) -> str:
+    known = catalogue().get(name)
+    return known.title if known is not None else ""
+
+
+def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
+    """Return the ids of theorems whose law hypothesis a law meets; errata are left out.
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        The law of motion.
+    q0, p0 : ndarray, shape (n, m)
+        A state.
+    t0 : float
+        Its time.
+
+    Examples
+    --------
+    >>> from flockana.laws.cucker_smale import CuckerSmale
+    >>> "cucker-smale" in (found := theorems_about(CuckerSmale(), [[0.0], [1.0]], [[0.0], [1.0]])), "os-1" in found
+    (True, False)
+    """
+    still = np.zeros(np.shape(q0))
+    seen = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), still[None], law))
+    return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, seen))
+
+
+def _is_about(item: Theorem, seen: Observed) -> bool:
+    if item.kind != "trajectory":
+        return False
+    return item.law is None or item.law(seen).status != "unmet"
+
+
+def verify_together(
+    run: Trajectory, *, tolerances: Tolerances | None = None, subject: str = "", progress: bool = False
+) -> Verdicts:
+    """Check every theorem about the law of a run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run.
+    tolerances : Tolerances, optional
+        Thresholds.
+    subject : str
+        A name for the case.
+    progress : bool
+        Show a progress bar.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.cucker_smale import CuckerSmale
+    >>> run = simulate(CuckerSmale(), [[0.0], [1.0]], [[0.0], [1.0]], (0.0, 5.0))
+    >>> "cucker-smale" in [verdict.theorem for verdict in verify_together(run)]
+    True
+    """
+    names, made = theorems_about(run.law, run.q[0], run.p[0], float(run.t[0])), []
+    with progress_bar(len(names), enabled=progress) as advance:
+        for name in names:
+            advance(len(made), name)
+            made.append(verify(theorem(name), run, tolerances=tolerances, subject=subject))
+    # a theorem that names no law of its own says in its hypotheses whether it is about this one
+    return Verdicts(v for v in made if v.status != "vacuous" or theorem(v.theorem).law is not None)

@@ -1,0 +1,145 @@
+"""Largest sampling periods: against closed forms, the map's own multipliers, and runs that grow or decay."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.dynamics.simulate import simulate
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria import find_equilibrium
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.explicit_euler import ExplicitEuler
+from flockana.laws.msn import MSNDiscretisation
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.taylor_step import TaylorStep
+from flockana.laws.vicsek import HeadingAveraging
+from flockana.stability import linearise
+from flockana.stability.sampling import SCHEMES, sampling_margin, scalar_period
+
+LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
+REST = find_equilibrium(LAW, hexagonal_spiral(10, 7.0)).q
+MAPS = {
+    "euler": ExplicitEuler,
+    "hold": TaylorStep,
+    "semi-implicit": SemiImplicitEuler,
+    "msn": lambda law, dt: MSNDiscretisation(law, dt, in_place=False),
+    "msn-in-place": MSNDiscretisation,
+}
+
+
+@given(
+    st.floats(0.01, 100.0),
+    st.floats(0.01, 30.0),
+    st.sampled_from([0.0, 0.5, 1.0, 1.5]),
+    st.sampled_from([0.3, 0.999, 1.001, 1.1]),
+)
+def test_one_mode_is_stable_below_its_period_and_not_just_above(k, d, factor, share):
+    """The multipliers of the step itself, as roots of a polynomial; far beyond some are stable again for f = 0."""
+    period, there = scalar_period(k, d, factor)
+    h = share * period
+    roots = np.roots([1.0, h * d + factor * h * h * k - 2.0, 1.0 - h * d + (1.0 - factor) * h * h * k])
+    assert (np.abs(roots).max() < 1.0) == (share < 1.0)
+    at = np.roots([1.0, period * d + factor * period**2 * k - 2.0, 1.0 - period * d + (1.0 - factor) * period**2 * k])
+    assert np.abs(at - there).min() < 1e-6
+    assert abs(abs(there) - 1.0) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("k", "d", "factor", "period"),
+    [
+        (4.0, 3.0, 0.5, 2.0 / 3.0),  # flips at 2/d
+        (4.0, 1.0, 0.5, 0.5),  # swings at 2d/k
+        (4.0, 1.0, 0.0, 0.25),  # swings at d/k
+        (4.0, 5.0, 0.0, 0.5),  # flips at 2/4, the faster of the roots −1 and −4
+        (4.0, 0.0, 0.0, 0.0),
+        (4.0, 0.0, 1.0, 0.0),  # semi-implicit keeps a swing that nothing damps
+        (4.0, 0.0, 1.5, sqrt(2.0 / 4.0)),  # the MSN project's step damps it
+        (0.0, 2.0, 1.0, 1.0),
+        (0.0, 0.0, 0.5, 0.0),
+    ],
+)
+def test_periods_in_closed_form(k, d, factor, period):
+    assert scalar_period(k, d, factor)[0] == pytest.approx(period, rel=1e-14)
+
+
+@pytest.mark.parametrize("scheme", MAPS)
+def test_a_flock_is_stable_below_its_margin_and_not_just_above(scheme):
+    """By the multipliers of the map, which are held against finite differences of its steps elsewhere."""
+    found = sampling_margin(LAW, REST, scheme=scheme)
+    for share, stable in ((0.5, True), (0.999, True), (1.001, False), (1.05, False)):
+        assert linearise(MAPS[scheme](LAW, share * found.period), REST).stable == stable, share
+    at = linearise(MAPS[scheme](LAW, found.period), REST)
+    assert np.abs(at.multipliers - found.first.multiplier).min() < 1e-5
+    assert found.least <= found.period
+    assert found.certified or scheme in ("hold", "msn-in-place")
+    assert sampling_margin(MAPS[scheme](LAW, 0.5), REST).period == found.period  # a map brings its own scheme
+    assert found.first.shape.shape == REST.shape
+    assert np.linalg.norm(found.first.shape) == pytest.approx(1.0)
+
+
+def test_a_hold_is_the_taylor_step():
+    hold, taylor = (sampling_margin(LAW, REST, scheme=name) for name in ("hold", "taylor"))
+    assert (hold.period, hold.least) == (taylor.period, taylor.least)
+    assert 0.9 * hold.period < hold.least < hold.period  # K and D do not commute: the bound is one
+    assert hold.first.frequency == pytest.approx(abs(np.angle(hold.first.multiplier)) / hold.period)
+
+
+@pytest.mark.parametrize("share", [0.97, 1.03])
+def test_runs_decay_below_the_margin_and_grow_above(share):
+    """Nonlinear runs from a nudge along the mode that goes first."""
+    found = sampling_margin(LAW, REST, scheme="semi-implicit")
+    start = REST + 1e-7 * np.real(found.first.shape)
+    run = simulate(SemiImplicitEuler(LAW, share * found.period), start, 0.0 * start, (0.0, 120 * found.period))
+    away = np.linalg.norm(run.q - REST, axis=(1, 2))
+    grown = away[-10:].max() / away[:10].max()
+    assert grown < 0.3 if share < 1.0 else grown > 3.0
+
+
+def test_many_agents_flip_first_as_few_would():
+    """Beyond eighty coordinates only the first flip is found, by another way."""
+    many = find_equilibrium(LAW, hexagonal_spiral(45, 7.0)).q
+    found = sampling_margin(LAW, many, scheme="msn")
+    assert len(found.modes) == 1
+    assert found.certified
+    flow = linearise(LAW, many)
+    k, d, h = flow.stiffness.toarray(), flow.damping.toarray(), found.period
+    assert abs(np.linalg.eigvalsh(4.0 * np.eye(len(k)) - 2.0 * h * d - 2.0 * h * h * k)[0]) < 1e-9
+    below = 0.999 * h
+    assert np.linalg.eigvalsh(4.0 * np.eye(len(k)) - 2.0 * below * d - 2.0 * below**2 * k)[0] > 0.0
+
+
+def test_what_is_not_damped_has_no_margin_and_drift_is_set_apart():
+    swing = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+    assert sampling_margin(swing, [[0.0]]).period == 0.0
+    free = Algorithm2(gains=Gains(c1_gamma=0.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+    assert sampling_margin(free, [[0.0]]).period == inf
+    assert sampling_margin(free, [[0.0]]).first is None
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: sampling_margin(LAW, REST, scheme="rk4"), UnknownNameError, "unknown scheme"),
+        (lambda: sampling_margin(TaylorStep(LAW), REST, scheme="hold"), ArgumentError, "brings its own"),
+        (lambda: sampling_margin(HeadingAveraging(), REST), ArgumentError, "or a map that steps one"),
+        (lambda: sampling_margin("law", REST), ArgumentError, "law = 'law': expected a law"),
+        (lambda: sampling_margin(LAW, 1.1 * REST), ArgumentError, "the state is no equilibrium"),
+        (lambda: scalar_period(-1.0, 1.0), ArgumentError, "k = -1"),
+        (lambda: sampling_margin(LAW, REST).times(0.0), ArgumentError, "dt = 0"),
+    ],
+)
+def test_bad_input_is_refused(call, error, message):
+    with pytest.raises(error, match=message):
+        call()
+
+
+def test_every_scheme_is_known():
+    assert set(MAPS) | {"taylor"} == set(SCHEMES)

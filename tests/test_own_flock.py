@@ -1,0 +1,145 @@
+"""A law and a start of the user's own, wherever a scenario of the catalogue does."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError, UnknownNameError
+
+LAW = fl.Algorithm1(gains={"c1_alpha": 4.0, "c2_alpha": 2.0})
+PAIR = [[0.0, 0.0], [8.0, 0.0]]
+
+
+def start(seed):
+    return 7.0 * np.random.default_rng(seed).random((3, 2))
+
+
+def test_flock_draws_its_start_from_the_seed_and_runs():
+    flock = fl.Flock(LAW, start, t_span=(0, 1), name="three")
+    assert np.array_equal(flock.scenario(4).q0, start(4))
+    assert not flock.scenario(4).p0.any()
+    assert flock.run(4).status == "complete"
+    both = fl.Flock(LAW, lambda seed: (start(seed), np.ones((3, 2))))
+    assert both.start(1)[1].all()
+
+
+def test_verify_without_a_theorem_gives_one_table_of_those_about_the_law():
+    found = fl.verify(law=LAW, q0=PAIR, t_span=(0, 2))
+    by_id = {verdict.theorem: verdict for verdict in found}
+    assert "os-1" in by_id
+    assert "os-3" not in by_id
+    assert "cucker-smale" not in by_id
+    assert by_id["os-1"].status == fl.verify("os-1", law=LAW, q0=PAIR, t_span=(0, 2)).status
+    assert str(found).splitlines()[0].split() == ["theorem", "status", "rigour", "decided", "by", "title"]
+    assert len(str(found).splitlines()) == 1 + len(found)
+    assert found._repr_html_().count("<tr>") == 1 + len(found)
+    assert r"\toprule" in found.to_latex()
+    with pytest.raises(ArgumentError, match=r"expected a Trajectory, or law=..., q0=..."):
+        fl.verify(law=LAW)
+
+
+def test_ensemble_of_an_own_flock_over_seeds_and_numbers_of_its_law():
+    runs = fl.ensemble(
+        law=LAW, q0=start, t_span=(0, 1), seeds=range(2), parameters={"gains.c1_alpha": [1.0, 4.0]},
+        theorems=["os-1"], metrics=[], jobs=1,
+    )  # fmt: skip
+    assert dict(runs.sizes)["seed"] == 2
+    assert runs["gains.c1_alpha"].values.tolist() == [1.0, 4.0]
+    assert (runs.run == 0).all()
+    with pytest.raises(ArgumentError, match="all runs would be the same"):
+        fl.ensemble(fl.Flock(LAW, PAIR), range(2))
+    with pytest.raises(ArgumentError, match="expected the one or the other"):
+        fl.ensemble("hexagon", range(2), law=LAW)
+    with pytest.raises(ArgumentError, match="has no such number"):
+        fl.ensemble(fl.Flock(LAW, start), range(2), parameters={"gains.c9": 1.0}, jobs=1)
+
+
+def test_a_store_knows_an_own_flock_by_its_numbers(tmp_path):
+    def made(gain):
+        law = fl.Algorithm1(gains={"c1_alpha": gain})
+        return fl.ensemble(law=law, q0=PAIR, t_span=(0, 0.5), theorems=[], metrics=["strain"], store=tmp_path / "kept")
+
+    first, again, other = made(1.0), made(1.0), made(9.0)
+    assert first.identical(again)
+    assert first.strain.item() != other.strain.item()
+    with pytest.raises(ArgumentError, match=r"put a function seed -> Scenario into a module"):
+        fl.ensemble(fl.Flock(LAW, start), range(2), store=tmp_path / "kept")
+
+
+def test_falsify_searches_from_an_own_start():
+    found = fl.falsify("os-1", law=LAW, q0=PAIR, p0=[[1.0, 0.0], [-1.0, 0.0]], t_span=(0, 1), claim="ii", budget=3)
+    assert found.evaluations == 3
+    assert found.scenario == "own flock"
+
+
+def test_a_theorem_is_found_by_the_name_that_its_source_prints():
+    assert fl.theorem("Theorem 3").id == fl.theorem("olfati-saber 2006, theorem 3").id == "os-3"
+    with pytest.raises(ArgumentError, match=r"several theorems are printed as 'Theorem 1'.*os-1.*zone-1-printed"):
+        fl.theorem("Theorem 1")
+    with pytest.raises(UnknownNameError, match="unknown theorem 'Theorem 33'"):
+        fl.theorem("Theorem 33")
+
+
+def test_own_claim_is_judged_by_its_margin():
+    run = fl.simulate(LAW, PAIR, np.zeros((2, 2)), (0, 5))
+    reach = float(np.abs(run.q).max())
+
+    def bound(limit):
+        return fl.claim("near", lambda run: limit - np.abs(run.q).max(axis=(1, 2)), statement="agents stay near")
+
+    assert fl.verify(bound(reach + 1.0), run).status == "verified"
+    assert fl.verify(bound(reach - 0.1), run).status == "refuted"
+    assert fl.verify(bound(reach), run).status == "inconclusive"
+    with pytest.raises(ArgumentError, match="expected a number, or one for each sample"):
+        fl.verify(fl.claim("none", lambda run: None), run)
+    with pytest.raises(ArgumentError, match="expected a name and a function of a run"):
+        fl.claim("slow", 3.0)
+
+
+def test_gains_as_a_dictionary():
+    assert fl.Algorithm2(gains={"c1_alpha": 2.0}, target=fl.StaticTarget((0.0,))).gains == fl.Gains(c1_alpha=2.0)
+    with pytest.raises(UnknownNameError, match=r"unknown gain 'c1'; .*c1_alpha"):
+        fl.Algorithm1(gains={"c1": 2.0})
+
+
+UNGUARDED = """\
+import numpy as np, flockana as fl
+print("script begins")
+runs = fl.ensemble("head-on", range(3), theorems=["os-1"], metrics=[], jobs=2)
+print(runs.sizes["seed"], "runs")
+"""
+
+
+def test_a_script_without_a_guard_is_run_once_and_told_why_it_is_slow(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=300, env=_environment(), check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["script begins", "3 runs"]
+    assert 'line 3 of the script is not under `if __name__ == "__main__":`' in done.stderr
+
+
+def _environment():
+    import os
+
+    return {**os.environ, "PYTHONPATH": str(Path(fl.__file__).resolve().parent.parent)}
+
+
+def test_gif_lasts_as_long_as_asked(tmp_path):
+    from PIL import Image
+
+    path = fl.animate(path=tmp_path / "pair.gif", law=LAW, q0=PAIR, t_span=(0, 5), seconds=1.0, fps=15.0)
+    with Image.open(path) as film:
+        total = 0
+        for k in range(film.n_frames):
+            film.seek(k)
+            total += film.info["duration"]
+    assert total == 1000

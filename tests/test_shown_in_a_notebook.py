@@ -1,0 +1,47 @@
+"""Objects as a notebook and `print` show them."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+import flockana as fl
+
+
+@pytest.fixture(scope="module")
+def run():
+    return fl.scenario("hexagon").run()
+
+
+def test_verdict_is_a_table_in_html_and_latex(run):
+    verdict = fl.verify("os-1", run)
+    html = verdict._repr_html_()
+    assert html.count("<tr>") == 1 + len(verdict.hypotheses) + len(verdict.claims)
+    assert "<caption" in html and "✓ verified" in html  # noqa: PT018
+    latex = verdict.to_latex()
+    assert latex.count(r"\\") == 1 + len(verdict.claims)
+    assert latex.startswith(r"\begin{tabular}")
+    assert not re.search(r"(?<!\\)[%&#_](?![^$]*\$)", latex.splitlines()[3].replace(" & ", " "))
+
+
+def test_equilibrium_and_linearisation_print_facts(run):
+    equilibrium = fl.find_equilibrium(run.law, run.q[-1])
+    linear = fl.linearise(run.law, equilibrium)
+    assert "kind               minimum" in str(equilibrium)
+    assert str(linear).count("\n  mode ") == 5
+    assert f"λ = {linear.modes[0].eigenvalue.real:.4g} ± {linear.modes[0].frequency:.4g}i" in str(linear)
+    for each in (equilibrium, linear, run):
+        assert "<td" in each._repr_html_()
+        assert "Algorithm1" in each._repr_html_()
+
+
+def test_a_large_linearisation_is_shown_without_its_poles():
+    q = fl.lattice.triangular(500, 7.0)
+    shown = str(fl.linearise(fl.Algorithm1(), q, np.zeros_like(q)))
+    assert "slowest_modes(...)" in shown
+
+
+def test_a_run_writes_its_film(run, tmp_path):
+    assert run.animate(tmp_path / "run.gif", seconds=0.2).stat().st_size > 1000
