@@ -35,6 +35,7 @@ except ImportError:  # Windows: there every process compiles what it needs
 
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
 _PATIENCE, _LOOK = 120.0, 0.02  # seconds: of a wait for another process, and between two looks
+_FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
 _UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
 _ONE = RLock()  # one thread compiles at a time
 _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is compiled
@@ -55,6 +56,7 @@ class Kernel:
 
     def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
+        self.__name__, self.__qualname__ = function.__name__, function.__qualname__
         self.function, self.kept, self.options = function, kept, options
         self._compiled: Callable[..., Any] | None = None
         self._thaws = False
@@ -96,8 +98,9 @@ class Kernel:
     def _compile(self, arguments: list[Any]) -> None:
         numba, made = load_numba(), self.dispatcher
         if hasattr(made, "compile"):  # else NUMBA_DISABLE_JIT is set
-            with compiling():
-                _opened(made).compile(tuple(numba.typeof(each) for each in arguments))
+            types = tuple(numba.typeof(each) for each in arguments)
+            with compiling(_mark(self.function, types) if self.kept else None):
+                _opened(made).compile(types)
         self._compiled = made
 
     def __reduce__(self) -> Any:
@@ -163,7 +166,7 @@ def callback(kernel: Kernel, signature: Any) -> Any:
     signature : object
         numba's.
     """
-    with compiling():
+    with compiling(_mark(kernel.function, signature)):
         options = {"error_model": "numpy", "nogil": True}
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
 
@@ -196,7 +199,7 @@ def load_numba() -> Any:
     import numba
     from numba.extending import typeof_impl
 
-    @typeof_impl.register(Kernel)
+    @typeof_impl.register(Kernel)  # type: ignore[untyped-decorator]
     def typeof_kernel(kernel: Kernel, context: Any) -> Any:
         return numba.typeof(_opened(kernel.dispatcher))
 
@@ -223,16 +226,12 @@ def _named(known: Any) -> bool:
 
 def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..., Any]) -> Any:
     """A function, decorated; its compiled code is kept in a folder named for its sources, if there may be one."""
-    numba = load_numba()
-    base = kernels_folder() if kept and is_modules_own(function) else None
-    if base is None:
+    numba, folder = load_numba(), _folder(function) if kept else None
+    if folder is None:
         return decorator(numba, False)(function)
-    file = str(sys.modules[function.__module__].__file__)
     with _ONE:
         before = numba.config.CACHE_DIR
         try:
-            made = Path(file).is_relative_to(base)  # a bound module lies beside its compiled code
-            folder = Path(file).parent if made else sources_folder(base, sources_digest(file))
             numba.config.CACHE_DIR = str(folder)
             return decorator(numba, True)(function)
         except OSError:  # a full disk
@@ -241,12 +240,37 @@ def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..
             numba.config.CACHE_DIR = before
 
 
+def _folder(function: Callable[..., Any]) -> Path | None:
+    """Where compiled code of a function is kept: beside a bound module, else in a folder named for its sources."""
+    base = kernels_folder() if is_modules_own(function) else None
+    if base is None:
+        return None
+    file = Path(str(sys.modules[function.__module__].__file__))
+    with suppress(OSError):  # a full disk
+        return file.parent if file.is_relative_to(base) else sources_folder(base, sources_digest(str(file)))
+    return None
+
+
+def _mark(function: Callable[..., Any], types: Any) -> Path | None:
+    """A file that says that some process has compiled a function for these types."""
+    config, folder = load_numba().config, _folder(function)
+    known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
+    return None if folder is None else folder / f"{hashlib.sha256(repr(known).encode()).hexdigest()[:16]}.known"
+
+
 @contextmanager
-def compiling() -> Iterator[None]:
-    """Compile alone: one thread of one process of this user, for others to load what it made."""
+def compiling(mark: Path | None = None) -> Iterator[None]:
+    """Compile alone: one thread of one process of this user, for others to load what it made.
+
+    Parameters
+    ----------
+    mark : Path, optional
+        A file that is there once all has been compiled: then it is loaded, and nobody waits.
+    """
     with _ONE, relaxed_gc():
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
-        with nullcontext() if folder is None or fcntl is None else (folder / "lock").open("w") as file:
+        free = folder is None or fcntl is None or (mark is not None and mark.exists())
+        with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]
             while file is not None and time.monotonic() < until:  # a process that was stopped keeps nobody for ever
                 try:
                     fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -257,6 +281,9 @@ def compiling() -> Iterator[None]:
                     break
             try:
                 yield
+                if mark is not None:
+                    with suppress(OSError):
+                        mark.touch()
             finally:
                 while _OPEN:
                     each = _OPEN.pop()
@@ -271,7 +298,9 @@ def kernels_folder() -> Path | None:
         lambda: Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "kernels",
         lambda: Path(tempfile.gettempdir()) / f"flockana-kernels-{os.getuid()}",
     ]
-    for place in [lambda: Path(named) / "flockana"] if named else places:
+    if named:
+        places = [lambda: Path(named) / "flockana"]
+    for place in places:
         with suppress(OSError, RuntimeError, AttributeError):  # no home, no users to tell apart
             return _private(place())
     logging.getLogger("flockana").warning(
@@ -325,8 +354,8 @@ def sources_digest(file: str) -> str:
     while found:
         known |= found
         found = {other for path in found for other in _imported(path)} - known
-    digest = hashlib.sha256()
-    for path in sorted(known):
+    digest = hashlib.sha256(_FORM)
+    for path in sorted(known - {Path(__file__)}):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -334,7 +363,7 @@ def sources_digest(file: str) -> str:
 @cache
 def _imported(file: Path) -> frozenset[Path]:
     """The files of the package that a file imports, whatever it is itself."""
-    root, text = Path(__file__).parent, file.read_text("utf-8")
+    root, text = Path(__file__).parent, "" if file == Path(__file__) else file.read_text("utf-8")
     names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (\([^)]*\)|.+))?", text, re.MULTILINE)
     paths = set()
     for module, things in names:

@@ -95,9 +95,10 @@ class Engine:
         system = System(*self.form.functions, numbers, view, self.form.moving, reach, own, *room)
         shell = float(met.shell), float(met.skirt)
         around = Around(thawed(met.radii), float(met.far), met.bodies is not None, shell, thawed(met.poles))
-        tableau_arrays = (thawed(each) if isinstance(each, np.ndarray) else each for each in self.method)
+        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in self.method]
         floor, balance = (tuple(float(x) for x in each) for each in (self.allowed.floor, self.allowed.balance))
-        return system, around, Method(*tableau_arrays, float(self.allowed.rtol), floor, balance)
+        given += [float(self.allowed.rtol), floor, balance]
+        return system, around, Method(*given)
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""

@@ -254,6 +254,9 @@ class Stepper:
             reached = self._attempt()
             if reached is None:
                 return False
+            if reached.t <= start.t:
+                self.message = f"{self.method} gave up at t = {start.t:g}: its step is lost in the rounding of the time"
+                return False
             h, shortest = reached.t - start.t, ROUNDINGS * float(np.spacing(max(abs(start.t), abs(reached.t))))
             share = next((share for check in checks if (share := check.share(start, reached)) < 1.0), 1.0)
             singular, share = share < 0.0, abs(share)

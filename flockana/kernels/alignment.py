@@ -33,12 +33,12 @@ class WeightKernels:
     @property
     def match(self) -> Callable[..., float]:
         """``match(x, v, gain, r2, par, u)``: the sum over pairs nearer than √r2."""
-        return self._sums.match  # type: ignore[no-any-return]
+        return self._sums.match
 
     @property
     def act(self) -> Kernel:
         """The same as a term of a law."""
-        return self._sums.act  # type: ignore[no-any-return]
+        return self._sums.act
 
     @property
     def _sums(self) -> Any:

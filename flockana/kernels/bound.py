@@ -78,7 +78,7 @@ def made(text: str, name: str, **functions: Kernel) -> ModuleType:
     imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))
     future = "from __future__ import annotations\n"
     text = "\n".join([future, *imports, "", text.replace(future, "")])
-    parts = (text, *(sources_digest(file) for file in sources if file), sources_digest(__file__), _of_text(text))
+    parts = (text, *(sources_digest(file) for file in sources if file), _of_text(text))
     digest = hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
     whole = f"flockana_{name}_{digest}"
     own = {key: known for key, known in functions.items() if key not in named}

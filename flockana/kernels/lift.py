@@ -55,12 +55,12 @@ class PairKernels:
     @property
     def potential(self) -> Callable[..., float]:
         """``potential(q, i, j, par, panels)``: Σ ψ over the block."""
-        return self._blocks.energy  # type: ignore[no-any-return]
+        return self._blocks.energy
 
     @property
     def terms(self) -> Callable[..., Any]:
         """``terms(q, i, j, par)``: per pair the weight w, the adjacency a and dw/d(s²)."""
-        return self._blocks.terms  # type: ignore[no-any-return]
+        return self._blocks.terms
 
     @cached_property
     def adjacency_slope(self) -> Callable[..., Any] | None:

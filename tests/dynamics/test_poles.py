@@ -28,16 +28,16 @@ def test_no_link_leaps_over_its_pole(how, gap):
     run = fl.simulate(law, [[0.0, 0.0], [length, 0.0]], [[0.0, 0.0], [1e-3, 0.0]], (0.0, 0.02), **how)
     longest = np.linalg.norm(run.q[:, 1] - run.q[:, 0], axis=1).max()
     assert longest < 1.0
-    assert run.status == "complete" or "where their potential is infinite" in run.message or "gave up" in run.message
+    reasons = ("where their potential is infinite", "gave up", "left the finite numbers")
+    assert run.status == "complete" or any(reason in run.message for reason in reasons)
 
 
-@pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853", "LSODA", "RK4"])
+@pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853", "LSODA"])
 def test_agents_that_no_potential_keeps_apart_meet_at_a_pole_and_the_run_fails(method):
-    """An attraction −1/s²: two at rest fall into each other in a finite time, t = π/(2√2) · √(s³/ (2 · 2))…"""
-    pair = fl.pair_law("-1/s", range=8.0, length=2.0)
+    """An attraction −1/s²: two at rest fall into each other in a finite time, π/√2 for s = 2."""
+    pair = fl.pair_law("-1/s", range=8.0, length=2.0, adjacency="1 - s/r")
     law = fl.Algorithm1(pair, gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.0))
-    options = {"method": "RK4", "dt": 0.01} if method == "RK4" else {"method": method}
-    run = fl.simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 10.0), **options)
+    run = fl.simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 10.0), method=method)
     assert run.status == "failed"
     # relative motion s'' = −2/s² from s = 2: T = π/2 · √(2³/(2 · 2)) = π/√2
     assert run.t[-1] == pytest.approx(np.pi / np.sqrt(2.0), rel=1e-2)
@@ -88,5 +88,5 @@ def test_no_pair_near_a_pole_crosses_none():
 def test_laws_say_where_their_poles_are():
     assert fl.Algorithm1().poles == ()
     assert fl.DeadZoneFlocking().poles == (0.0,)
-    assert fl.pair_law("s**2/(3 - s)", range=3.0, length=1.0).poles == (3.0,)
-    assert fl.pair_law("1/s", range=3.0, length=1.0).poles == (0.0,)
+    assert fl.pair_law("s**2/(3 - s)", range=3.0, length=1.0, adjacency="1 - s/r").poles == (3.0,)
+    assert fl.pair_law("1/s", range=3.0, length=1.0, adjacency="1 - s/r").poles == (0.0,)
