@@ -13,13 +13,48 @@
 # %% [markdown]
 # # σ-norm, bumps and pair potentials
 #
-# **Aims.** Build the potential that makes agents keep their distance, from its parts, and know which of its properties
-# are proved, which are computed to what accuracy, and where a formula loses digits.
+# **Aims.** Build the force with which two agents keep their distance, part by part; derive its potential; know which
+# of its properties are proved, which are computed and to what accuracy, and where a formula loses digits.
 #
-# Olfati-Saber (2006, section II) replaces the Euclidean norm, which has no gradient at zero, by
+# ## A scene
 #
-# $$\|z\|_\sigma = \frac{1}{\varepsilon}\left(\sqrt{1 + \varepsilon \|z\|^2} - 1\right), \qquad
-#   \nabla \|z\|_\sigma = \frac{z}{\sqrt{1 + \varepsilon\|z\|^2}}.$$
+# Three hundred drones form a picture in the night sky. Two of them drift towards each other. Their computers know
+# the vector between them and nothing else, and have to answer with a force. **What should that force be, as a
+# function of the distance?** Nearer than $d$ it must push, farther it must pull, at $d$ it must vanish. Out of radio
+# range it must be zero, and it must not jump to zero there, because a thrust that jumps breaks motors and, as we
+# shall see, theorems. When the two are in one place, it must not be infinite. This lecture builds such a force, the
+# one of Olfati-Saber (2006, section II), and with it the potential that every later lecture uses.
+#
+# ## Two agents on a line: a first try
+#
+# Let $x > 0$ be the distance of two agents. The simplest force is a spring, $x - d$, cut off at the range $r$. It
+# has two faults. At $r$ it jumps from $r - d$ to 0, so the agents gain or lose energy depending on how they cross.
+# And in the plane the spring acts along the unit vector $(q_j - q_i)/\|q_j - q_i\|$, which has no limit where the
+# agents meet: the force on an agent that flies past another at a hair's breadth turns around in no time. Both faults
+# are repaired by smoothing: the second by a norm without a corner, the first by a bump.
+#
+# ## A norm without a corner
+#
+# For a vector $z$ and a number $\varepsilon > 0$ let
+#
+# $$\|z\|_\sigma = \frac{1}{\varepsilon}\left(\sqrt{1 + \varepsilon \|z\|^2} - 1\right).$$
+#
+# Its gradient, by the chain rule:
+#
+# $$\begin{aligned}
+# \nabla\|z\|_\sigma &=
+#   \frac1\varepsilon\cdot\frac{1}{2\sqrt{1+\varepsilon\|z\|^2}}\cdot\nabla\bigl(\varepsilon\|z\|^2\bigr)
+#   && \text{derivative of the root} \\
+# &= \frac1\varepsilon\cdot\frac{2\varepsilon z}{2\sqrt{1+\varepsilon\|z\|^2}} =
+#   \frac{z}{\sqrt{1+\varepsilon\|z\|^2}} . && \nabla\|z\|^2 = 2z
+# \end{aligned}$$
+#
+# The denominator is at least 1, so the gradient exists everywhere and is smooth, at $z = 0$ too, where it is 0. The
+# gradient at $z = q_j - q_i$ is the vector with which all forces of this course act,
+#
+# $$n_{ij} = \frac{q_j - q_i}{\sqrt{1 + \varepsilon\|q_j - q_i\|^2}} .$$
+#
+# It points from $i$ to $j$, and its length grows from 0 to $1/\sqrt\varepsilon$.
 
 # %%
 import numpy as np
@@ -27,72 +62,162 @@ import sympy as sp
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import grade
+from flockana.course import figures, grade
 
-alpha = fl.AlphaInteraction(d=7.0, r=8.4, eps=0.1, h=0.2, a=5.0, b=5.0)
-x = np.linspace(0.0, 12.0, 400)
-figure, axes = plots.subplots(1, 2)
-axes[0].plot(x, alpha.sigma_norm(x), label="σ-norm, ε = 0.1")
-axes[0].plot(x, x, label="Euclidean norm")
-axes[0].set(xlabel="length", ylabel="norm")
-axes[0].legend()
-axes[1].plot(x / 12, alpha.bump(x / 12))
-_ = axes[1].set(xlabel="z", ylabel="bump ρ_h(z), h = 0.2")
+figure, axes = plots.subplots(1, 2, size=(10, 3.6))
+_ = figures.pair_vector(eps=0.1, axes=axes)
 
 # %% [markdown]
-# ## From action to potential
+# **Figure 1.1.** Left: the vector $n_{ij}$ (solid) has the direction of $q_j - q_i$ (dashed) and is shorter. Right:
+# its length, for $\varepsilon = 0.1$. It vanishes smoothly where two agents coincide and never exceeds
+# $1/\sqrt\varepsilon = 3.16$.
+
+# %%
+figure, ax = plots.subplots(size=(5.4, 3.6))
+_ = figures.norms(ax=ax)
+
+# %% [markdown]
+# **Figure 1.2.** On a line the Euclidean norm is $|x|$, with a corner at 0. The σ-norms are parabolas near 0 and
+# straight lines far out.
 #
-# The action of a pair is an uneven sigmoid, cut off by the bump,
+# For small $\|z\|$ one has $\|z\|_\sigma \approx \tfrac12\|z\|^2$, for large
+# $\|z\|_\sigma \approx \|z\|/\sqrt\varepsilon$. Despite its name the σ-norm is no norm: twice the vector has not
+# twice the σ-norm. It is a strictly increasing function of $\|z\|$, and that is all that is needed: "nearer than
+# $d$" is the same as "σ-norm below $d_\alpha$" with $d_\alpha = \|d\|_\sigma$, and likewise
+# $r_\alpha = \|r\|_\sigma$.
 #
-# $$\begin{gathered}
-#   \phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha), \\[1ex]
-#   \phi(s) = \tfrac12\left[(a+b)\,\sigma_1(s+c) + (a-b)\right], \qquad \sigma_1(s) = \frac{s}{\sqrt{1+s^2}},
-# \end{gathered}$$
+# ## A bump
 #
-# with $c = |a-b|/\sqrt{4ab}$, so that $\phi(0) = 0$. Its integral from $d_\alpha$ is the potential $\psi_\alpha$. Let
-# sympy derive it, step by step:
+# A weight that is 1 near an agent, 0 at the edge of its range and smooth between is the *bump function*, for
+# $0 < h < 1$,
+#
+# $$\rho_h(z) = \begin{cases} 1 & 0 \le z < h \\ \tfrac12\bigl[1 + \cos\bigl(\pi\tfrac{z-h}{1-h}\bigr)\bigr] & h \le
+#   z \le 1 \\ 0 & z > 1 . \end{cases}$$
+#
+# Is it differentiable where the pieces meet? On the taper its derivative is
+# $-\tfrac{\pi}{2(1-h)}\sin\bigl(\pi\tfrac{z-h}{1-h}\bigr)$, which is 0 at $z = h$, because $\sin 0 = 0$, and at
+# $z = 1$, because $\sin\pi = 0$. So both derivatives agree on both sides. The *second* derivative does not: at $h$
+# it jumps from 0 to $-\tfrac{\pi^2}{2(1-h)^2}$. The bump is once continuously differentiable and no more, which
+# integrators will notice.
+
+# %%
+figure, ax = plots.subplots(size=(5.4, 3.4))
+_ = figures.bumps(ax=ax)
+
+# %% [markdown]
+# **Figure 1.3.** Three bump functions; a dot marks the end of the plateau. The larger $h$, the steeper the taper.
+#
+# The weight of the link between two agents is $a_{ij} = \rho_h(\|q_j - q_i\|_\sigma/r_\alpha)$.
+#
+# ## The action
+#
+# Now the force. Take a curve through 0 that rises from $-b$ to $a$, with $0 < a \le b$: repulsion may be stronger
+# than attraction. With the sigmoid $\sigma_1(z) = z/\sqrt{1+z^2}$, which rises from $-1$ to 1, put
+#
+# $$\phi(z) = \tfrac12\left[(a+b)\,\sigma_1(z+c) + (a-b)\right], \qquad c = \frac{b-a}{\sqrt{4ab}} .$$
+#
+# Why this $c$? Because the curve has to pass through 0:
+#
+# $$\begin{aligned}
+# 1 + c^2 &= \frac{4ab + (b-a)^2}{4ab} = \frac{(a+b)^2}{4ab} && \text{one denominator} \\
+# \sigma_1(c) &= \frac{c}{\sqrt{1+c^2}} = \frac{b-a}{\sqrt{4ab}}\cdot\frac{\sqrt{4ab}}{a+b} = \frac{b-a}{a+b} &&
+#   \text{definition of } \sigma_1 \\
+# \phi(0) &= \tfrac12\left[(a+b)\,\tfrac{b-a}{a+b} + (a-b)\right] = 0 . && \text{insert}
+# \end{aligned}$$
+#
+# Without $a \le b$ the printed formula $c = |a-b|/\sqrt{4ab}$ would have the wrong sign, and the balance would not
+# be at $d$. As $\sigma_1' = (1+z^2)^{-3/2} > 0$, $\phi$ rises strictly, so 0 is its only zero. Shift the zero to
+# $d_\alpha$, and cut the curve off with the bump:
+#
+# $$\phi_\alpha(z) = \rho_h(z/r_\alpha)\,\phi(z - d_\alpha) .$$
+#
+# This is the *action* of a pair: negative (a push) below $d_\alpha$, positive (a pull) between $d_\alpha$ and
+# $r_\alpha$, zero from $r_\alpha$ on. The force on agent $i$ is $\phi_\alpha(\|q_j - q_i\|_\sigma)\,n_{ij}$.
+#
+# ## The potential
+#
+# A force that depends on a distance only is the slope of a potential. Let
+#
+# $$\psi_\alpha(z) = \int_{d_\alpha}^z \phi_\alpha .$$
+#
+# > **Theorem (pair potential).** (i) $\psi_\alpha \ge 0$, with equality on $[0, r_\alpha]$ only at $d_\alpha$. (ii)
+# > $\psi_\alpha(z) = \psi_\alpha(r_\alpha)$ for all $z \ge r_\alpha$. (iii) $\psi_\alpha$ is twice continuously
+# > differentiable. (iv) The force on agent $i$ is minus the gradient of $\psi_\alpha(\|q_j-q_i\|_\sigma)$ with
+# > respect to $q_i$.
+#
+# *Proof.*
+#
+# 1. $\phi_\alpha$ is negative on $[0, d_\alpha)$ and positive on $(d_\alpha, r_\alpha)$, as both factors say. So its
+#    integral from $d_\alpha$ is positive on both sides of $d_\alpha$: (i).
+# 2. Beyond $r_\alpha$ the integrand is 0: (ii).
+# 3. $\rho_h$ and $\phi$ are once continuously differentiable, so their product $\phi_\alpha = \psi_\alpha'$ is:
+#    (iii).
+# 4. By the chain rule $\nabla_{q_i}\psi_\alpha(\|q_j-q_i\|_\sigma) =
+#    \phi_\alpha(\|q_j-q_i\|_\sigma)\cdot\nabla_{q_i}\|q_j-q_i\|_\sigma$, and
+#    $\nabla_{q_i}\|q_j-q_i\|_\sigma = -n_{ij}$, because $q_i$ stands there with a minus sign: (iv). $\square$
+#
+# **Closed form.** Where the bump is 1, an antiderivative of $\phi$ is
+# $\tfrac12\bigl[(a+b)\sqrt{1+(z+c)^2} + (a-b)z\bigr]$: differentiate it,
+# $\tfrac{d}{dz}\sqrt{1+(z+c)^2} = \sigma_1(z+c)$. On the taper the integrand is a cosine times a root, and there is
+# no elementary antiderivative; the library integrates it to $10^{-13} c^*$. sympy goes the same way, step by step:
 
 # %%
 symbolic.derive_psi_alpha()
 
 # %% [markdown]
-# On the plateau of the bump there is a closed form; on the taper there is none, and the library integrates it to
-# $10^{-13} c^*$. Over the distance of the two agents:
+# Here are the numbers of the paper's flocks, which most lectures use: $d = 7$, $r = 8.4$, $\varepsilon = 0.1$,
+# $h = 0.2$, $a = b = 5$.
 
 # %%
-figure, axes = plots.subplots(1, 2)
+alpha = fl.AlphaInteraction(d=7.0, r=8.4, eps=0.1, h=0.2, a=5.0, b=5.0)
+figure, axes = plots.subplots(1, 2, size=(10, 3.8))
 plots.action(alpha, ax=axes[0])
-plots.potential(alpha, ax=axes[1])
+_ = figures.wall_and_well(alpha, ax=axes[1])
 print(f"d_α = {alpha.d_alpha:.6f}, r_α = {alpha.r_alpha:.6f}, c* = ψ_α(0) = {alpha.c_star:.6f}")
 print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out of range cost, each pair of them")
 
 # %% [markdown]
-# The attraction is a shallow well beside a high wall: pulling a pair apart costs $0.74$, pushing it together $52.4$. A
-# student notebook on the same algorithm draws this curve over $z$ itself (its Fig. 3; here with the parameters of its
-# first run, $a = 7$, $b = 9$, $h = 0.4$):
+# **Figure 1.4.** Left: the action over the distance. Right: the potential, and in the inset the well about $d = 7$,
+# enlarged. Pulling a pair apart costs 0.74, pushing it together 52.4.
+#
+# The two numbers of the figure have names. $c^* = \psi_\alpha(0)$ is what two coincident agents cost; theorems on
+# collisions compare the energy with it. $\psi_\alpha(r_\alpha)$ is what a pair out of range costs, *every* pair out
+# of range, however far apart. That constant looks harmless. It makes flocks fall apart (lecture 02) and bounds void
+# (lecture 07).
+#
+# Not every parameter gives such a picture. Move $h$: the larger the plateau of the bump, the less it weakens the
+# attraction, and the higher the rim.
 
 # %%
-pair = fl.AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
-z = np.linspace(0.0, 1.2 * pair.r_alpha, 500)
-figure, ax = plots.subplots()
-ax.plot(z, pair.psi_alpha(z))
-_ = ax.set(xlabel="z = ‖q_j − q_i‖_σ", ylabel="ψ_α(z)")
+from flockana.course.frames import slider
+
+
+def with_plateau(ax, h):
+    figures.wall_and_well(fl.AlphaInteraction(h=h), ax=ax)
+
+
+slider(with_plateau, np.round(np.arange(0.1, 0.95, 0.1), 1), name="h", title="potential of a pair", size=(5.4, 3.8))
 
 # %% [markdown]
 # ## Why not the deviation energy itself?
 #
-# A lattice is where the deviation energy $E(q)$, a mean of $(\|q_j - q_i\| - d)^2$ over the links, is zero. But $E$ is
-# no potential to descend: it jumps where a pair comes into range, and has a corner where two agents coincide. The
-# collective potential $V$, the sum of $\psi_\alpha$ over all pairs, has a continuous gradient at both
-# (`python -m proofs deviation-energy`).
+# A *lattice* is a configuration whose links all have the length $d$ (lecture 04). The *deviation energy* $E(q)$, a
+# mean of $(\|q_j - q_i\| - d)^2$ over the links, measures how far a configuration is from one. Why not descend $E$?
+# Because $E$ is no potential: it jumps when a pair comes into range, for the new link has the deviation $r - d$; and
+# it has a corner where two agents coincide. The *collective potential* $V$, the sum of $\psi_\alpha$ over all pairs,
+# has a continuous gradient at both, by (iii) of the theorem.
 
 # %%
 _ = plots.deviation(alpha)
 
 # %% [markdown]
+# **Figure 1.5.** A pair's deviation energy and its potential over the distance, each relative to its value at 0. To
+# the left of 0 one agent has passed through the other.
+#
 # ## Three routes to one number
 #
-# The compiled kernel, sympy's expression and plain quadrature compute it independently.
+# How do you know that a number is right? Compute it in ways that share nothing. The compiled kernel, sympy's
+# expression with 17 digits, and plain quadrature of $\phi_\alpha$:
 
 # %%
 from scipy.integrate import quad
@@ -107,43 +232,125 @@ print(f"quadrature  {quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=
 exact = float(symbolic.psi_alpha(sp.Integer(5), alpha=paper).evalf(17))
 assert abs(alpha.psi_alpha(z) - exact) < 1e-12
 assert abs(quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0] - exact) < 1e-12
+assert f"{alpha.c_star:.1f} {alpha.psi_alpha(alpha.r_alpha):.2f} {0.1**-0.5:.2f}" == "52.4 0.74 3.16"
+assert abs(alpha.sigma_norm(1e-3) / 0.5e-6 - 1.0) < 1e-6
 
 # %% [markdown]
 # ## Digits that disappear
 #
-# For two agents $10^{-9}$ apart, $\sqrt{1+\varepsilon x^2}-1$ is a difference of equal numbers. The library computes
-# $x^2/(\sqrt{1+\varepsilon x^2}+1)$, which is the same and loses nothing.
+# For two agents $10^{-9}$ apart, $\sqrt{1+\varepsilon x^2}-1$ is a difference of two equal numbers: a double carries
+# 16 digits, and $\varepsilon x^2 = 10^{-19}$ is lost when 1 is added. Multiply numerator and denominator by
+# $\sqrt{1+\varepsilon x^2}+1$:
+#
+# $$\frac{1}{\varepsilon}\bigl(\sqrt{1+\varepsilon x^2}-1\bigr) = \frac1\varepsilon\cdot\frac{(1+\varepsilon x^2) -
+#   1}{\sqrt{1+\varepsilon x^2}+1} = \frac{x^2}{\sqrt{1+\varepsilon x^2}+1} .$$
+#
+# The right side has no difference in it, and loses nothing.
 
 # %%
 tiny = 1e-9
 print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {alpha.sigma_norm(tiny):.3e}")
 
 # %% [markdown]
+# ## What each parameter does
+#
+# Six numbers make a pair. It is worth knowing which knob does what before turning one.
+#
+# | parameter | what it does | too small | too large |
+# |---|---|---|---|
+# | $d$ | distance to keep | – | – |
+# | $r$ | how far an agent sees | no attraction, below $d$ | second neighbours in range (lecture 04) |
+# | $\varepsilon$ | turns parabola into line, at $1/\sqrt\varepsilon$ | forces grow like a spring | weak forces |
+# | $h$ | length of the bump's plateau | weak attraction | steep taper, stiff equation |
+# | $a$, $b$ | strongest pull and push | – | all energies and stiffnesses grow in proportion |
+#
+# The last line is exact for $a = b$: then $c = 0$ and $\phi(z) = a\,\sigma_1(z)$, so $\phi_\alpha$, $\psi_\alpha$
+# and $c^*$ are all proportional to $a$ (exercise 6). The unit of $\varepsilon$ is one over a length squared. Whoever
+# changes from metres to centimetres must divide it by $10^4$, or gets another law; that mistake has been made in
+# print.
+#
+# ## A collision in slow motion
+#
+# What happens when two agents do meet? The force is finite, so with enough speed they go through each other. Does
+# the law survive that? By the theorem it is once continuously differentiable in all positions, coincident ones too,
+# so a unique solution goes on. Shoot two agents at each other on a line, so fast that their energy exceeds the wall,
+# and twice more a little off the line:
+
+# %%
+meeting = {}
+for offset in (0.0, 0.02, 0.1):
+    start = np.array([[0.0, 0.0], [12.0, offset]])
+    speed = np.array([[8.0, 0.0], [-8.0, 0.0]])
+    gains = fl.Gains(c1_alpha=1.0, c2_alpha=1e-6)
+    meeting[offset] = fl.simulate(
+        fl.Algorithm1(alpha, gains), start, speed, (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 401)
+    )
+figure, axes = plots.subplots(1, 2, size=(10, 3.4))
+for (offset, run), dash in zip(meeting.items(), ("-", "--", ":"), strict=True):
+    axes[0].plot(run.t, run.q[:, 0, 1], dash, label=f"{offset} off the line")
+    axes[1].plot(run.t, np.linalg.norm(run.p[:, 0] - run.p[:, 1], axis=1), dash, label=f"{offset} off the line")
+axes[0].set(xlabel="time", ylabel="y of the first agent (length)")
+axes[1].set(xlabel="time", ylabel="relative speed (length/time)")
+_ = axes[0].legend()
+
+# %% tags=["facts"]
+energy = alpha.psi_alpha(alpha.sigma_norm(12.0)) + 16.0**2 / 4.0
+slowest = np.linalg.norm(meeting[0.0].p[:, 0] - meeting[0.0].p[:, 1], axis=1).min()
+assert energy > alpha.c_star  # more than the wall
+assert abs(slowest - 2.0 * np.sqrt(energy - alpha.c_star)) < 0.05
+aside = [meeting[offset].q[-1, 0, 1] for offset in (0.02, 0.1)]
+assert abs(aside[1] / aside[0] - 5.0) < 0.1
+assert abs(aside[1] + 1.19) < 0.01
+
+# %% [markdown]
+# **Figure 1.6.** Two agents pass through each other (solid) and past each other, 0.02 and 0.1 off the line. Left:
+# how far the first agent is turned aside. Right: far out their relative speed is 16, at the wall's top it has fallen
+# to $2\sqrt{16^2/4 + 0.7 - 52.4} = 7.0$, and it rises again. The deflection at the end is in proportion to the
+# offset, 0.24 and 1.19: nothing singular happens at the meeting.
+#
+# With a unit vector in the place of $n_{ij}$ there would be no such proportion: the smallest offset would be enough
+# to turn the force around at the meeting, and a solver would stumble there. The smooth vector makes the wall a hill
+# that one can climb and pass, and the question "do agents collide?" a question about energy. Energies answer it in
+# lecture 02: below $c^*$ nobody gets over the hill.
+
+# %% [markdown]
+# ## What surprised, and what the theorem does not say
+#
+# The strongest pull is not at the range, and not in the middle of the attracting zone: the bump has weakened it to 8
+# % of $a$ before $\phi$ has risen (exercise 4). A link at the length $d$ lies far out on the taper, where the bump
+# is only 0.18, so it is much softer than $\phi'(0) = 5$ suggests (exercise 5). And the theorem speaks of one pair.
+# Of a sum over pairs it says nothing: three agents in a triangle can all have the length $d$, but four in a square
+# cannot have all six.
+#
 # ## Summary
 #
-# - The potential of a pair is the integral of its action; it has its minimum at $d$, a high wall at 0 and a shallow rim
-#   at $r$.
+# - The force of a pair is $\phi_\alpha n_{ij}$: an asymmetric sigmoid times the bump function, along a vector that
+#   vanishes smoothly where two agents coincide.
+# - The potential $\psi_\alpha$ has its minimum at $d$, a high wall $c^*$ at 0, and a shallow rim at $r$, beyond
+#   which it is constant.
 # - On the bump's plateau it has a closed form, on the taper none.
 # - Formulas that subtract nearly equal numbers lose digits; rearranged, they do not.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point, derivation) For $a = 1$, $b = 5$: what is $c$, and what is $\phi(0)$ if $c$ is left out? Give the
-# second number, exactly.
+# **1.** ★★ (2 points, derivation) Let $a = 1$, $b = 5$. (a) What is $c$? (b) What is $\phi(0)$ if $c$ is left out of
+# the formula? (c) And what does $\phi(z)$ tend to as $z \to -\infty$? Give the list of the three numbers, each to
+# four significant digits.
 
 # %% tags=["answer"]
-phi_at_zero = ...
+sigmoid = ...
 
 # %% tags=["solution"]
-phi_at_zero = 0.5 * ((1 + 5) * 0 + (1 - 5))
+sigmoid = [4.0 / np.sqrt(20.0), 0.5 * ((1 + 5) * 0 + (1 - 5)), -5.0]
 
 # %% tags=["check"]
-grade(phi_at_zero, -2.0, hint="which term of φ is left at s = 0?")
+grade(sigmoid, [0.894427191, -2.0, -5.0], digits=4, hint="which terms of φ are left at z = 0, and where σ₁ = −1?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points, experiment) A lattice link costs nothing and a pair out of range costs $\psi_\alpha(r_\alpha)$.
-# How many pairs out of range weigh as much as one coincident pair, for `alpha`? (Three significant digits.)
+# **2.** ★★ (2 points, experiment) A lattice link costs nothing and a pair out of range costs
+# $\psi_\alpha(r_\alpha)$. How many pairs out of range weigh as much as one coincident pair, for `alpha`? (Three
+# significant digits.)
 
 # %% tags=["answer"]
 pairs = ...
@@ -169,22 +376,24 @@ jump = 1.0
 grade(jump, 1.0, hint="one-sided limits at z = 1")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points, experiment) Where is the attraction strongest? Give the distance of the pair, to four significant
-# digits.
+# **4.** ★★ (2 points, experiment) At which distance of the pair (a) is the action $\phi_\alpha$ largest, and (b) is
+# the force $\|\phi_\alpha n_{ij}\|$ strongest among the attracting ones, for `alpha`? They are not the same. Give
+# the list of both, each to four significant digits.
 
 # %% tags=["answer"]
 strongest = ...
 
 # %% tags=["solution"]
-fine = np.linspace(alpha.d, alpha.r, 200_001)
-strongest = fine[np.argmax(alpha.phi_alpha(alpha.sigma_norm(fine)))]
+fine = np.linspace(alpha.d, alpha.r, 2_000_001)
+pull = alpha.phi_alpha(alpha.sigma_norm(fine))
+strongest = [fine[np.argmax(pull)], fine[np.argmax(pull * fine / np.sqrt(1.0 + 0.1 * fine**2))]]
 
 # %% tags=["check"]
-grade(strongest, 7.3139591, digits=4, hint="maximise φ_α between d and r")
+grade(strongest, [7.3139591, 7.3157056], digits=4, hint="maximise between d and r, on a grid that is fine enough")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, derivation) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`? (Four
-# significant digits; mind that $d_\alpha$ is on the taper of the bump.)
+# **5.** ★★★ (3 points, derivation) Derive the stiffness of a link: what is $\phi_\alpha'(d_\alpha)$ for `alpha`?
+# (Four significant digits; mind that $d_\alpha$ is on the taper of the bump.)
 
 # %% tags=["answer"]
 slope = ...
@@ -203,7 +412,7 @@ grade(slope, 0.896325033, digits=4, hint="product rule; one of the two terms van
 strength = ...
 
 # %% tags=["solution"]
-strength = 5.0 * 1000.0 / alpha.c_star  # with a = b, φ is a σ₁(s): all energies are proportional to a
+strength = 5.0 * 1000.0 / alpha.c_star  # with a = b, φ is a σ₁: all energies are proportional to a
 print(fl.AlphaInteraction(d=7.0, r=8.4, eps=0.1, h=0.2, a=strength, b=strength).c_star)
 
 # %% tags=["check"]
@@ -211,21 +420,47 @@ grade(strength, 95.449335, digits=4, hint="what is c for a = b, and what is left
 
 # %% [markdown] tags=["exercise"]
 # **7.** ★★ (2 points, words) $n_{ij} = (q_j - q_i)/\sqrt{1 + \varepsilon\|q_j - q_i\|^2}$ is shorter than a unit
-# vector. What does that do to the force between two agents that come very near each other, and what would go wrong with
-# a unit vector in its place? In your own words, at least 30 of them. (The check counts words, and your lecturer reads
-# the text.)
+# vector. What does that do to the force between two agents that come very near each other, and what would go wrong
+# with a unit vector in its place? Answer in your own words.
 
-# %% tags=["answer"]
-smoothness = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-smoothness = """Where two agents coincide the vector is 0 and smooth, so the force on each falls to 0 there and the
-law has a continuous derivative; solutions exist and are unique through a collision. A unit vector has no limit
-where the agents coincide: it jumps when they pass through each other, the potential has a corner there, and the
-right-hand side is not Lipschitz."""
-# Rubric, a point each:
-# the force vanishes smoothly at coincidence; a unit vector has no limit there, so that the
+# %% [markdown] tags=["solution"]
+# Where two agents coincide the vector is 0 and smooth, so the force on each falls to 0 there and the law has a
+# continuous derivative; solutions exist and are unique through a collision. A unit vector has no limit where the
+# agents coincide: it jumps when they pass through each other, the potential has a corner there, and the right-hand
+# side is not Lipschitz.
+#
+# **Rubric, a point each:** the force vanishes smoothly at coincidence; a unit vector has no limit there, so that the
 # law would be discontinuous.
 
+# %% [markdown] tags=["exercise"]
+# **8.** ★ (1 point, player) Move the slider of $h$. Which is the least $h$ on it at which the rim is above 2? (Its
+# values are multiples of 0.1; exactly.)
+
+# %% tags=["answer"]
+least_h = ...
+
+# %% tags=["solution"]
+least_h = 0.6
+
 # %% tags=["check"]
-grade(smoothness, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(least_h, 0.6, hint="the height of the rim stands in the inset")
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, proof) Prove that $\|z\|_\sigma$ (a) is a strictly increasing function of $\|z\|$, (b) lies
+# below $\|z\|/\sqrt\varepsilon$ and below $\tfrac12\|z\|^2$ for $z \ne 0$, and (c) is no norm.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# (a) As a function of $x = \|z\| \ge 0$ its derivative is $x/\sqrt{1+\varepsilon x^2}$, which is positive for
+# $x > 0$. (b) Write it as $x^2/(\sqrt{1+\varepsilon x^2}+1)$. The denominator exceeds 2, so the quotient is below
+# $\tfrac12x^2$. The derivative $x/\sqrt{1+\varepsilon x^2}$ is below $1/\sqrt\varepsilon$, and both sides are 0 at
+# 0, so integrating gives the other bound. (c) A norm satisfies $\|2z\|_\sigma = 2\|z\|_\sigma$. For small $z$ the
+# σ-norm behaves like $\tfrac12\|z\|^2$, so the quotient of both sides tends to 2 and not to 1: homogeneity fails.
+#
+# **Rubric, a point each:** the derivative is positive; both bounds with their reasons; homogeneity fails, with a
+# reason.

@@ -13,56 +13,138 @@
 # %% [markdown]
 # # Algorithm 2: cohesion, and the γ-agent as a linear system
 #
-# **Aims.** See what the γ-agent adds: a bound on the size of the flock, and a centre of mass that is a linear filter.
-# Explain a figure of a course project by a transfer function.
+# **Aims.** Split a flock exactly into its shape and its centre; prove the four parts of Theorem 3; read the centre
+# of mass as a filter of second order; explain two figures of a course project by a transfer function.
 #
-# Algorithm 2 of Olfati-Saber (2006, section V) adds to Algorithm 1 the pull of a γ-agent with position $q_r$ and
-# velocity $p_r$ on each agent:
+# ## A scene
 #
-# $$u_i = u_i^\alpha - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r).$$
+# The picture of three hundred drones has to move across the sky, so the director gives all drones the same moving
+# point to follow. In the rehearsal the picture circles, as it should, but on a smaller circle than the point does.
+# "The drones start inside the circle", says one engineer; "the point is too fast", says another. **What decides the
+# size of the circle, and why does the picture not fall apart now, when under Algorithm 1 it did?** Both answers come
+# from one algebraic fact: the flock splits into two systems that do not see each other.
+#
+# ## Two agents and a target on a line
+#
+# Algorithm 2 of Olfati-Saber (2006, section V) adds to Algorithm 1 a spring and a damper to a γ-agent with position
+# $q_r$ and velocity $p_r$, on each agent:
+#
+# $$u_i = u_i^\alpha - c_1^\gamma (q_i - q_r) - c_2^\gamma (p_i - p_r) .$$
+#
+# Take two agents on a line. Half the sum of the two equations and their difference, $q_c = \tfrac12(q_1+q_2)$ and
+# $y = q_2 - q_1$, are
+#
+# $$\begin{aligned}
+# \ddot q_c &= -c_1^\gamma(q_c - q_r) - c_2^\gamma(\dot q_c - p_r), && \text{pair forces cancel} \\
+# \ddot y &= -2c_1^\alpha\phi_\alpha(\|y\|_\sigma)\tfrac{y}{\sqrt{1+\varepsilon y^2}} - 2c_2^\alpha a_{12}\dot y -
+#   c_1^\gamma y - c_2^\gamma\dot y . && q_r, p_r \text{ cancel}
+# \end{aligned}$$
+#
+# The centre does not know that there is a neighbour, and the distance does not know that there is a target. The
+# distance has got a further spring, $-c_1^\gamma y$, with no end of range: whatever the pair does, it is drawn
+# together.
 #
 # ## Two systems in one
 #
-# Let $q_c$, $p_c$ be the mean position and velocity, $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Then the shape $(x, v)$
-# moves as if the γ-agent rested at its centre, and the centre as if it had no neighbours:
+# For $n$ agents put $q_c = \tfrac1n\sum q_i$, $p_c = \tfrac1n\sum p_i$, $x_i = q_i - q_c$ and $v_i = p_i - p_c$.
+#
+# > **Theorem (split).** Under Algorithm 2, for every motion of the γ-agent,
+# >
+# > $$\dot p_c = -c_1^\gamma(q_c - q_r) - c_2^\gamma(p_c - p_r), \qquad \dot v_i = u_i^\alpha(x, v) - c_1^\gamma
+# >   x_i - c_2^\gamma v_i .$$
+#
+# *Proof.*
+#
+# 1. $u_i^\alpha$ depends on differences $q_j - q_i = x_j - x_i$ and $p_j - p_i = v_j - v_i$ only, so
+#    $u_i^\alpha(q,p) = u_i^\alpha(x,v)$.
+# 2. $\sum_iu_i^\alpha = 0$: pairs cancel (lecture 02).
+# 3. The mean over $i$ of the law is, by 2, $\dot p_c = -c_1^\gamma(q_c - q_r) - c_2^\gamma(p_c - p_r)$. The feedback
+#    is *linear*, so the mean of the feedbacks is the feedback of the means.
+# 4. Subtract this from the law of agent $i$:
+#    $\dot v_i = u_i^\alpha - c_1^\gamma(q_i - q_c) - c_2^\gamma(p_i - p_c)$, in which $q_r$ and $p_r$ have
+#    cancelled. $\square$
+#
+# Step 3 is where linearity is used. Algorithm 3 of lecture 05 bounds the pull by a nonlinear function, and the split
+# is lost. The library checks the split symbolically:
 
 # %%
 import numpy as np
+import sympy
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import grade
-from flockana.equilibria.collapse import relaxed
-from flockana.stability.tracking import response_ratio, tracking
-from flockana.stability.translational import CentreOfMass, predicted_gain
+from flockana.course import figures, grade
 
 split = symbolic.derive_split(m=2)
 print("exact:", split.holds)
-split
+figure, ax = plots.subplots(size=(6, 3.4))
+_ = figures.target_pull(ax=ax)
 
 # %% [markdown]
-# ## The shape: energy, hence cohesion
+# **Figure 3.1.** The pull of a γ-agent. Its mean over the agents acts on the centre (cross); what is left over,
+# $-c_1^\gamma x_i$, draws every agent to the *centre*, wherever the γ-agent is.
 #
-# The shape dissipates
+# ## The shape: an energy with bounded level sets
 #
-# $$\begin{gathered}
-#   H_\lambda = c_1^\alpha V(x) + \tfrac{\lambda}{2}\sum\|x_i\|^2 + \tfrac12\sum\|v_i\|^2, \\[1ex]
-#   \lambda = c_1^\gamma, \qquad \dot H_\lambda = -c_2^\alpha\, v^\top \hat L v - c_2^\gamma \sum\|v_i\|^2 \le 0 .
-# \end{gathered}$$
+# Let $\lambda = c_1^\gamma$, $J(x) = \tfrac12\sum\|x_i\|^2$, $K(v) = \tfrac12\sum\|v_i\|^2$, and with the potential
+# $V$ of lecture 02
 #
-# All three terms are non-negative, and one agent at distance $R$ from the centre costs $\tfrac{\lambda}{2}R^2$. So
-# $R(t) \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma}$: no flock of Algorithm 2 with
-# $c_1^\gamma > 0$ fragments without end. That is Theorem 3(i) with its constant. The whole theorem, with $V$ as in
-# lecture 02, $J(x) = \tfrac12\sum\|x_i\|^2$, $K(v) = \tfrac12\sum\|v_i\|^2$ and $U_\lambda = c_1^\alpha V + \lambda J$:
+# $$U_\lambda = c_1^\alpha V + \lambda J, \qquad H_\lambda = U_\lambda + K .$$
+#
+# As $\nabla_{x_i}J = x_i$, the shape obeys
+# $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I + c_2^\alpha\hat L(x))\,v$, and so, as in lecture 02,
+#
+# $$\begin{aligned}
+# \dot H_\lambda &= \langle\nabla U_\lambda, v\rangle + \langle v, -\nabla U_\lambda - c_2^\gamma v - c_2^\alpha\hat
+#   Lv\rangle && \text{chain rule, law} \\
+# &= -c_2^\gamma\sum\|v_i\|^2 - c_2^\alpha\,v^\top\hat Lv \le 0 . && \text{the gradient cancels}
+# \end{aligned}$$
 #
 # > **Theorem 3** (Olfati-Saber 2006). Apply Algorithm 2 with $c_1^\gamma, c_2^\gamma > 0$, and let $K(v(0))$ and
 # > $J(x(0))$ be finite. Then (i) the group is cohesive for all $t \ge 0$; (ii) almost every solution converges to an
 # > equilibrium $(x_\lambda^*, 0)$ where $x_\lambda^*$ is a local minimum of $U_\lambda$; (iii) all agents
-# > asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with $c^* =
-# > c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
+# > asymptotically move with the same velocity; (iv) if $H_\lambda(0) < (k+1)\,c^*$ with
+# > $c^* = c_1^\alpha\psi_\alpha(0)$, at most $k$ distinct pairs of agents can collide, and none if $k = 0$.
 #
-# Claim (iv) is false as printed for $k \ge 1$ (erratum E13, lecture 07): it bounds the pairs that coincide at one
-# instant.
+# *Proof of (i).* All terms of $H_\lambda$ are non-negative, and one agent at the distance $\|x_i\|$ from the centre
+# has $\lambda J \ge \tfrac\lambda2\|x_i\|^2$. So
+#
+# $$\tfrac\lambda2\|x_i(t)\|^2 \le H_\lambda(t) \le H_\lambda(0) \quad\Longrightarrow\quad R(t) = \max_i\|x_i(t)\|
+#   \le \sqrt{2H_\lambda(t)/c_1^\gamma} \le \sqrt{2H_\lambda(0)/c_1^\gamma} . \quad\square$$
+#
+# This is the step that failed for Algorithm 1, and it took one line: $J$ grows without bound.
+#
+# *Proof of (iii), and of convergence to critical points.*
+#
+# 1. The set $\{H_\lambda \le H_\lambda(0)\}$ is closed; it is bounded by (i) and $K \le H_\lambda(0)$; so it is
+#    compact. It is positively invariant, as $\dot H_\lambda \le 0$.
+# 2. The shape's equation has no explicit time, though the γ-agent may move at will. So LaSalle's theorem applies:
+#    the solution approaches an invariant set on which $\dot H_\lambda = 0$.
+# 3. There $\sum\|v_i\|^2 = 0$, because $c_2^\gamma > 0$. So $v \to 0$: (iii). No connectedness is needed.
+# 4. By invariance $\dot v = 0$ there too, so $\nabla U_\lambda = 0$: the shape approaches the critical points of
+#    $U_\lambda$. $\square$
+#
+# *On (ii): why only minima are seen.* Near a critical point $x^*$ the linearised shape is
+# $\ddot{\tilde x} + D\dot{\tilde x} + S\tilde x = 0$ with the symmetric matrices $S = \nabla^2U_\lambda(x^*)$ and
+# $D = c_2^\gamma I + c_2^\alpha\hat L(x^*)$.
+#
+# > **Lemma.** If $S$ has a negative eigenvalue, the linearised shape has a real pole $s > 0$.
+#
+# *Proof.* For real $s$ the matrix $s^2I + sD + S$ is symmetric, so its least eigenvalue is real and depends
+# continuously on $s$. At $s = 0$ the matrix is $S$, and its least eigenvalue is negative. For large $s$ it is
+# positive, because $s^2$ dominates. So at some $s > 0$ it is 0: there is $\nu \ne 0$ with $(s^2I + sD + S)\nu = 0$,
+# and $\tilde x = e^{st}\nu$ solves the equation. $\square$
+#
+# Solutions that converge to a point with such a pole lie on its stable manifold, which has a lower dimension, hence
+# measure 0. That excludes saddles whose other eigenvalues are not 0. What it does not exclude are critical points
+# with further zero curvatures, and convergence to a *set* of critical points instead of to one; the paper's "almost
+# every" passes over both. $\square$
+#
+# *Proof of (iv), as far as it is true.* Let $k+1$ pairs coincide *at one time*. Each costs
+# $c_1^\alpha\psi_\alpha(0) = c^*$, and all other terms are non-negative, so $H_\lambda \ge (k+1)c^* > H_\lambda(0)$,
+# against $\dot H_\lambda \le 0$. So at most $k$ pairs coincide at any one time, and for $k = 0$ none ever. $\square$
+# Over time *more* pairs may collide, one after another, and (iv) is false as printed for $k \ge 1$ (erratum E13,
+# lecture 07).
 
 # %%
 flock = fl.scenario("paper-flocking").run()
@@ -73,101 +155,175 @@ plots.measure(flock, "cohesion_radius", ax=axes[1])
 axes[1].plot(flock.t, bound, "k:", label="bound √(2H_λ(t)/c1γ)")
 axes[1].set(yscale="log", ylim=(30.0, 2000.0))
 axes[1].legend()
-plots.energy(flock, ax=axes[2])
-print(fl.verify("os-3", flock).claim("i").detail)
+_ = plots.energy(flock, ax=axes[2])
+print({claim.name: claim.status for claim in fl.verify("os-3", flock).claims})
 
 # %% [markdown]
-# The bound is far above $R$ because most of $H_\lambda$ is $c_1^\alpha V$, which sums over all pairs out of range too.
+# **Figure 3.2.** The 150 agents of lecture 00. Middle: their radius $R(t)$ and the bound of (i), which is true and
+# far above, because most of $H_\lambda$ is $c_1^\alpha V$, to which every pair out of range contributes. Right: the
+# energy.
+#
+# ## An experiment: the shape does not see the target
+#
+# The split is exact, so here is a test that would fail if anything were wrong with it. Let the same nineteen agents
+# follow a target at rest, one on a straight line, and one on a circle. Their shapes $x(t)$ must be the same, to the
+# accuracy of the integrator, although the flocks fly along quite different paths.
 
 # %%
-flock.player(height=560)
+generator = np.random.default_rng(3)
+begin = fl.lattice.hexagonal_patch(2, 7.0) + generator.normal(0.0, 1.0, (19, 2))
+moving = generator.normal(0.0, 1.0, (19, 2))
+targets = {
+    "at rest": fl.StaticTarget((0.0, 0.0)),
+    "on a line": fl.LinearTarget((10.0, 0.0), (5.0, 1.0)),
+    "on a circle": fl.CircleTarget((0.0, 0.0), 20.0, 0.2),
+}
+paths = {
+    name: fl.simulate(fl.Algorithm2(target=target), begin, moving, (0.0, 5.0), t_eval=np.linspace(0.0, 5.0, 101))
+    for name, target in targets.items()
+}
+shape = {name: path.q - path.q.mean(axis=1, keepdims=True) for name, path in paths.items()}
+for name, path in paths.items():
+    drift = np.linalg.norm(path.q[-1].mean(axis=0) - path.q[0].mean(axis=0))
+    off = abs(shape[name] - shape["at rest"]).max()
+    print(f"target {name:>11}: the centre has moved {drift:6.2f}, the shape differs by {off:.0e}")
+
+# %% tags=["facts"]
+assert max(abs(shape[name] - shape["at rest"]).max() for name in shape) < 1e-5
+assert np.linalg.norm(paths["on a line"].q[-1].mean(axis=0)) > 20.0
 
 # %% [markdown]
+# The shapes agree to many digits. For a designer this is good news: cohesion, matching and the pattern can be tuned
+# with a target at rest, once, and the path of the target is a matter of the filter alone. It also says what a target
+# can *not* do: no path, however clever, shakes a flock into a better pattern, because the shape does not feel it.
+# Obstacles can, and so can a target that only some agents know: then the sum in step 3 of the proof no longer
+# closes, the shape has explicit time in it, LaSalle's theorem does not apply, and one needs Barbalat's lemma
+# (lecture 00a). Lecture 12 has such a law.
+#
 # ## The centre: a filter of second order
 #
-# $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly, with $\omega_n = \sqrt{c_1^\gamma}$ and
-# $\zeta = c_2^\gamma/(2\sqrt{c_1^\gamma})$. From $q_r$ to $q_c$ the transfer function is
+# The centre obeys $\ddot q_c = -c_1^\gamma (q_c - q_r) - c_2^\gamma (\dot q_c - p_r)$, exactly and whatever the
+# shape does. Let first $p_r = \dot q_r$, and take Laplace transforms with zero initial values, $s$ for the
+# derivative:
+#
+# $$\begin{aligned}
+# s^2q_c &= -c_1^\gamma(q_c - q_r) - c_2^\gamma(s\,q_c - s\,q_r) && \text{transform} \\
+# (s^2 + c_2^\gamma s + c_1^\gamma)\,q_c &= (c_2^\gamma s + c_1^\gamma)\,q_r && \text{collect} \\
+# \frac{q_c}{q_r} &= \frac{c_2^\gamma s + c_1^\gamma}{s^2 + c_2^\gamma s + c_1^\gamma} . && \text{divide}
+# \end{aligned}$$
+#
+# Compare the denominator with $s^2 + 2\zeta\omega_ns + \omega_n^2$: the natural frequency is
+# $\omega_n = \sqrt{c_1^\gamma}$, the damping ratio $\zeta = c_2^\gamma/(2\sqrt{c_1^\gamma})$. If the γ-agent reports
+# the velocity $p_r = k_v\,\dot q_r$ instead of the true one, only the zero moves: $c_2^\gamma s$ in the numerator
+# becomes $k_vc_2^\gamma s$. sympy agrees:
 
 # %%
-symbolic.transfer_function()
-
-# %% [markdown]
-# if $p_r = \dot q_r$. If the γ-agent says $p_r = k_v\,\dot q_r$ instead, the zero moves:
-
-# %%
-import sympy
-
 symbolic.transfer_function(sympy.Symbol("k_v"))
 
 # %% [markdown]
 # ## Two cases of a project
 #
 # A course project (`fl.cite(fl.scenario("msn-case1"))`) asks for four simulations of 100 agents; assignment A1 sets
-# them all. Here are two. **A target at rest, no damping** ($c_2^\gamma = 0$): the flock swings through the target, as
-# $\zeta = 0$ says.
+# them all. Here are two. **A target at rest, no damping** ($c_2^\gamma = 0$): the flock swings through the target
+# and back, for $\zeta = 0$. The period must be $2\pi/\omega_n = 2\pi$. Measure it: the velocity of the centre
+# changes its sign after half a period.
 
 # %%
 case2 = fl.scenario("msn-case2").run()
-figure, axes = plots.subplots(1, 3, size=(13, 3.6))
-plots.trajectories(case2, ax=axes[0])
-plots.speeds(case2, ax=axes[1])
-plots.centre_path(case2, ax=axes[2])
-period = tracking(case2).quantity("period")
-print(f"period: {period.predicted:.4f} predicted, {period.measured:.4f} measured")
+speed = case2.p.mean(axis=1)[:, 0]
+turn = next(k for k in range(5, len(speed)) if speed[k - 1] > 0.0 >= speed[k])
+half = case2.t[turn - 1] + speed[turn - 1] / (speed[turn - 1] - speed[turn]) * (case2.t[turn] - case2.t[turn - 1])
+print(f"period: {2.0 * np.pi:.4f} predicted, {2.0 * half:.4f} measured")
 
 # %% [markdown]
-# **A target on a circle.** The flock follows, on a smaller circle:
+# **A target on a circle** of radius 100. The flock follows, on a smaller circle:
 
 # %%
 case4 = fl.scenario("msn-case4").run()
 figure, axes = plots.subplots(1, 3, size=(13, 3.6))
 plots.snapshot(case4, ax=axes[0], bar=False)
 plots.trajectories(case4, ax=axes[1])
-plots.centre_path(case4, ax=axes[2])
+_ = plots.centre_path(case4, ax=axes[2])
+case4.player(height=460)
 
 # %% [markdown]
+# **Figure 3.3.** Case 4 of the project: the flock at the end, all paths, and the path of the centre beside the
+# target's.
+#
 # ## Why is the circle smaller?
 #
-# The project saw that, and laid the sine of its case 3 to the turning of the γ-agent, and the circle of case 4 to a
-# start inside it and to the speed. The filter knows better (errata E12 and E15). The project moves its γ-agent by
-# iterations of 0.009 time units, but the $p_r$ that it hands over is *per iteration*: $k_v = 0.009$.
+# The project saw that, and laid it to a start inside the circle and to the speed of the target. The filter has
+# another answer (errata E12 and E15). The project moves its γ-agent by iterations of 0.009 time units, but the $p_r$
+# that it hands over is the change *per iteration*: $k_v = 0.009$. On a circle at the angular velocity $\omega$ the
+# ratio of the radii is the modulus of the transfer function at $s = i\omega$. Compute it, and measure it, for the
+# printed $p_r$ and for the true one:
 
 # %%
-gains, circle = case4.law.gains, case4.law.target.target
-omega = 2 * np.pi * circle.frequency
-for k_v in (0.009, 1.0):
-    print(f"p_r = {k_v:5} dq_r/dt: predicted ratio {predicted_gain(gains, omega, factor=k_v):.3f}")
-true = fl.simulate(fl.Algorithm2(case4.law.alpha, gains, circle), case4.q[0], case4.p[0], case4.t[[0, -1]])
-print(f"measured: {response_ratio(case4)[0]:.3f}, and {response_ratio(true)[0]:.3f} with the true p_r")
-print(tracking(case4))
+c1, c2 = case4.law.gains.c1_gamma, case4.law.gains.c2_gamma
+circle = case4.law.target.target
+omega = 2.0 * np.pi * circle.frequency
 
-# %% [markdown]
-# With the true $p_r$ the flock's circle is *larger* than the γ-agent's. The Bode plot shows both, and $\omega$:
 
-# %%
+def gain(k_v, omega):
+    s = 1j * omega
+    return abs((k_v * c2 * s + c1) / (s**2 + c2 * s + c1))
+
+
+true = fl.simulate(fl.Algorithm2(case4.law.alpha, case4.law.gains, circle), case4.q[0], case4.p[0], case4.t[[0, -1]])
+for k_v, run in ((0.009, case4), (1.0, true)):
+    radius = np.linalg.norm(run.q[-1].mean(axis=0) - 50.0)  # of the centre about (50, 50), at the end
+    print(f"k_v = {k_v:5}: ratio {gain(k_v, omega):.3f} predicted, {radius / 100.0:.3f} measured")
 frequencies = np.geomspace(0.3, 100.0, 200)
-responses = {f"p_r = {k_v:g} dq_r/dt": CentreOfMass(gains, k_v).frequency_response(frequencies) for k_v in (0.009, 1.0)}
-axes = plots.bode(responses, marks={"case 4": omega})
+figure, ax = plots.subplots(size=(6, 3.4))
+for k_v in (0.009, 1.0):
+    ax.loglog(frequencies, gain(k_v, frequencies), label=f"k_v = {k_v:g}")
+ax.axvline(omega, color="0.5", linestyle=":")
+ax.set(xlabel="ω (1/time)", ylabel="|q_c/q_r|")
+_ = ax.legend()
+
+# %% tags=["facts"]
+found = [np.linalg.norm(r.q[-1].mean(axis=0) - 50.0) / 100.0 for r in (case4, true)]
+assert np.allclose(found, [gain(0.009, omega), gain(1.0, omega)], atol=2e-3)
+assert f"{gain(0.009, omega):.2f} {gain(1.0, omega):.2f}" == "0.85 1.11"
+assert abs(2.0 * half - 2.0 * np.pi) < 1e-3
+shares = bound / flock.metrics()["cohesion_radius"].values
+assert 5.0 < shares.min() < shares.max() < 25.0
 
 # %% [markdown]
+# **Figure 3.4.** The gain from the γ-agent to the centre over the frequency, for both velocities; the dotted line is
+# the $\omega$ of case 4. With $k_v = 0.009$ the ratio is 0.85; with the true velocity it is 1.11, and the flock's
+# circle would be *larger* than the target's.
+#
+# Neither the start nor the speed as such explains it. What comes from the start is a solution of the homogeneous
+# equation, and decays with the poles.
+#
 # ## Too strong a pull
 #
 # The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
-# falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11): Theorem 3
-# promises no lattice. Move the ratio, and watch nineteen agents; a number beside an agent counts those in its place:
+# falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11). Theorem 3 is
+# not violated: it promises a minimum of $U_\lambda$, and no lattice. Move the ratio, and watch nineteen agents; a
+# number beside an agent counts those in its place:
 
 # %%
 from flockana.course.frames import slider
 
-alpha = fl.AlphaInteraction()
+patch = fl.lattice.hexagonal_spiral(19, 7.0) + 7e-4 * np.random.default_rng(0).standard_normal((19, 2))
+
+
+def settle(q, ratio):
+    pull = fl.Gains(c1_alpha=1.0, c1_gamma=ratio)
+    return fl.find_equilibrium(fl.Algorithm2(gains=pull, target=fl.StaticTarget((0.0, 0.0))), q)
+
+
 ratios = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 2.0, 3.0)
-settled = {ratio: relaxed(alpha, 19, ratio) for ratio in ratios}
+settled = {ratio: settle(patch, ratio) for ratio in ratios}
 
 
 def at_rest(ax, ratio):
-    found = settled[ratio]
-    title = f"{found.kind}, closest pair {fl.min_distance(found.q):.3g}"
-    plots.configuration(found.q, d=alpha.d, r=alpha.r, ax=ax, bar=False, title=title)
+    rest = settled[ratio]
+    title = f"{rest.kind}, closest pair {fl.min_distance(rest.q):.3g}"
+    plots.configuration(rest.q, d=7.0, r=8.4, ax=ax, bar=False, title=title)
+    ax.set_aspect("equal", adjustable="box")
     ax.set(xlim=(-18.0, 18.0), ylim=(-18.0, 18.0))
 
 
@@ -177,15 +333,22 @@ slider(at_rest, ratios, name="c1γ/c1α", title="nineteen agents at rest", size=
 places = len(np.unique(np.round(settled[3.0].q, 4), axis=0))
 assert 1 < places < 19  # some share a place, not all
 
-
 # %% [markdown]
+# ## What surprised, and what the theorem does not say
+#
+# Cohesion has a one-line proof, and its constant is useless for design: here the bound is some ten times the radius.
+# A moving target does no harm to the shape, none at all: the split is exact. A wrong unit in $p_r$ looks like a law
+# of nature in the figures. And Theorem 3 does not say that the flock ends as one connected net, nor near a lattice,
+# nor how fast: for the speed see lecture 06.
+#
 # ## Summary
 #
 # - Algorithm 2 splits exactly into a shape, which dissipates $H_\lambda$, and a centre of mass, which is a linear
 #   filter of second order.
-# - $J$ in the energy bounds the size of the flock: cohesion holds with a constant.
-# - What the γ-agent tells as its velocity moves the zero of the filter; that explains circles that are too small or too
-#   large.
+# - $J$ in the energy bounds the size of the flock: cohesion holds with a constant, velocities match by LaSalle, and
+#   only minima attract more than exceptional solutions.
+# - The velocity that the γ-agent reports moves the zero of the filter; that explains circles that are too small or
+#   too large.
 # - Too strong a pull squeezes agents together.
 
 # %% [markdown] tags=["exercise"]
@@ -204,81 +367,123 @@ c2_gamma = 2 * np.sqrt(70)
 grade(c2_gamma, 16.733201, digits=4, hint="compare the characteristic polynomial with (s + ω_n)²")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points, design) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of exactly
-# the right size? (Four significant digits.)
+# **2.** ★★ (2 points, design) For which $k_v$ between 0 and 1 would the flock of case 4 follow on a circle of
+# exactly the right size? (Four significant digits.)
 
 # %% tags=["answer"]
-k_v = ...
+right_share = ...
 
 # %% tags=["solution"]
 from scipy.optimize import brentq
 
-k_v = brentq(lambda k: predicted_gain(gains, omega, factor=k) - 1.0, 0.0, 1.0)
+right_share = brentq(lambda share: gain(share, omega) - 1.0, 0.0, 1.0)
 
 # %% tags=["check"]
-grade(k_v, 0.7372359, digits=4, hint="predicted_gain has what you need; so has the transfer function, by hand")
+grade(right_share, 0.7372359, digits=4, hint="set the squared moduli of numerator and denominator equal")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points, derivation) A γ-agent on a straight line says $p_r = 0$ while it moves at speed 3. How far behind
-# does the centre stay, with $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$? (Set $\ddot q_c = 0$; four significant
+# **3.** ★★ (2 points, derivation) A γ-agent on a straight line moves at speed 3 and reports $p_r = k_v\cdot3$;
+# $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$. How far behind does the centre stay in the long run (a) for
+# $k_v = 0$, (b) for $k_v = 0.5$, (c) for $k_v = 1$? (Set $\ddot q_c = 0$. A list, each number to four significant
 # digits.)
 
 # %% tags=["answer"]
 lag = ...
 
 # %% tags=["solution"]
-lag = 2 * np.sqrt(1.1) * 3 / 1.1
+lag = [2 * np.sqrt(1.1) * 3 * (1 - share) / 1.1 for share in (0.0, 0.5, 1.0)]
 
 # %% tags=["check"]
-grade(lag, 5.7207755, digits=4, hint="which two forces on the centre balance?")
+grade(lag, [5.7207755, 2.86038777, 0.0], digits=4, hint="which two forces on the centre balance?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point, reading) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Relax them,
-# and answer `True` or `False`.
+# **4.** ★ (1 point, experiment) Do seven agents coincide at $c_1^\gamma/c_1^\alpha = 3$, where nineteen do? Settle
+# them, and answer `True` or `False`.
 
 # %% tags=["answer"]
 coincide = ...
 
 # %% tags=["solution"]
-coincide = bool(fl.min_distance(relaxed(alpha, 7, 3.0).q) < 1e-6)
+coincide = bool(fl.min_distance(settle(patch[:7], 3.0).q) < 1e-6)
 
 # %% tags=["check"]
-grade(coincide, False, hint="fl.min_distance(relaxed(alpha, 7, 3.0).q)")
+grade(coincide, False, hint="fl.min_distance(settle(patch[:7], 3.0).q)")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, design) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that the centre of
-# mass returns like $e^{-2t}$ or faster from every start. Give the list $[c_1^\gamma, c_2^\gamma]$.
+# **5.** ★★★ (3 points, design) Design: choose $c_1^\gamma$ and $c_2^\gamma$, neither above 5, such that every start
+# of the centre of mass decays at least as fast as a constant times $e^{-2t}$. Give the list
+# $[c_1^\gamma, c_2^\gamma]$. (A double pole at $-2$ gives $te^{-2t}$, which is slower.)
 
 # %% tags=["answer"]
-gains = ...
+chosen = ...
 
 # %% tags=["solution"]
-gains = [4.8, 4.2]  # poles of s² + c2γ s + c1γ; with s = z − 2: c2γ ≥ 4 and c1γ ≥ 2 c2γ − 4
+chosen = [4.8, 4.2]  # poles of s² + c2γ s + c1γ; with s = z − 2: c2γ ≥ 4 and c1γ ≥ 2 c2γ − 4
 
 # %% tags=["check"]
 grade(
-    gains,
-    lambda g: len(g) == 2 and max(g) <= 5.0 and np.roots([1.0, g[1], g[0]]).real.max() <= -2.0 + 1e-6,
+    chosen,
+    lambda g: (
+        len(g) == 2
+        and max(g) <= 5.0
+        and g[1] >= 4.0 - 1e-9
+        and g[0] >= 2.0 * g[1] - 4.0 - 1e-9
+        and max(abs(g[0] - 4.0), abs(g[1] - 4.0)) > 1e-3
+    ),
     form="list",
-    hint="where are the poles? two of them",
+    hint="where are the poles? two of them, and not both at −2",
 )
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) A report explains a circle of the flock that is smaller than its target's by the place
-# where the flock started. Why can no start explain the radius in the long run, and what can? In your own words, at
-# least 30 of them. (The check counts words, and your lecturer reads the text.)
+# where the flock started. Why can no start explain the radius in the long run, and what can? Answer in your own
+# words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# The centre of mass obeys a stable linear equation of second order that is driven by the target. Whatever comes from
+# the start is a solution of the homogeneous equation and dies out like its poles, so after a while only the response
+# to the target is left. Its size is the modulus of the transfer function at the target's frequency, which depends on
+# the gains, the frequency, and the velocity that the target reports.
+#
+# **Rubric, a point each:** the part due to the start decays with the poles; what remains is the modulus of the
+# transfer function at the target's frequency.
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Move the slider of the ratio $c_1^\gamma/c_1^\alpha$. Which is the least value on it at
+# which agents share a place? (Exactly.)
 
 # %% tags=["answer"]
-explanation = ...
+first_shared = ...
 
 # %% tags=["solution"]
-explanation = """The centre of mass obeys a stable linear equation of second order that is driven by the target.
-Whatever comes from the start is a solution of the homogeneous equation and dies out like its poles, so after a
-while only the response to the target is left. Its size is the modulus of the transfer function at the target's
-frequency, which depends on the gains, the frequency, and the velocity that the target tells."""
-# Rubric, a point each:
-# the part due to the start decays with the poles; what remains is the modulus of the transfer
-# function at the target's frequency.
+first_shared = next(ratio for ratio in ratios if fl.min_distance(settled[ratio].q) < 1e-6)
+print(first_shared)
 
 # %% tags=["check"]
-grade(explanation, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(
+    first_shared,
+    1.2,
+    hint="the title gives the distance of the closest pair; a number beside an agent counts those in its place",
+)
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★★ (3 points, proof) Let $c_1^\gamma > 0$ and $c_2^\alpha > 0$, but $c_2^\gamma = 0$. (a) Prove that claim
+# (i) of Theorem 3 still holds. (b) Which step of the proof of (iii) breaks? (c) Two agents in the plane start on
+# opposite sides of a γ-agent at rest in the origin, out of range of each other, and each circles it. Show that (iii)
+# fails for them.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# (a) $\dot H_\lambda = -c_2^\alpha v^\top\hat Lv \le 0$ still, so $\tfrac\lambda2\|x_i(t)\|^2 \le H_\lambda(0)$ as
+# before. (b) Step 3: $\dot H_\lambda = 0$ now gives equal velocities only among linked agents, and $v = 0$ only if
+# the net is connected. (c) Let $q_1 = -q_2 = (R\cos\omega t, R\sin\omega t)$ with $\omega = \sqrt{c_1^\gamma}$ and
+# $2R \ge r$. They are never in range, so $u_i = -c_1^\gamma q_i$, which is $-\omega^2q_i = \ddot q_i$: it is a
+# solution. Their velocities are opposite at all times and never agree.
+#
+# **Rubric, a point each:** the energy still falls and bounds the radius; the step that needs $c_2^\gamma > 0$ or a
+# connected net; circles of radius $R \ge r/2$ with $\omega^2 = c_1^\gamma$ solve the law.

@@ -13,33 +13,50 @@
 # %% [markdown]
 # # α-lattices: crossings, planarity, Harborth's count
 #
-# **Aims.** Build lattices, measure how far a configuration is from one, test Theorem 5 claim by claim, and find the one
-# that is false in space.
+# **Aims.** Know which patterns keep all neighbours at one distance; prove Theorem 5 claim by claim in the plane, and
+# find the claim that is false in space; measure how far a real flock is from a lattice.
 #
-# An *α-lattice* of scale $d$ and ratio $\kappa = r/d$ is a configuration in which every agent is exactly $d$ away from
-# each of its neighbours, the agents nearer than $r$ (Olfati-Saber 2006, Definition 1). Which patterns qualify depends
-# on the distance of *second* neighbours: it must not fall below $r$.
+# ## A scene
+#
+# Thirty-seven robots are to guard a square. Each should have its neighbours exactly 7 metres away: nearer is a
+# waste, farther leaves gaps. **Which patterns allow that, how many radio links will there be, and do links ever
+# cross?** The last question matters to whoever routes messages: a net without crossings is a map, and much is known
+# about maps. Bees answer the first question with hexagons; we shall see that the honeycomb's *corners* are one
+# answer, and its *centres* a better one.
+#
+# ## Two robots, three, four
+#
+# Two robots 7 apart are fine. Three form a triangle of side 7. A fourth can stand on the other side of one edge: a
+# rhombus, whose long diagonal is $7\sqrt3 = 12.1$. Is that allowed? Only if the two robots at its ends do not see
+# each other, that is if $r \le 12.1$, because *all* neighbours have to be at the distance 7. A square of side 7 has
+# diagonals of 9.9, so it is allowed for $r \le 9.9$. The range decides.
+#
+# > **Definition** (Olfati-Saber 2006). An *α-lattice* of scale $d$ and ratio $\kappa = r/d > 1$ is a configuration
+# > in which $\|q_j - q_i\| = d$ for all neighbours, that is for all pairs with $\|q_j - q_i\| < r$.
+#
+# So a regular pattern whose nearest neighbours are $d$ apart qualifies if its *second* neighbours are not nearer
+# than $r$: the ratio of second to first neighbour distance is the largest $\kappa$ allowed.
 
 # %%
 import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots
-from flockana.course import grade
+from flockana.course import figures, grade
 
 for name in ("triangular", "square", "honeycomb", "simple_cubic", "fcc", "hcp", "bcc"):
     print(f"{name:>12}: κ at most {lattice.max_ratio(name):.4f}")
-
-# %%
 d, r = 7.0, 8.4
 q = lattice.hexagonal_patch(3, d)
 pairs = lattice.links(q, r)
 print(f"{len(q)} agents, {len(pairs)} links, α-lattice: {lattice.is_alpha_lattice(q, d, r)}")
-print(f"Theorem 5 allows 3n − 6 = {lattice.planar_bound(len(q))}; Harborth's sharp bound is {lattice.harborth(len(q))}")
 
 # %% [markdown]
-# The same 37 places, with the range moved: below $\kappa = 1$ there are no links, up to $\sqrt3$ those of the lattice,
-# and beyond it the second neighbours come into range.
+# At the usual $\kappa = 1.2$ all of these qualify but one: the body-centred cubic lattice has second neighbours at
+# $2/\sqrt3 = 1.155$ times the first distance.
+#
+# The same 37 places, with the range moved: below $\kappa = 1$ there are no links, up to $\sqrt3$ those of the
+# lattice, and beyond it the second neighbours come into range.
 
 # %%
 from flockana.course.frames import slider
@@ -60,14 +77,74 @@ slider(with_range, kappas, name="κ", title="links of a patch of the hexagonal l
 # > nodes. Then (i) its net is planar, $m = 2, 3$; (ii) it has at most $3n - 6$ links, $m = 2$, $n \ge 3$; (iii) with
 # > $n > m + 1$ nodes it is not complete, $m = 1, 2, 3$.
 #
-# In the plane (i) holds: if two links crossed, each of the length $d$, two of their ends would be at most $d/\sqrt2$
-# apart, hence neighbours, and neighbours are exactly $d$ apart. In space it is false (below). The sharp bound in (ii)
-# is $\lfloor 3n - \sqrt{12n-3}\rfloor$ (Harborth 1974), which hexagonal spirals reach.
+# A net is *planar* if it can be drawn in the plane without crossing links, *complete* if all pairs are linked. (The
+# paper states (ii) without $n \ge 3$, and for two agents $3n - 6 = 0$ links is wrong: erratum E6.)
+#
+# *Proof of (i) in the plane.* The positions of the agents are a drawing. We show that its links do not cross.
+#
+# 1. Suppose the links $\{1, 2\}$ and $\{3, 4\}$ of four distinct agents have a point in common. If agent 3 lies on
+#    the link $\{1, 2\}$, then 1 and 3 are nearer than $d$, which step 4 excludes (likewise for the other three).
+#    Otherwise 1, 3, 2, 4 are the corners of a convex quadrilateral, with the two links as its diagonals.
+# 2. The four angles of a quadrilateral add up to 360°, so one of them is at least 90°. Let it be the one at agent 1,
+#    between the sides to 3 and to 4. (For another corner exchange the names.)
+# 3. In the triangle 3, 1, 4 the side opposite to 1 is the link $\{3, 4\}$. By the law of cosines $\|q_4-q_3\|^2 \ge
+#    \|q_3-q_1\|^2 + \|q_4-q_1\|^2 \ge 2\min(\|q_3-q_1\|, \|q_4-q_1\|)^2$. So one of the two sides is at most
+#    $\|q_4-q_3\|/\sqrt2 = d/\sqrt2$.
+# 4. Its ends are nearer than $d < r$, so they are neighbours; but neighbours are exactly $d$ apart. Contradiction.
+#    $\square$
+
+# %%
+figure, ax = plots.subplots(size=(4.4, 3.8))
+_ = figures.crossing_links(ax=ax)
+
+# %% [markdown]
+# **Figure 4.1.** Two crossing links of length 1 (solid and dashed). Of the four distances between their ends, one at
+# least is no more than $1/\sqrt2 = 0.71$; here it is 0.62.
+#
+# *Proof of (ii).* A planar drawing of a connected net of $n \ge 3$ agents with $e$ links divides the plane into $f$
+# faces, the outer one included, with $n - e + f = 2$ (Euler).
+#
+# 1. Every face has at least 3 links on its boundary, counted twice if the face lies on both sides, because there are
+#    no double links and $n \ge 3$.
+# 2. Every link is counted twice in all, so $3f \le 2e$.
+# 3. Insert $f = 2 - n + e$: $\;6 - 3n + 3e \le 2e$, that is $e \le 3n - 6$.
+# 4. A net that is not connected becomes so by adding links that do not cross, which only raises $e$. $\square$
+#
+# *Proof of (iii).* Suppose $n \ge m + 2$ agents are pairwise linked, hence pairwise $d$ apart.
+#
+# 1. Let $z_i = q_i - q_n$, $i = 1, \dots, n-1$. Then $\|z_i\|^2 = d^2$, and from $\|z_i - z_j\|^2 = d^2$ follows
+#    $\langle z_i, z_j\rangle = \tfrac12d^2$ for $i \ne j$.
+# 2. So the matrix of scalar products is $\tfrac12d^2(I + \mathbf 1\mathbf 1^\top)$. Its eigenvalues are
+#    $\tfrac12d^2$ and $\tfrac12d^2n$: it is regular.
+# 3. Vectors with a regular matrix of scalar products are linearly independent. But there are $n - 1 \ge m + 1$ of
+#    them in $\mathbb R^m$. Contradiction. $\square$
+#
+# **The sharp count.** $3n - 6$ is never reached by an α-lattice: the outer face is large. Harborth (1974) proved the
+# sharp bound $\lfloor 3n - \sqrt{12n-3}\rfloor$, which hexagonal spirals reach. For the 37 agents:
+
+# %%
+print(f"3n − 6 = {lattice.planar_bound(37)}, Harborth {lattice.harborth(37)}, the patch has {len(pairs)} links")
+sizes = np.arange(3, 61)
+figure, ax = plots.subplots(size=(6, 3.2))
+ax.plot(sizes, [lattice.planar_bound(n) for n in sizes.tolist()], "--", label="3n − 6")
+ax.plot(
+    sizes,
+    [len(lattice.links(lattice.hexagonal_spiral(n, d), r)) for n in sizes.tolist()],
+    "-",
+    label="hexagonal spiral",
+)
+ax.plot(sizes[::3], [lattice.harborth(n) for n in sizes[::3].tolist()], "o", markersize=3, label="Harborth")
+ax.set(xlabel="n, agents", ylabel="links")
+_ = ax.legend()
+
+# %% [markdown]
+# **Figure 4.2.** The bound of Theorem 5(ii), Harborth's bound, and the links of hexagonal spirals, which lie on the
+# latter for every $n$.
 #
 # ## What a flock really ends in
 #
-# Algorithm 2 ends near a lattice, not in one: the γ-agent's pull compresses it. Colour and shape of an agent tell its
-# number of neighbours; six of them is the perfect interior.
+# Algorithm 2 ends near a lattice, not in one: the γ-agent's pull compresses it. Colour and shape of an agent show
+# its number of neighbours; six of them is the perfect interior.
 
 # %%
 run = fl.scenario("paper-flocking").run()
@@ -75,72 +152,161 @@ end = run.q[-1] - run.q[-1].mean(axis=0)
 net = lattice.links(end, r)
 length = np.linalg.norm(end[net[:, 0]] - end[net[:, 1]], axis=1)
 plots.defect_map(end, net, lattice.coordination(len(end), net), strain=length / d - 1)
-print(f"largest strain {lattice.strain(end, d, r):.3f}, crossings {len(lattice.crossings(end, net))}")
+print(f"links {length.min():.2f} to {length.max():.2f} long, crossings {len(lattice.crossings(end, net))}")
 
 # %% [markdown]
-# Theorem 5 is about lattices, and this state is none: what it says is vacuous here. An extension needs no lattice: **if
-# all pairs are farther apart than $r/\sqrt2$, no two links cross**. (Two crossing links are the diagonals of a convex
-# quadrilateral, one of whose sides is at most $1/\sqrt2$ of the longer diagonal.) It is vacuous too, `extension` below,
-# because the closest pair is a little nearer than $r/\sqrt2$. But the argument bounds that side by the links that there
-# are, not by the range: with $\ell$ the longest link, pairs farther apart than $\ell/\sqrt2$ suffice. That holds here
-# (`extension-lengths`).
+# **Figure 4.3.** The end of the flock of lecture 00. Most inner agents have six. Near the lower edge a few have
+# five, beside one stretched link: a *defect*, as in a crystal.
+#
+# How far is it from a lattice? Two measures are in use. A configuration is a *quasi-lattice* with the uncertainty
+# $\delta$ if all its links have lengths between $d - \delta$ and $d + \delta$: the worst link counts. The *deviation
+# energy* is a mean,
+#
+# $$E(q) = \frac{1}{e+1}\sum_{\text{links}}\bigl(\|q_j - q_i\| - d\bigr)^2,$$
+#
+# with $e$ the number of terms, each link counted in both orders. If every term is at most $\delta^2$, the mean is,
+# so $E \le \delta^2$ for a quasi-lattice. The converse fails: one bad link among hundreds hardly shows in $E$.
+# Whoever reports $E$ alone hides the worst link, and whoever reports $\delta$ alone lets one link speak for all.
+# Look at both.
 
 # %%
-print(fl.verify("os-5", q=end, d=d, r=r))
+worst = abs(length - d).max()
+mean = np.sum((length - d) ** 2) * 2 / (2 * len(net) + 1)
+print(f"worst link: off by {worst:.2f}, δ/d = {worst / d:.3f};  deviation energy: √E/d = {np.sqrt(mean) / d:.3f}")
+
+# %% [markdown]
+# The typical link is off by some hundredths of $d$ and the worst one by sixteen: it spans the defect. This flock is
+# a good lattice with a flaw, which neither number alone would say.
+#
+# **Why triangles?** In lecture 01's potential a link at $d$ costs 0 and a pair out of range 0.74. So among lattices
+# of $n$ agents the energy is $V = \psi_\alpha(r_\alpha)\bigl(\tfrac12n(n-1) - e\bigr)$ with $e$ links: the more
+# links, the better. A square lattice has about $2n$ links, a honeycomb $\tfrac32n$, a triangular one nearly $3n$. A
+# flock that descends $V$ has every reason to form triangles, and squares that arise by chance shear into rhombi,
+# which costs nothing, until a fifth pair comes into range.
+#
+# Theorem 5 is about lattices, and this state is not one: its claims are vacuous here. Does the flock's net cross
+# itself nevertheless? Go back to the proof: step 3 needs no lattice.
+#
+# > **Theorem (extension).** In the plane let $\ell$ be the length of the longest link. If all pairs of agents are
+# > farther apart than $\ell/\sqrt2$, no two links cross. In particular this holds if all pairs are farther apart
+# > than $r/\sqrt2$.
+#
+# *Proof.* Steps 1 to 3 with $\|q_4-q_3\| \le \ell$ give two agents within $\ell/\sqrt2$ of each other. (If 3 lies on
+# the link $\{1, 2\}$, one of its ends is within $\ell/2$.) As links are shorter than $r$, so is $\ell$. $\square$
+#
+# Here the closest pair is a little nearer than $r/\sqrt2$, so the second form is vacuous; the first applies.
+
+# %%
+said = fl.verify("os-5", q=end, d=d, r=r)
+for claim in said.claims:
+    print(f"{claim.name:>18}: {claim.status}")
+limits = [fl.min_distance(end), r / np.sqrt(2), length.max() / np.sqrt(2)]
+print("closest pair {:.2f}, r/√2 = {:.2f}, longest link/√2 = {:.2f}".format(*limits))
 
 # %% tags=["facts"]
-said = fl.verify("os-5", q=end, d=d, r=r)
 assert [said.claim(name).status for name in ("i", "extension", "extension-lengths")] == [
     "vacuous",
     "vacuous",
     "verified",
 ]
+assert 0.1 < worst / d < 0.2
+assert np.sqrt(mean) / d < 0.05
+assert abs(mean - 2 * np.sum((length - d) ** 2) / (2 * len(net) + 1)) < 1e-12
+assert length.max() / np.sqrt(2) < fl.min_distance(end) < r / np.sqrt(2)
+assert all(len(lattice.links(lattice.hexagonal_spiral(n, d), r)) == lattice.harborth(n) for n in range(3, 61))
+assert lattice.max_ratio("bcc") < 1.2
+assert lattice.rigidity(lattice.square(2, 2, d), lattice.links(lattice.square(2, 2, d), r)).flexes == 1
+assert lattice.rigidity(q, pairs).self_stresses == 19
+assert lattice.coordination(len(end), net).max() == 6
 
 # %% [markdown]
+# (The library's headline for all claims together would read *verified*, because one claim is verified, none is
+# refuted, and vacuous ones do not count. It is the claims that one has to read.)
+#
 # ## In space, planarity fails
 #
-# The theorem's proof shows that edges do not cross. In the plane that *is* planarity; in space it is nothing of the
-# sort. Eight agents of a face-centred cubic lattice suffice (erratum E5):
+# In space links do not cross either, by the same proof within a plane through four agents. But does that make the
+# net planar? Planar means: *can be drawn in the plane*. In space, links that do not meet are the rule. Any net at
+# all can be drawn in space without crossings: put the nodes on the curve $(t, t^2, t^3)$, of which no four points
+# lie in one plane. So the argument proves nothing, and the claim is false. Eight agents of a face-centred cubic
+# lattice suffice (erratum E5):
 
 # %%
 eight = np.array([[0, 0, 0], [1, 0, 1], [2, 1, 1], [1, 1, 0], [2, 2, 0], [2, 1, -1], [1, 0, -1], [2, 0, 0]])
 fragment = eight * d / np.sqrt(2)
 edges = lattice.links(fragment, r)
-print(f"crossings: {len(lattice.crossings(fragment, edges))}, planar: {lattice.is_planar(8, edges)}")
-print(lattice.kuratowski(8, edges))
+print(f"α-lattice: {lattice.is_alpha_lattice(fragment, d, r)}, crossings: {len(lattice.crossings(fragment, edges))}")
+print(f"planar: {lattice.is_planar(8, edges)}; {lattice.kuratowski(8, edges)}")
 figure, ax = plots.subplots(m=3, size=(5, 4.5))
 _ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
 
 # %% [markdown]
+# **Figure 4.4.** Eight agents in space, all neighbours exactly 7 apart, no links crossing, and a net that no drawing
+# in the plane can avoid to cross. By Kuratowski's theorem such a net contains five nodes or three and three, joined
+# by paths all to all, and the output names them.
+#
 # ## Rigidity
 #
-# A framework whose only infinitesimal motions are translations and rotations holds its shape. Its rigidity matrix says
-# so, and its links carry a self-stress where there are more of them than needed:
+# Does a lattice hold its shape? Let the agents have velocities $p_i$. A link keeps its length to first order if
+# $\langle q_j - q_i, p_j - p_i\rangle = 0$: one linear equation for each link, in $nm$ unknowns. The matrix of these
+# equations is the *rigidity matrix*. Translations and rotations always solve them, in the plane 3 dimensions. If
+# there are no other solutions, the framework is *infinitesimally rigid*; that needs at least $2n - 3$ links. A
+# triangle has $3 = 2\cdot3 - 3$ and is rigid. A square has 4, one short of $5$, and shears into a rhombus.
 
 # %%
-print(lattice.rigidity(q, pairs))
+for name, places in (("square", lattice.square(2, 2, d)), ("patch of 37", q)):
+    found = lattice.rigidity(places, lattice.links(places, r))
+    print(f"{name}: {found}")
 
 # %% [markdown]
+# Links beyond $2n - 3$ are redundant and carry *self-stress*: some may pull while others push, and the whole is at
+# rest. The patch of 37 has $90 - 71 = 19$ such states, which is why a flock can come to rest strained.
+#
+# ## How many links does a flock need?
+#
+# A flock in the plane has three interesting numbers of links. With $n - 1$ it can just be connected: a tree, in
+# which every lost link cuts the flock in two. With $2n - 3$ it can just be rigid: the shape holds, and no link can
+# be spared. With Harborth's $\lfloor3n - \sqrt{12n-3}\rfloor$ it is as full as a lattice can be. For the 37 robots
+# of the scene these are 36, 71 and 90. The surplus of 19 is redundancy: so many links may fail, if they are the
+# right ones, before the shape goes soft.
+#
+# Now the practical side. Each link is a radio channel that has to be kept alive, so a designer would like few; each
+# missing link makes the shape softer and the agreement slower ($\lambda_2$ of lecture 00a), so the same designer
+# would like many. An α-lattice does not ask: its links are all the pairs in range. Whoever wants fewer must choose
+# them, and then the law is no longer one of *all neighbours*, but of a graph that somebody has planned (formation
+# control; the directed trees of lecture 08 are an example). What this lecture says about crossings matters there
+# too: a planar net can be drawn on a map for the operator, and messages can be routed along its faces.
+#
+# ## What surprised, and what the theorem does not say
+#
+# The definition leaves the pattern open, and yet every flock that we ran shows triangles: not because squares are no
+# lattices, but because triangles have more links, hence less energy. Theorem 5 does not say that α-lattices exist
+# for every $n$ and every net, nor that a flock ends in one (lecture 07). And a proof that is right for the plane was
+# printed for space too: the picture of links that do not cross is so convincing that one forgets what planar means.
+#
 # ## Summary
 #
 # - Which patterns are α-lattices is decided by the second neighbours.
-# - Links of pairs farther apart than $\ell/\sqrt2$ do not cross, lattice or not.
+# - Two crossing links have two ends within $1/\sqrt2$ of the longer link; so links of lattices do not cross, and
+#   links of any net do not if all pairs are far enough apart.
+# - Euler's formula bounds the links by $3n - 6$; Harborth's bound is sharp.
 # - In space a lattice's net need not be planar.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point, derivation) How many links can an α-lattice of 100 agents in the plane have at most? (A whole
-# number.)
+# **1.** ★★ (2 points, derivation) An α-lattice in the plane has 100 agents. (a) How many links does Theorem 5 allow?
+# (b) And Harborth's bound? (c) How many links does infinitesimal rigidity need at least? Give the list of three
+# whole numbers.
 
 # %% tags=["answer"]
-most = ...
+counts = ...
 
 # %% tags=["solution"]
-most = lattice.harborth(100)
+counts = [3 * 100 - 6, lattice.harborth(100), 2 * 100 - 3]
 
 # %% tags=["check"]
-grade(most, 265, hint="Harborth's number, not 3n − 6")
+grade(counts, [294, 265, 197], hint="the three formulas are in the lecture; Harborth's is rounded down")
 
 # %% [markdown] tags=["exercise"]
 # **2.** ★ (1 point, derivation) For $r = 1.2\,d$, at what least distance between any two agents does the extension
@@ -176,7 +342,8 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★ (1 point, derivation) Theorem 5 bounds the links of 2 agents by $3n - 6$. Is that right? (`True` or `False`.)
+# **4.** ★ (1 point, derivation) The paper states (ii) for all $n$, without $n \ge 3$. Does the bound $3n - 6$ hold
+# for the lattice of 2 agents? (`True` or `False`.)
 
 # %% tags=["answer"]
 bound_holds_for_two = ...
@@ -185,7 +352,7 @@ bound_holds_for_two = ...
 bound_holds_for_two = bool(len(lattice.links(lattice.line(2, d), r)) <= 3 * 2 - 6)
 
 # %% tags=["check"]
-grade(bound_holds_for_two, False, hint="erratum E6")
+grade(bound_holds_for_two, False, hint="count the links of two agents at the distance d")
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, counterexample) Counterexample hunt: give four agents in the plane, an array of shape (4, 2),
@@ -209,20 +376,67 @@ grade(
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) Theorem 5(i) is proved by showing that no two links of a lattice cross. Why does that
-# prove planarity in the plane and nothing in space? Name a net that can be drawn in space without crossings and is not
-# planar. In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+# prove planarity in the plane and nothing in space? Name a net that can be drawn in space without crossings and is
+# not planar. Answer in your own words.
 
-# %% tags=["answer"]
-planarity = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-planarity = """A graph is planar if it can be drawn in the plane without crossing edges. In the plane the positions
-of the agents are such a drawing. In space links that do not meet are the rule: any graph can be drawn in space
-without crossings, for instance the complete graph of five nodes in general position, which is not planar by
-Kuratowski's theorem."""
-# Rubric, a point each:
-# planarity is about a drawing in the plane; an example such as the complete graph of five
+# %% [markdown] tags=["solution"]
+# A graph is planar if it can be drawn in the plane without crossing edges. In the plane the positions of the agents
+# are such a drawing. In space links that do not meet are the rule: any graph can be drawn in space without
+# crossings, for instance the complete graph of five nodes in general position, which is not planar by Kuratowski's
+# theorem.
+#
+# **Rubric, a point each:** planarity is about a drawing in the plane; an example such as the complete graph of five
 # nodes, or K3,3.
 
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Move the slider of $\kappa$ above. At which least value on it is the patch no α-lattice
+# any more, though it still was at the value before? (Three significant digits.)
+
+# %% tags=["answer"]
+too_far = ...
+
+# %% tags=["solution"]
+too_far = 1.75  # √3 = 1.732 lies between 1.7 and 1.75
+
 # %% tags=["check"]
-grade(planarity, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(too_far, 1.75, digits=3, hint="the title says whether it is a lattice")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★★ (3 points, proof) Prove: in an α-lattice in the plane with $\kappa > 1$ no agent has more than six
+# neighbours, and if one has six, they form a regular hexagon. (Look at the angle at the agent between two
+# neighbours.) Does the same count hold for every net in which all pairs are at least $d$ apart and $r = 1.2\,d$?
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Let $j$ and $k$ be neighbours of $i$. Both are $d$ from $i$, and $\|q_j - q_k\| \ge d$: if they are neighbours it
+# is $d$, if not it is at least $r > d$. In the triangle with two sides $d$ and the third at least $d$ the angle at
+# $i$ is at least 60°. The angles between successive neighbours add up to 360°, so there are at most six, and if six,
+# each angle is exactly 60°: a regular hexagon. For the second question: neighbours may now be up to $1.2\,d$ away.
+# Two neighbours at $1.2\,d$ that are $d$ apart subtend the angle $2\arcsin(1/2.4) = 49.2°$, and seven such angles
+# are 344.6°, less than 360°. So seven neighbours are possible.
+#
+# **Rubric, a point each:** the angle between two neighbours is at least 60°; six of them fill the circle and are
+# equal; for the wider net seven fit, with a computation.
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, project) Open project, about two weeks: are there α-lattices in the plane that are not pieces
+# of the triangular lattice, for $\kappa = 1.2$, and with how many links? Search (for instance by minimising $V$ from
+# random starts, or by gluing squares and triangles), draw what you find, count links, test rigidity, and state as a
+# conjecture or prove what you can. Hand in a page with figures.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# A good answer finds rows of squares and triangles (the snub and elongated tilings are α-lattices, as square
+# diagonals $\sqrt2\,d$ exceed $1.2\,d$), flexible chains and rings with fewer links than rigidity needs, and none
+# with more links than the triangular pieces, as Harborth proved. It states clearly what was searched and what was
+# proved.
+#
+# **Rubric, a point each:** examples that the library confirms as α-lattices; a systematic count of links and
+# rigidity against a stated method of search; a statement that separates conjecture from proof.

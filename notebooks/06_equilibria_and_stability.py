@@ -13,49 +13,119 @@
 # %% [markdown]
 # # Equilibria and linearised stability
 #
-# **Aims.** Find the equilibrium that a flock settles in, linearise about it, and read poles, modes, delay margin and
-# the value of a gain off the linear system, having checked first that it tells the truth.
+# **Aims.** Find the equilibrium that a flock settles in and say of which kind it is; linearise about it and prove
+# which poles it has; check the linear model against the nonlinear law; read modes, delay margin and the value of a
+# gain off it.
 #
-# In the frame of the centre of mass Algorithm 2 is $\dot x = v$, $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I +
-# c_2^\alpha \hat L(x))v$ with $U_\lambda = c_1^\alpha V + \lambda J$, $\lambda = c_1^\gamma$. Near a minimum $x^*$ of
-# $U_\lambda$, where $v = 0$, and with $z = x - x^*$ small,
+# ## A scene
 #
-# $$\ddot z + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L)}_{D}\,\dot z
-#   + \underbrace{\nabla^2 U_\lambda(x^*)}_{S}\,z = 0, \qquad (s^2 I + s D + S)\,\nu = 0 .$$
+# The drones hover in formation when a gust hits the show. For some seconds the picture wobbles, like jelly, then it
+# stands again. The next evening the radio is congested, messages come a twentieth of a second late, and the same
+# gust makes the picture shake itself to pieces. **How fast does a formation calm down, in which shapes does it
+# wobble, and how much delay does it bear?** These are questions about small disturbances of a state at rest, and for
+# them control engineering has its sharpest tool: the linear system.
 #
-# $D$ is the damping, $S$ the stiffness, $s$ a pole and $\nu$ its mode. ($\lambda$ stays $c_1^\gamma$; $K$ stays the
-# velocity mismatch $\tfrac12\sum\|v_i\|^2$.)
+# ## Two agents
+#
+# Two agents under Algorithm 1 rest at the distance $d$. Let $y$ be their distance. From lecture 02,
+#
+# $$\ddot y = -2c_1^\alpha\,\phi_\alpha(\|y\|_\sigma)\,\frac{y}{\sqrt{1+\varepsilon y^2}} -
+#   2c_2^\alpha\,a_{12}\,\dot y .$$
+#
+# Put $y = d + \tilde x$ with $\tilde x$ small. As $\phi_\alpha(d_\alpha) = 0$, only the derivative of $\phi_\alpha$
+# counts in the first term, and the inner derivative of $\|y\|_\sigma$ is $y/\sqrt{1+\varepsilon y^2}$ once more:
+#
+# $$\ddot{\tilde x} + 2c_2^\alpha\,a_{12}(d)\,\dot{\tilde x} +
+#   2c_1^\alpha\,\phi_\alpha'(d_\alpha)\,\frac{d^2}{1+\varepsilon d^2}\,\tilde x = 0 .$$
+#
+# With the numbers of lecture 01, $\phi_\alpha'(d_\alpha) = 0.896$, $a_{12}(d) = 0.179$, and gains $c_1^\alpha = 30$,
+# $c_2^\alpha = 2\sqrt{30}$, this is an oscillator with $\omega_n = 21.1$ and $\zeta = 0.093$: a stiff spring, weakly
+# damped. The gain $2\sqrt{30}$ looks as if somebody had aimed at critical damping; but the bump has cut the friction
+# to 18 %, and the factor $d^2/(1+\varepsilon d^2) = 8.3$ has raised the stiffness. One does not see that in the law.
+# One sees it in the linearisation.
+#
+# ## The linearised flock
+#
+# In the frame of the centre of mass Algorithm 2 is (lecture 03) $\dot x = v$,
+# $\dot v = -\nabla U_\lambda(x) - (c_2^\gamma I + c_2^\alpha \hat L(x))v$ with
+# $U_\lambda = c_1^\alpha V + \lambda J$, $\lambda = c_1^\gamma$. A state at rest is an equilibrium exactly if
+# $\nabla U_\lambda(x^*) = 0$. Let $x = x^* + \tilde x$, with $\tilde x$ and $v = \dot{\tilde x}$ small, and keep
+# what is linear in them:
+#
+# 1. $\nabla U_\lambda(x^* + \tilde x) = \nabla U_\lambda(x^*) + S\tilde x + \dots = S\tilde x + \dots$ with
+#    $S = \nabla^2U_\lambda(x^*)$.
+# 2. $\hat L(x)v = \hat L(x^*)v + \dots$: the change of $\hat L$ is of first order, and $v$ is too, so their product
+#    is of second order.
+#
+# $$\ddot{\tilde x} + \underbrace{(c_2^\gamma I + c_2^\alpha \hat L(x^*))}_{D}\,\dot{\tilde x} +
+#   \underbrace{\nabla^2 U_\lambda(x^*)}_{S}\,\tilde x = 0, \qquad (s^2 I + s D + S)\,\nu = 0 .$$
+#
+# $D$ is the damping, $S$ the stiffness, both symmetric; $s$ is a pole and $\nu$ its mode.
+#
+# The eigenvalues of $S$ say of which kind the equilibrium is. All positive: a *minimum*. One negative: a *saddle*
+# (or a maximum, if all are). Zeros: *degenerate*, and one has to find out why.
 
 # %%
 import numpy as np
 
 import flockana as fl
 from flockana import lattice, plots, stability
-from flockana.course import grade
+from flockana.course import figures, grade
 
+figure, axes = plots.subplots(1, 3, size=(12, 3.9))
+_ = figures.equilibria(axes=axes)
+
+# %% [markdown]
+# **Figure 6.1.** Level curves of three potentials, an equilibrium (star), and two strongly damped motions (from
+# circles). At a minimum both arrive, at a saddle almost none, in a degenerate valley each arrives at a point of its
+# own.
+#
+# **Zeros that must be.** Turn the whole flock about its centre by the angle $\theta$, $x \mapsto Q(\theta)x$. No
+# distance changes, so $U_\lambda(Q(\theta)x) = U_\lambda(x)$, and $\nabla U_\lambda(Q(\theta)x^*) = 0$ for all
+# $\theta$. Differentiate at $\theta = 0$: $S\,Q'(0)x^* = 0$. So the rotation $Q'(0)x^*$ is a zero mode of $S$ at
+# *every* equilibrium. (Translations are none here, because the γ-agent holds the centre; under Algorithm 1 they
+# are.) Zero modes that come from a symmetry are harmless, and all others are news.
+#
+# > **Theorem (poles).** Let $D$ be positive definite and $S$ positive semidefinite. Then every pole has
+# > $\operatorname{Re} s < 0$ or is 0; the pole 0 has the multiplicity of the kernel of $S$, and no solution grows.
+# > If $S$ has a negative eigenvalue, there is a real pole $s > 0$.
+#
+# *Proof.*
+#
+# 1. Let $(s^2I + sD + S)\nu = 0$ with $\|\nu\| = 1$. Multiply by $\nu^*$: $s^2 + 2\zeta' s + \omega'^2 = 0$ with the
+#    numbers $2\zeta' = \nu^*D\nu > 0$ and $\omega'^2 = \nu^*S\nu \ge 0$.
+# 2. If $\omega'^2 > 0$, all coefficients are positive, and both roots of a quadratic with positive coefficients have
+#    negative real part. If $\omega'^2 = 0$, the roots are 0 and $-2\zeta'$.
+# 3. So a pole that is not in the open left half-plane is 0, and $S\nu = 0$.
+# 4. The pole 0 makes no term that grows like $t$: that would be a solution $\tilde x = \nu_1 + t\nu_0$ with
+#    $S\nu_0 = 0$ and $D\nu_0 + S\nu_1 = 0$. Multiply by $\nu_0^\top$:
+#    $\nu_0^\top D\nu_0 = -\nu_0^\top S\nu_1 = -(S\nu_0)^\top\nu_1 = 0$, against $D > 0$.
+# 5. The last sentence is the lemma of lecture 03. $\square$
+#
+# For Algorithm 2 with $c_2^\gamma > 0$ the matrix $D$ is positive definite, as $\hat L$ is positive semidefinite.
+# **So at a minimum a linearised flock of Algorithm 2 always calms down**; the question is how fast.
+#
+# ## A hexagon of nineteen
+
+# %%
 law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
 rest = fl.find_equilibrium(law, lattice.hexagonal_patch(2, 7.0))
 print(f"{rest.kind}, residual {rest.residual:.1e} of the force scale")
 print(f"its links are off d by {lattice.strain(rest.q, 7.0, 8.4):.1%} at most")
-
-# %% [markdown]
-# `find_equilibrium` minimises $U_\lambda$ with CasADi and IPOPT. The hexagon of 19 is a minimum, a little smaller
-# than the lattice: the γ-agent compresses it.
-#
-# ## Poles and modes
-
-# %%
 flock = fl.linearise(law, rest)
 print("zero modes:", [mode.name for mode in flock.zero_modes], " semisimple:", flock.semisimple)
 print(f"slowest decay rate {flock.decay_rate:.4f}; of the structure alone {flock.structural_decay_rate:.4f}")
-for mode in flock.modes[:6]:
+for mode in flock.modes[:7]:
     print(plots.mode_title(mode))
 _ = plots.pole_map(flock.eigenvalues)
 
 # %% [markdown]
-# The rotation about the γ-agent costs nothing, so the equilibrium is *semi-stable*: what converges is the shape, and
-# the flock ends somewhere on a circle of equilibria. The four slowest modes are the centre of mass, critically damped
-# by our choice $c_2^\gamma = 2\sqrt{c_1^\gamma}$. Then the structure begins:
+# **Figure 6.2.** The poles of nineteen agents. All lie in the open left half-plane but one, at 0: the rotation.
+#
+# `find_equilibrium` minimises $U_\lambda$. The hexagon is a minimum, a little smaller than the lattice: the γ-agent
+# compresses it. It is *semi-stable*: the shape converges, and the flock ends somewhere on a circle of equilibria.
+# The four slowest modes are the centre of mass, critically damped by our choice $c_2^\gamma = 2\sqrt{c_1^\gamma}$,
+# so at the rate $\sqrt{1.1} = 1.049$. Then the structure begins:
 
 # %%
 shapes = [mode for mode in flock.modes if "translation" not in mode.name][:3]
@@ -63,43 +133,60 @@ figure, axes = plots.subplots(1, 3, size=(13, 4.2))
 pairs = lattice.links(rest.q, law.alpha.r)
 for ax, mode in zip(axes, shapes, strict=True):
     plots.mode_shape(rest.q, pairs, mode.shape, ax=ax, title=plots.mode_title(mode))
-
-# %% [markdown]
-# The slowest of them in motion, much enlarged:
-
-# %%
 stability.mode_motion(flock, shapes[0]).player(height=520)
 
 # %% [markdown]
+# **Figure 6.3.** The three slowest structural modes. The slowest is *breathing*: all agents move outwards together
+# and back. The player shows it in motion, much enlarged.
+#
+# What do the shapes mean? A flock of $n$ agents in the plane has $2n$ coordinates, so $2n$ modes: 2 translations, 1
+# rotation, and $2n - 3$ shapes. For nineteen agents that is 35 shapes. A *breathing* mode changes all distances by
+# the same share. *Shear* modes come in pairs, because the hexagon looks the same after a turn by 60°: two shapes
+# with the same pole, of which one is the other one turned. (Modes 6 and 7 of the figure are such a pair.) If you see
+# two equal poles, look for a symmetry. If you see three, look again.
+#
+# Which modes are slow? A mode is stiff if it changes the lengths of many links, and soft if it changes few.
+# Breathing changes all of them, and yet it is among the slowest to decay here, because decay is not stiffness: an
+# underdamped mode decays at the rate $\zeta'$ of the proof, half of its friction, whatever its stiffness. Friction
+# between neighbours acts on *differences* of velocities, and in breathing neighbours move nearly alike. The fastest
+# modes are those in which neighbours move against each other. That is the same fact as in lecture 00a: the Laplacian
+# is small on smooth vectors and large on rough ones.
+#
 # ## Does it tell the truth?
 #
-# Push the flock along its slowest structural mode by $10^{-4}$ and let the *nonlinear* law act. The mismatch
-# $\tilde K = K/n$ must fall at twice the mode's decay rate, as it is quadratic in the velocities.
+# A linear model is a claim about small disturbances. Test it: push the flock along its slowest structural mode by
+# $10^{-4}$ and let the *nonlinear* law act. The mismatch $\tilde K = \tfrac1{2n}\sum\|v_i\|^2$ is quadratic in the
+# velocities, so it must fall at twice the mode's decay rate. Sample finely enough to see its peaks: a fit through
+# coarse peaks is off in the third digit.
 
 # %%
 slow = shapes[0]
 push = 1e-4 * slow.shape.real
-run = fl.simulate(law, rest.q + push, np.zeros_like(push), (0.0, 4.0), rtol=1e-12, atol=1e-14)
+times = np.linspace(0.0, 4.0, 4001)
+run = fl.simulate(law, rest.q + push, np.zeros_like(push), (0.0, 4.0), rtol=1e-12, atol=1e-14, t_eval=times)
 K = run.metrics()["normalised_velocity_mismatch"].values
 peaks = [k for k in range(1, len(K) - 1) if K[k - 1] < K[k] > K[k + 1] and run.t[k] > 0.2]
 measured = -0.5 * np.polyfit(run.t[peaks], np.log(K[peaks]), 1)[0]
 print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")
 
 # %% [markdown]
-# ## A control engineer's objects
+# ## Delay
 #
-# Everything is a `control.StateSpace`, with named signals.
-
-# %%
-centre = flock.translational
-print(centre.poles())
-system = stability.CentreOfMass(law.gains)
-omega = np.logspace(-1.5, 1.5, 200)
-_ = plots.bode({"q_r to q_c, p_r = dq_r/dt": system.frequency_response(omega)})
-
-# %% [markdown]
-# How much delay in *all* interactions does the flock survive? The characteristic equation
-# $\det(s^2 I + (sD + S)e^{-s\tau}) = 0$ has infinitely many roots; a Chebyshev discretisation finds the rightmost.
+# Let everything that an agent hears be late by $\tau$. The linear equation becomes
+# $\ddot{\tilde x}(t) + D\dot{\tilde x}(t-\tau) + S\tilde x(t-\tau) = 0$, and a solution $e^{st}\nu$ needs
+#
+# $$\det\bigl(s^2 I + (sD + S)e^{-s\tau}\bigr) = 0 ,$$
+#
+# which has infinitely many roots. For small $\tau$ all are on the left; as $\tau$ grows, a pair reaches the
+# imaginary axis at some $\tau^*$, the *delay margin*. For a single agent on a γ-agent it can be found by hand. At
+# the margin $s = i\omega$, so $\omega^2 = (i\omega c_2^\gamma + c_1^\gamma)e^{-i\omega\tau}$:
+#
+# $$\begin{aligned}
+# \omega^4 &= (c_1^\gamma)^2 + (c_2^\gamma)^2\omega^2 && \text{compare moduli: this gives } \omega \\
+# \omega\tau &= \arctan\bigl(c_2^\gamma\omega/c_1^\gamma\bigr) && \text{compare phases: this gives } \tau
+# \end{aligned}$$
+#
+# For a flock, a Chebyshev discretisation finds the rightmost roots.
 
 # %%
 margin = stability.delay_margin(stability.delay_system(law, rest.q))
@@ -107,37 +194,108 @@ print(margin)
 for share in (0.9, 1.1):
     root = stability.rightmost_roots(stability.delay_system(law, rest.q), share * margin.delay)[0]
     print(f"at {share:.1f} of the margin the rightmost root is {root:.3f}")
+w = np.sqrt((law.gains.c2_gamma**2 + np.sqrt(law.gains.c2_gamma**4 + 4.0 * law.gains.c1_gamma**2)) / 2.0)
+alone = np.arctan(law.gains.c2_gamma * w / law.gains.c1_gamma) / w
+print(f"the centre of mass alone would bear {alone:.4f}")
 
 # %% [markdown]
-# And what does a stronger damping $c_2^\gamma$ buy? Of the structure, ever more decay; of the centre of mass, less
-# beyond critical damping, $c_2^\gamma = 2\sqrt{c_1^\gamma}$, which is one of the points. (A sweep over $c_1^\gamma$
-# follows the equilibrium, which moves.)
+# The flock bears far less delay than its centre. Stiff links are fast oscillators, and a fast oscillator tolerates
+# little delay: its phase margin is used up at $\omega\tau$ of a fraction of a radian.
+#
+# A delay margin computed by a discretisation deserves a check of its own. For the single agent the equation is short
+# enough to integrate by hand: remember the past, and step.
+
+
+# %%
+def late(tau, dt=1e-3, end=60.0):
+    """Largest swing of the last quarter over that of the first, of x'' = -c1 x(t - tau) - c2 x'(t - tau)."""
+    c1, c2, wait, x, v = 1.1, 2.0 * np.sqrt(1.1), round(tau / dt), [1.0], [0.0]
+    for k in range(round(end / dt)):
+        past = max(k - wait, 0)
+        push = -c1 * x[past] - c2 * v[past]
+        v.append(v[-1] + dt * push)
+        x.append(x[-1] + dt * v[-1])
+    quarter = len(x) // 4
+    return max(map(abs, x[-quarter:])) / max(map(abs, x[:quarter]))
+
+
+for share in (0.9, 1.0, 1.1):
+    print(f"at {share:.1f} of the margin of one agent the swing changes by the factor {late(share * alone):.3f}")
+
+# %% tags=["facts"]
+assert late(0.9 * alone) < 0.2
+assert late(1.1 * alone) > 5.0
+
+# %% [markdown]
+# Below the margin the swing dies out, above it grows. The three numbers say more than the formula: at 0.9 of the
+# margin the agent is *stable*, and its swing takes many periods to die. A margin is a cliff, not a target; a
+# designer stays well away from it.
+#
+# Why is the flock so much more sensitive than its centre? Look at the poles of Figure 6.2. The centre's are at
+# $-1.05$; the structure's reach out to imaginary parts above 30. For a mode with stiffness $\omega'^2$ and little
+# damping the phase of $sD + S$ is nearly 0, so the delay alone turns the force against the velocity: at
+# $\omega'\tau$ of the order of the damping ratio the mode is no longer damped. The stiffest links decide, and they
+# are the ones that a designer makes stiff in order to keep the pattern tight. So there is a trade-off that no gain
+# removes: *tight formations need fast radios*.
+#
+# ## What does a stronger damping buy?
+#
+# Raise $c_2^\gamma$. The centre returns fastest at critical damping, $c_2^\gamma = 2\sqrt{c_1^\gamma}$; beyond, one
+# of its real poles creeps to 0. And the structure? It is stiffer, so it takes more, but the same happens to it in
+# the end: for very large $D$ the slow poles are $s \approx -\omega'^2/(2\zeta')$ in the notation of the proof, and
+# tend to 0.
 
 # %%
 sweep = stability.gain_sweep(
     law, rest.q, "c2_gamma", np.linspace(0.2, 4.0, 20) * 2.0 * np.sqrt(law.gains.c1_gamma), follow=False
 )
 _ = plots.gain_sweep(sweep)
+rates = {}
+for c2 in (4.0, 12.0, 16.0, 20.0, 40.0, 100.0):
+    damped = fl.Algorithm2(gains=fl.Gains(c2_gamma=c2), target=law.target)
+    rates[c2] = fl.linearise(damped, rest.q).structural_decay_rate
+    print(f"c2γ = {c2:5.1f}: the structure decays at the rate {rates[c2]:.3f}")
 
 # %% tags=["facts"]
 best_drawn = sweep.values[int(np.argmin(sweep.abscissa))]
 assert abs(best_drawn - 2.0 * np.sqrt(law.gains.c1_gamma)) < 1e-12
+assert rates[4.0] < rates[12.0] < rates[16.0] > rates[20.0] > rates[40.0] > rates[100.0]
+assert np.allclose([rates[12.0], rates[20.0], rates[100.0]], [6.89, 5.12, 0.871], rtol=2e-3)
+assert abs(measured - slow.decay_rate) < 5e-4
+pair = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0]
+assert abs(pair.damping_ratio - 0.0929) < 1e-4
+assert abs(abs(pair.eigenvalue) - 21.13) < 0.02
+assert margin.delay < 0.2 * alone
+assert slow.name == "breathing"
 
 # %% [markdown]
+# **Figure 6.4.** The rightmost pole over $c_2^\gamma$. The table below the figure is for the structure alone: its
+# decay rate grows until about $c_2^\gamma = 16$, to 8.6, and falls to 5.1 at 20 and to 0.87 at 100.
+#
+# So "more damping is better" is false twice: for the centre beyond 2.1, for the structure beyond 16.
+#
+# ## What surprised, and what the theorems do not say
+#
+# The slowest part of this flock is not its structure but its centre, and a designer who tunes the links tunes the
+# wrong thing. The delay margin is set by the fastest part. The theorem on poles is about the linear system; that the
+# nonlinear flock near a minimum behaves like it is true (the zero modes need care, see lecture 13), but *how near*
+# is near, linearisation does not say. And nothing here says which equilibrium a flock reaches.
+#
 # ## Summary
 #
-# - Near a minimum of $U_\lambda$ a flock is a mechanical system $s^2I + sD + S$; rotations and translations that
-#   nothing holds give zero modes.
+# - Near an equilibrium a flock is a mechanical system $s^2I + sD + S$; symmetric $D > 0$, $S \ge 0$ put all poles in
+#   the left half-plane, but for zero modes of a symmetry.
 # - A linearisation is checked against the nonlinear law before it is used.
-# - Poles, delay margin and gain sweeps follow from it.
+# - Poles, delay margin and gain sweeps follow from it; more damping helps up to a point, which differs for centre
+#   and structure.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
 # **1.** ★★ (2 points, derivation) Linearise Algorithm 1, $c_2^\alpha > 0$, at an infinitesimally rigid α-lattice in
 # *space*, at rest. How often does the first-order system of positions and velocities have the eigenvalue 0, counted
-# with its algebraic multiplicity? (Translations lie in the kernels of both $S$ and $D$, rotations in that of $S$ only.
-# A whole number.)
+# with its algebraic multiplicity? (Translations lie in the kernels of both $S$ and $D$, rotations in that of $S$
+# only. A whole number.)
 
 # %% tags=["answer"]
 zeros = ...
@@ -148,26 +306,27 @@ drifting = fl.linearise(fl.Algorithm1(), lattice.hexagonal_patch(2, 7.0)).drifti
 print("in the plane these drift:", drifting)
 
 # %% tags=["check"]
-grade(zeros, 9, hint="put x = ξ + tη into the linear equation: for which ξ and η does it solve it?")
+grade(zeros, 9, hint="put x = a + tb into the linear equation: for which a and b does it solve it?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points, derivation) Two agents under Algorithm 1, 7 apart, at rest. The only shape is the distance. What
-# is its damping ratio, to three significant digits? (By `linearise`, or from $\phi_\alpha'(d_\alpha)$ and $a_{ij}$ at
-# $d$ by hand.)
+# **2.** ★★ (2 points, derivation) Two agents under Algorithm 1 with its default gains, 7 apart, at rest, as in the
+# lecture. (a) What is the damping ratio of their distance? (b) Which $c_2^\alpha$, with $c_1^\alpha = 30$, would
+# make it 1? Give the list, each to three significant digits.
 
 # %% tags=["answer"]
-damping_ratio = ...
+pair_damping = ...
 
 # %% tags=["solution"]
-pair = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]])
-damping_ratio = pair.modes[0].damping_ratio
+ratio = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0].damping_ratio
+pair_damping = [ratio, 2.0 * np.sqrt(30.0) / ratio]  # the ratio is proportional to c2α
+print(pair_damping)
 
 # %% tags=["check"]
-grade(damping_ratio, 0.09291926, digits=3, hint="there is one mode")
+grade(pair_damping, [0.09291926, 117.892148], digits=3, hint="there is one mode; how does its damping depend on c2α?")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★ (1 point, derivation) For which $c_2^\gamma$ does the centre of mass return fastest, with $c_1^\gamma = 1.1$
-# as it is? (Four significant digits.)
+# **3.** ★ (1 point, derivation) For which $c_2^\gamma$ does the centre of mass return fastest, with
+# $c_1^\gamma = 1.1$ as it is? (Four significant digits.)
 
 # %% tags=["answer"]
 best = ...
@@ -179,9 +338,9 @@ best = 2 * np.sqrt(1.1)
 grade(best, 2.0976177, digits=4, hint="where do two real poles meet?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points, reading) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19 under
-# `law`: what does it name, relative to the forces of the law? Give it to two significant digits. (Read the message of
-# the error.)
+# **4.** ★★ (2 points, reading) `linearise` refuses a state that is no equilibrium. Try the *exact* hexagon of 19
+# under `law`: what does it name, relative to the forces of the law? Give it to two significant digits. (Read the
+# message of the error.)
 
 # %% tags=["answer"]
 residual = ...
@@ -197,9 +356,9 @@ residual = fl.linearise(law, lattice.hexagonal_patch(2, 7.0), allow_residual=Tru
 grade(residual, 0.04442693, digits=2, hint="the error says it, relative to the forces")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, design) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$, and
-# everything that it hears is late by $\tau$: $s^2 + (2s + 1)e^{-s\tau} = 0$. What is the delay margin, to four
-# significant digits? (At the margin $s = i\omega$: compare moduli first, then phases.)
+# **5.** ★★★ (3 points, design) Design: one agent follows a γ-agent at rest with $c_1^\gamma = 1$, $c_2^\gamma = 2$,
+# and everything that it hears is late by $\tau$: $s^2 + (2s + 1)e^{-s\tau} = 0$. What is the delay margin, to four
+# significant digits?
 
 # %% tags=["answer"]
 delay = ...
@@ -213,20 +372,107 @@ grade(delay, 0.647409203, digits=4, hint="two real equations, for ω and for τ"
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) The linearised flock has eigenvalues 0, and yet we say that its shape converges. Why is
-# that no contradiction, and what does it mean for the place in which a flock ends? In your own words, at least 30 of
-# them. (The check counts words, and your lecturer reads the text.)
+# that no contradiction, and what does it mean for the place in which a flock ends? Answer in your own words.
 
-# %% tags=["answer"]
-zero_modes = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-zero_modes = """The zero eigenvalues belong to rotations about the target: they move along the set of equilibria, on
-which the energy is constant, and do not change any distance. Across that set all eigenvalues have negative real
-part, so distances converge. Which equilibrium of the set is reached depends on the start and on any disturbance;
-the orientation is not controlled."""
-# Rubric, a point each:
-# the zero modes are tangent to a set of equilibria of one shape; the orientation reached
+# %% [markdown] tags=["solution"]
+# The zero eigenvalues belong to rotations about the target: they move along the set of equilibria, on which the
+# energy is constant, and do not change any distance. Across that set all eigenvalues have negative real part, so
+# distances converge. Which equilibrium of the set is reached depends on the start and on any disturbance; the
+# orientation is not controlled.
+#
+# **Rubric, a point each:** the zero modes are tangent to a set of equilibria of one shape; the orientation reached
 # depends on the start.
 
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Play the motion of the slowest structural mode. How do the six agents of the inner ring
+# and the twelve of the outer ring move? Answer with one word: `together` (all outwards at once) or `against` (one
+# ring outwards while the other goes inwards).
+
+# %% tags=["answer"]
+breathing = ...
+
+# %% tags=["solution"]
+radial = np.sum(slow.shape.real * rest.q, axis=1)  # positive: outwards
+outside = np.linalg.norm(rest.q, axis=1)
+inner, outer = (outside > 3.0) & (outside < 8.0), outside >= 8.0
+breathing = "together" if radial[inner].mean() * radial[outer].mean() > 0.0 else "against"
+
 # %% tags=["check"]
-grade(zero_modes, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(breathing, "together", hint="watch one agent of each ring")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★ (2 points, counterexample) Counterexample hunt: "If every agent by itself is damped, more friction makes
+# every mode decay faster." Give two values $[c, c']$ of $c_2^\gamma$ with $0 < c < c' \le 100$ such that the
+# structure of the hexagon decays more *slowly* at $c'$, by a factor of 2 at least.
+
+# %% tags=["answer"]
+slower = ...
+
+# %% tags=["solution"]
+slower = [16.0, 100.0]
+
+# %% tags=["check"]
+grade(
+    slower,
+    lambda c: (
+        len(c) == 2
+        and 0.0 < c[0] < c[1] <= 100.0
+        and next(
+            rate[0] >= 2.0 * rate[1]
+            for rate in [
+                [
+                    fl.linearise(
+                        fl.Algorithm2(gains=fl.Gains(c2_gamma=each), target=fl.StaticTarget((0.0, 0.0))),
+                        fl.find_equilibrium(
+                            fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))), lattice.hexagonal_patch(2, 7.0)
+                        ),
+                    ).structural_decay_rate
+                    for each in c
+                ]
+            ]
+        )
+    ),
+    form="list",
+    hint="the table of the sweep",
+)
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, proof) Prove: if $D$ commutes with $S$, the flock decomposes into independent oscillators,
+# and give $\omega_n$ and $\zeta$ of each. Show that for Algorithm 2 with $c_2^\alpha = 0$ this is so, and conclude
+# which $c_2^\gamma$ makes the slowest structural oscillator decay fastest.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Commuting symmetric matrices have a common orthonormal basis of eigenvectors $\nu_k$. In it
+# $\tilde x = \sum z_k\nu_k$, and each $z_k$ obeys $\ddot z_k + 2\zeta_k\omega_k\dot z_k + \omega_k^2z_k = 0$ with
+# $\omega_k^2$ the eigenvalue of $S$ and $2\zeta_k\omega_k$ that of $D$. With $c_2^\alpha = 0$ one has
+# $D = c_2^\gamma I$, which commutes with everything, and $\zeta_k = c_2^\gamma/(2\omega_k)$. An oscillator decays at
+# the rate $c_2^\gamma/2$ while $\zeta_k < 1$, and at $c_2^\gamma/2 - \sqrt{(c_2^\gamma)^2/4 - \omega_k^2}$ beyond,
+# which falls. The structure's rate is the minimum over $k$; the softest mode reaches its peak first, so the best
+# choice is $c_2^\gamma = 2\omega_{\min}$ with the least positive $\omega_k$ of the structure.
+#
+# **Rubric, a point each:** simultaneous diagonalisation with $\omega_k$ and $\zeta_k$; the case $c_2^\alpha = 0$;
+# the optimum with its reason.
+
+# %% [markdown] tags=["exercise"]
+# **10.** ★★★ (3 points, project) Open project, about two weeks: how does the slowest structural decay rate of a
+# hexagonal patch depend on the number of agents, $n = 7, 19, 37, 61, \dots$, and on $c_1^\gamma$? Predict it by a
+# continuum (an elastic disc with friction), compute it, check one point against a nonlinear run, and discuss what it
+# means for a show of three hundred drones. Hand in a page with figures.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# A good answer follows the equilibrium as the gains change, reports rates with the mode's name, finds how the
+# softest frequency falls with the radius of the patch, and compares with an independent estimate (for instance the
+# breathing mode of an elastic disc, frequency inversely proportional to its radius). It verifies one rate by a
+# nonlinear run as in the lecture.
+#
+# **Rubric, a point each:** a table or figure of rates over $n$ and $c_1^\gamma$, with equilibria found anew; an
+# independent prediction with its assumptions; a nonlinear check and a conclusion.

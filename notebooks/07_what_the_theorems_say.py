@@ -16,6 +16,22 @@
 # **Aims.** Read a theorem as a contract: which hypothesis does the work, when can it be met at all, and how would you
 # notice that a printed claim is false?
 #
+# ## A scene
+#
+# A safety engineer reads a paper on drone shows: "no two agents ever collide, if the initial energy is below $c^*$".
+# She computes the energy of her show, finds it a hundred times above, and asks the authors whether collisions are to
+# be feared. They answer that in simulations there were none. **What does the theorem say about her show?** Nothing.
+# Could it ever say something about a show of her size? That is a question one can decide with pencil and paper, and
+# papers seldom do. This lecture reads printed theorems as contracts: who has to deliver what, and can anyone?
+#
+# ## Two agents
+#
+# For two agents the theorem is fine. At rest at the distance $d$ they have $H = 0$, and any speeds with
+# $\tfrac12(\|p_1\|^2+\|p_2\|^2) < c^* = 52.4$ are below the bound. Then they never meet: to meet, one has to climb
+# the whole wall. Add a third agent out of range of both. It feels nothing and does nothing, and yet $H$ has grown by
+# $2\psi_\alpha(r_\alpha) = 1.47$, because $V$ counts pairs out of range. Add ten more bystanders, and the bound is
+# broken by agents that do not even move. That is the mechanism; how fast does it bite?
+#
 # ## A true statement that says nothing
 #
 # Theorem 1(iii) of Olfati-Saber (2006): if $H(x(0), v(0)) < c^* = \psi_\alpha(0)$, no two agents ever collide. (The
@@ -44,9 +60,30 @@ largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
 print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
-# The floor is a theorem of its own. A pair that lowers $V$ below $\psi_\alpha(r_\alpha)$ is between 6.568 and 8.4
-# long, a ratio below $\sqrt2$; among four points of the plane some two distances have a ratio of at least $\sqrt2$;
-# so no four agents are pairwise such, and Turán bounds the number of such pairs (erratum E4).
+# **Figure 7.1.** What the best lattice of $n$ agents costs (circles), and what every state costs at least, by the
+# theorem below (squares). Where the circles pass $c^*$, no lattice meets the hypothesis; where the squares do, no
+# state.
+#
+# The floor is a theorem of its own (erratum E4).
+#
+# > **Theorem.** For $m = 2$ and these parameters every state has
+# >
+# > $$V \ge \Bigl[\tfrac12 n(n-1) - \lfloor n^2/3\rfloor\Bigr]\,\psi_\alpha(r_\alpha),$$
+# >
+# > which is above $c^*$ for every $n \ge 23$.
+#
+# *Proof.* Call a pair *cheap* if it costs less than $\psi_\alpha(r_\alpha)$.
+#
+# 1. A cheap pair is between 6.568 and 8.4 long, because $\psi_\alpha$ falls up to $d$ and rises from there to $r$. The
+#    ratio of these two lengths is $1.279 < \sqrt2$.
+# 2. Among four points of the plane the largest distance is at least $\sqrt2$ times the least. (Three of them form an
+#    angle of at least 90°; the side opposite to it is at least $\sqrt2$ times the shorter of the other two.)
+# 3. By 1 and 2 no four agents are pairwise cheap: the graph of cheap pairs has no complete subgraph of four.
+# 4. Turán: a graph of $n$ nodes without such a subgraph has at most $\lfloor n^2/3\rfloor$ edges.
+# 5. The other $\tfrac12n(n-1) - \lfloor n^2/3\rfloor$ pairs cost at least $\psi_\alpha(r_\alpha)$ each, and cheap ones
+#    cost at least 0.
+# 6. At $n = 23$ the bracket is $253 - 176 = 77$, and $77\,\psi_\alpha(r_\alpha) = 56.7 > 52.4 = c^*$; at $n = 22$ it is
+#    70, that is 51.5. From 23 on the bracket grows with $n$. $\square$
 #
 # A certificate that does not go vacuous replaces $c^*$ by the barrier $\min\{V : \text{two agents coincide}\}$. `os-1`
 # checks both:
@@ -58,8 +95,9 @@ print(fl.verify("os-1", hexagon))
 # %% [markdown]
 # ## A false statement that nearly always looks true
 #
-# "Almost every solution converges to an α-lattice." From 40 random starts you may well see 40 lattices. A strict local
-# minimum of $V$ that is no lattice refutes it all the same, because it has an open basin. Five agents suffice:
+# "Almost every solution converges to an α-lattice." However many runs end in a lattice, they do not prove it, and one
+# *strict local minimum* of $V$ that is no lattice refutes it, because it attracts an open set of starts. Five agents
+# suffice: two of them share the place of one, and the four places form a rhombus that is almost a lattice.
 
 # %%
 print(fl.verify("E3").claim("double-agent").detail)
@@ -82,6 +120,9 @@ ax.plot(early.t, early.q[:, :, 0])
 _ = ax.set(xlabel="t (time)", ylabel="x (length)")
 
 # %% [markdown]
+# **Figure 7.2.** Three agents on a line. The fast one passes the second and then the third: two collisions of
+# distinct pairs, one after the other.
+#
 # Two crossings within 0.03 time units can hide between samples. The library therefore looks along the interpolated
 # paths, and bounds what it cannot see.
 #
@@ -97,6 +138,21 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
     print(*(item for item in fl.errata() if item.sort == sort and item.id.startswith("E")), sep="\n")
 
 # %% [markdown]
+# ## What surprised, and how to read the next theorem
+#
+# Nothing in this lecture needed a new technique; it needed the question "can the hypothesis be met?", asked with
+# numbers. A list for the next paper that you read:
+#
+# 1. Copy the theorem with all hypotheses, those in the text before it included.
+# 2. Meet the hypotheses once, with numbers, for the smallest case. Then for the size that matters.
+# 3. Which hypothesis does the work? Drop it and look for a counterexample.
+# 4. Which words hide a quantifier: *almost every*, *at most $k$ pairs*, *for all later times*?
+# 5. What would a simulation look like that refutes the claim? Look for that one, instead of for one that confirms it
+#    (lecture 10).
+#
+# Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
+# be wrong.
+#
 # ## Summary
 #
 # - A true theorem may have a hypothesis that no state satisfies.
@@ -119,18 +175,18 @@ n_none = least_infeasible_size(fl.AlphaInteraction(a=1.0, b=1.0))
 grade(n_none, 23, hint="how do V and c* change when a = b does?")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point, derivation) Erratum E9: a constant input $u = 2$ for one step $\Delta t = 0.1$ from rest. How far
-# does the printed update move the agent, exactly?
+# **2.** ★ (1 point, derivation) Erratum E9: a constant input $u = 2$ acts for one step $\Delta t = 0.1$ from rest. (a)
+# How far does the printed update move the agent? (b) How far does it really move? Give the list of both, exactly.
 
 # %% tags=["answer"]
 moved = ...
 
 # %% tags=["solution"]
 u, dt = 2.0, 0.1
-moved = (u * dt) * dt + 0.5 * u * dt**2
+moved = [(u * dt) * dt + 0.5 * u * dt**2, 0.5 * u * dt**2]
 
 # %% tags=["check"]
-grade(moved, 0.03, hint="the printed update uses the new velocity, and adds ½ u dt² to it")
+grade(moved, [0.03, 0.01], hint="the printed update uses the new velocity, and adds ½ u dt² to it")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★ (1 point, reading) A run of `paper-flocking` keeps all agents apart. What is the status of claim `iv-none` of
@@ -159,23 +215,19 @@ scattered = next(n for n in range(2, 99) if n * (n - 1) / 2 * alpha.psi_alpha(al
 grade(scattered, 13, hint="how many pairs out of range cost as much as c*?")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, words) In your own words, at least 30 of them: a strict local minimum of $V$ that is no lattice
-# refutes a claim about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough?
-# (A text; the check counts words, and your lecturer reads it.)
+# **5.** ★★★ (3 points, words) In your own words: a strict local minimum of $V$ that is no lattice refutes a claim
+# about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough?
 
-# %% tags=["answer"]
-basin = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-basin = """At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes
-it fall, so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the
-solutions that start in it are not almost none."""
-# Rubric, a point each:
-# the minimum is asymptotically stable, up to motions of the whole; so it attracts an open
+# %% [markdown] tags=["solution"]
+# At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes it fall,
+# so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the solutions that
+# start in it are not almost none.
+#
+# **Rubric, a point each:** the minimum is asymptotically stable, up to motions of the whole; so it attracts an open
 # set; which has positive measure, so that not almost every solution does otherwise.
-
-# %% tags=["check"]
-grade(basin, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, counterexample) Is a state with $V \ge c^*$ bound to hold two agents that are nearly in one
@@ -200,3 +252,36 @@ grade(
     form="list",
     hint="what does a pair out of range cost?",
 )
+
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Show `early.player()`. How many times does one agent pass another? (A whole number.)
+
+# %% tags=["answer"]
+passes = ...
+
+# %% tags=["solution"]
+early.player()
+order = np.argsort(early.q[:, :, 0], axis=1)
+passes = int(np.any(np.diff(order, axis=0) != 0, axis=1).sum())
+
+# %% tags=["check"]
+grade(passes, 2, hint="one agent is fast: whom does it overtake?")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★ (2 points, proof) Prove the certificate that does not go vacuous: if $H(0)$ is below the barrier
+# $\min\{V : \text{two agents coincide}\}$, with $V$ in place of $c_1^\alpha V$ as the gains are 1, then no two
+# agents ever coincide under Algorithm 1. Why is this bound never worse than $c^*$?
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# $H$ does not rise (lecture 02) and $V \le H$, because the kinetic energy is non-negative. If two agents coincided
+# at some time, $V$ at that time would be at least the barrier, and so would $H \le H(0)$: a contradiction. Every
+# state with two coincident agents has $V \ge \psi_\alpha(0) = c^*$, because that pair costs $c^*$ and the others at
+# least 0; so the minimum over such states is at least $c^*$, and the new condition admits every start that the old
+# one admits.
+#
+# **Rubric, a point each:** the contradiction from $V \le H \le H(0)$; the barrier is at least $c^*$, with its
+# reason.

@@ -16,6 +16,23 @@
 # **Aims.** Run a law that knows only bearings and distances. Then read its theorem, refute it with a counterexample,
 # and see what can be saved.
 #
+# ## A scene
+#
+# Underwater there is no GPS. A glider hears from which direction its neighbour's sound comes, and from its echo how
+# far away it is; nobody can tell it where it *is*. Fish manage with less. **Can a flock keep together with bearings
+# and distances only, and does the theorem that says so hold?** The first half of the question is about information:
+# which terms of a law can be computed from what is sensed? The second is a lesson in reading a proof: this one
+# computes eigenvalues, all in the left half-plane, and concludes something false.
+#
+# ## One glider behind another
+#
+# Glider 1 perceives glider 0 and wants to be $d$ away from it; glider 0 perceives nobody and drifts on. With
+# $x = q_0 - q_1$ and a spring of the strength $w_0$, the error of the length behaves like a damped oscillator: if
+# $\|x\| > d$ the spring pulls, if $\|x\| < d$ it pushes. The *direction* of $x$ is free: nothing in the law says
+# whether 1 swims to the left or to the right of 0. So the goal is no point but a sphere of positions, and a theorem
+# that promises $x \to 0$ has confused the error with the thing itself. Keep this picture; the rest is the same with
+# more gliders.
+#
 # Jond (2025; `fl.cite(fl.scenario("zone-51"))`) surrounds each agent with zones of radii $0 < z_r \le z_c <
 # z_a < z_s$: flockmates up to $z_c$ repel, those between $z_r$ and $z_a$ attract and align, intruders up to $z_s$
 # repel. The law is a map from step to step,
@@ -24,19 +41,20 @@
 #   p_i \leftarrow p_i + \Delta t\, u_i, \qquad q_i \leftarrow q_i + \Delta t\, p_i ,$$
 #
 # with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
-# \|q_j-q_i\|$, the bearing $b_{ij} = (q_j-q_i)/d_{ij}$, the sets $R_i = \{j : d_{ij} \le z_c\}$, $A_i = \{j :
-# z_r < d_{ij} \le z_a\}$ and the aliens $S_i = \{k : 0 < d_{ik} \le z_s\}$, and weights $w$ whose sum over the set is
+# \|q_j-q_i\|$, the bearing $\hat b_{ij} = (q_j-q_i)/d_{ij}$, the sets $\mathcal R_i = \{j \ne i : d_{ij} \le
+# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the aliens $\mathcal S_i = \{k : 0 < d_{ik} \le
+# z_s\}$, and weights $w$ whose sum over the set is
 # $\bar w$:
 #
 # $$\begin{gathered}
-#   u_i^{lc} = \frac1{\bar w^{lc}}\sum_{A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
-#   u_i^{la} = \frac1{\bar w^{la}}\sum_{A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
-#   u_i^{ls} = \sum_{R_i} w_{ij}^{ls}\,(d_{ij}-z_c)\,b_{ij},
+#   u_i^{lc} = \frac1{\bar w^{lc}}\sum_{\mathcal A_i} w_{ij}^{lc}\,(q_j - q_i), \quad
+#   u_i^{la} = \frac1{\bar w^{la}}\sum_{\mathcal A_i} w_{ij}^{la}\,(p_j - p_i), \\[1ex]
+#   u_i^{ls} = \sum_{\mathcal R_i} w_{ij}^{ls}\,(d_{ij}-z_c)\,\hat b_{ij},
 # \end{gathered}$$
 #
 # $$\begin{gathered}
-#   u_i^{ss} = \sum_{S_i} w_{ik}^{ss}\,(d_{ik}-z_s)\,b_{ik}, \quad
-#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-z_c)\,b_{ie}, \\[1ex]
+#   u_i^{ss} = \sum_{\mathcal S_i} w_{ik}^{ss}\,(d_{ik}-z_s)\,\hat b_{ik}, \quad
+#   u_i^{oa} = \sum_e w_i^{oa}\min(0,\, d_{ie}-z_c)\,\hat b_{ie}, \\[1ex]
 #   u_i^{ga} = w_i^{ga}\Bigl(v^d\frac{p_i}{\|p_i\|} - p_i\Bigr),
 # \end{gathered}$$
 #
@@ -60,8 +78,8 @@ hunted = fl.scenario("zone-52").run()
 hunted.window(0.0, 32.0).animate(seconds=4, fps=8)
 
 # %% [markdown]
-# Triangles are the zones in which an agent heeds obstacles, the cross is an alien that hunts within the tinted area.
-# The directed zones let a flock through a gap that the conventional method, a buffer around the whole obstacle,
+# Triangles are the zones in which an agent reacts to obstacles, the cross is an alien that hunts within the tinted
+# area. The directed zones let a flock through a gap that the conventional method, a buffer around the whole obstacle,
 # closes:
 
 # %%
@@ -70,10 +88,14 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
+# **Figure 8.1.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
+# circle) the same agents do not get through (right).
+#
 # ## Two forms, and where they part
 #
-# From a bearing $b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}b_{ij}$, and from their rates
-# $p_j - p_i = d_{ij}\dot b_{ij} + \dot d_{ij}b_{ij}$ (13). So each behaviour has a form without positions:
+# From a bearing $\hat b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}\hat b_{ij}$, and from their
+# rates $p_j - p_i = d_{ij}\tfrac{d}{dt}\hat b_{ij} + \dot d_{ij}\hat b_{ij}$ (13). So each behaviour has a form
+# without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -84,9 +106,9 @@ for name in by_position:
     print(f"{name:>10}: {np.abs(by_position[name] - by_bearing[name]).max():.1e}")
 
 # %% [markdown]
-# They agree as long as the global speed term is told the agent's own velocity. No bearing tells that; the paper
-# estimates it by (17), which adds up the inputs but forgets the global term itself. After one step the estimate is off
-# by
+# They agree as long as the agent knows its own velocity, which the global speed term needs. No bearing contains it;
+# the paper estimates it by (17), which adds up the inputs but forgets the global term itself. After one step the
+# estimate is off by
 
 # %%
 bearing_distance.estimate_gap()
@@ -118,11 +140,14 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
 # %% [markdown]
+# **Figure 8.2.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
+# plain clip they end at 3.
+#
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
 # (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
-# $\rho$:
+# $d$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
 # > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
@@ -134,6 +159,10 @@ tree = fl.scenario("zone-tree").run()
 figure, axes = plots.subplots(1, 2, size=(11, 4))
 plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
 _ = plots.snapshot(tree, ax=axes[1], velocities=False)
+
+# %% [markdown]
+# **Figure 8.3.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
+# colour shows how far an edge is from its desired length. At the end every edge is right, and none is 0.
 
 # %%
 verdict = fl.verify("zone-1-printed", tree)
@@ -150,13 +179,13 @@ print(f"edges {lengths.min():.3f} to {lengths.max():.3f} long, largest force {np
 
 # %% [markdown]
 # $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge of length
-# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - \rho/\|x\|)$ to the characteristic polynomial of $A_{cl}$
+# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - d/\|x\|)$ to the characteristic polynomial of $A_{cl}$
 # (erratum J2):
 
 # %%
 for ratio in (2.0, 1.0, 0.5):
     first, second = (complex(root) for root in spanning_trees.frozen_eigenvalues(ratio))
-    print(f"|x| = {ratio:g} ρ: eigenvalues {first:.3f} and {second:.3f}")
+    print(f"|x| = {ratio:g} d: eigenvalues {first:.3f} and {second:.3f}")
 
 # %% [markdown]
 # Hurwitz where edges are too long, singular where they are right, unstable where they are too short. And $A_{cl}$
@@ -164,7 +193,7 @@ for ratio in (2.0, 1.0, 0.5):
 #
 # ## What is true
 #
-# > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = \rho_e$, $\dot x = 0$: a product of
+# > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = d$, $\dot x = 0$: a product of
 # > spheres of dimension $(n-1)(m-1)$. At each of them that many eigenvalues vanish, because bearings are free; the
 # > others lie in the open left half-plane, so length and velocity errors near the spheres decay exponentially.
 
@@ -173,8 +202,9 @@ print(fl.verify("zone-1-corrected", tree))
 spanning_trees.spacing_spectrum(2).result
 
 # %% [markdown]
-# Linearised in the coordinates of the agents the law has two more zero modes, the translations; and nobody damps the
-# velocity of the root, which all take over:
+# (The output writes `μ` for the strength $w_0$ of the spring.) Linearised in the coordinates of the agents the law
+# has two more zero modes, the translations. The root feels no force at all: its velocity is undamped, and the other
+# agents adopt it.
 
 # %%
 found = linearise(tree.law, rest)
@@ -185,6 +215,19 @@ figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
 # %% [markdown]
+# **Figure 8.4.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
+# and eleven zeros.
+#
+# ## What surprised, and what the corrected theorem does not say
+#
+# The printed proof contains a true computation: the eigenvalues are right. What is false is the step from
+# eigenvalues of a matrix that *depends on the state* to the behaviour of solutions. A linear system whose matrix
+# changes in time may grow although every one of its matrices is Hurwitz; students meet this with a swing that is
+# pumped at the right moments. The correction replaces *from any initial condition* by *near the equilibria*, and the
+# point by a set. It does not say that agents that are not joined by an edge keep a distance: two branches of the
+# tree may cross. It does not say what happens if the graph changes, as a perception graph does when agents move. And
+# it says nothing of starts far from the spheres.
+#
 # ## Summary
 #
 # - Bearings and distances suffice for all terms but the global speed.
@@ -208,18 +251,19 @@ fastest = float(bearing_distance.fastest_under_drag(0.05, 2, 4))
 grade(fastest, 1.62779186, digits=4, hint="the speed at which one step gains as much as the bound takes")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point, derivation) Two agents: 1 perceives 0 and wants to be 1 away, both at rest, 0.5 apart. What is the
-# acceleration of agent 1 along the line from 0 to 1 ($w_0 = 1$)? (Exactly.)
+# **2.** ★★ (2 points, derivation) Two agents on a line: 1 perceives 0 and wants to be 1 away, both at rest, $w_0 = 1$.
+# What is the acceleration of agent 1 along the line from 0 to 1 if they are (a) 0.5, (b) 1, (c) 2 apart? Give the
+# list, exactly.
 
 # %% tags=["answer"]
 push = ...
 
 # %% tags=["solution"]
 pair = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
-push = float(pair.acceleration(0.0, [[0.0], [0.5]], [[0.0], [0.0]])[1, 0])
+push = [float(pair.acceleration(0.0, [[0.0], [far]], [[0.0], [0.0]])[1, 0]) for far in (0.5, 1.0, 2.0)]
 
 # %% tags=["check"]
-grade(push, 0.5, hint="a spring that is too short pushes: mind the sign")
+grade(push, [0.5, 0.0, -1.0], hint="a spring that is too short pushes: mind the sign")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★★ (2 points, experiment) How many zero modes, translations included, has the same law on a tree of 5 agents in
@@ -251,35 +295,68 @@ grade(least, 0.07065939, digits=3, hint="the run's metrics hold the least distan
 
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, derivation) Derive: the eigenvalues of an edge solve $s^2 + s + w = 0$ with $w = 1 -
-# \rho/\|x\|$. Above which ratio $\|x\|/\rho$ are they complex, so that the edge's length swings? (Four significant
+# d/\|x\|$. Above which ratio $\|x\|/d$ are they complex, so that the edge's length swings? (Four significant
 # digits.)
 
 # %% tags=["answer"]
-ratio = ...
+threshold = ...
 
 # %% tags=["solution"]
-ratio = 1.0 / (1.0 - 0.25)  # w > 1/4
+threshold = 1.0 / (1.0 - 0.25)  # w > 1/4
 
 # %% tags=["check"]
-grade(ratio, 1.33333333, digits=4, hint="the sign of the discriminant")
+grade(threshold, 1.33333333, digits=4, hint="the sign of the discriminant")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) The matrix $A_{cl}$ is Hurwitz at every state along some trajectory. Does the trajectory
 # therefore converge? Say why eigenvalues of a matrix that depends on the state do not decide that, and what the
-# corrected theorem relies on instead. In your own words, at least 30 of them. (The check counts words, and your
-# lecturer reads the text.)
+# corrected theorem relies on instead. Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Not therefore. Eigenvalues decide the behaviour of a linear system with a constant matrix; with a matrix that
+# changes along the trajectory, solutions can grow though every frozen matrix is Hurwitz, and here the matrix is not
+# even the derivative of the right-hand side. The corrected theorem linearises at an equilibrium, where the derivative
+# is constant, and claims convergence only near the set of equilibria.
+#
+# **Rubric, a point each:** frozen eigenvalues do not decide systems that vary; linearisation at an equilibrium holds
+# in a neighbourhood only.
+
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Show `tree.player()` and watch the end. Do the agents come to rest? Answer `True` or
+# `False`, and look at the root for the reason.
 
 # %% tags=["answer"]
-frozen = ...
+at_rest = ...
 
 # %% tags=["solution"]
-frozen = """Not therefore. Eigenvalues decide the behaviour of a linear system with a constant matrix; with a matrix
-that changes along the trajectory, solutions can grow though every frozen matrix is Hurwitz, and here the matrix is
-not even the derivative of the right-hand side. The corrected theorem linearises at an equilibrium, where the
-derivative is constant, and claims convergence only near the set of equilibria."""
-# Rubric, a point each:
-# frozen eigenvalues do not decide systems that vary; linearisation at an equilibrium holds in
-# a neighbourhood only.
+tree.player()
+print(np.linalg.norm(tree.p[-1], axis=1).round(3))  # all have the velocity of the root, which feels no force
+at_rest = bool(np.linalg.norm(tree.p[-1], axis=1).max() < 0.01)
 
 # %% tags=["check"]
-grade(frozen, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(at_rest, False, hint="tree.p[-1] holds the velocities at the end")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★★ (3 points, proof) One edge whose parent moves uniformly: $\ddot x = -w_0(1 - d/\|x\|)\,x - \dot x$ in
+# $\mathbb R^m$. Linearise at a state with $\|x\| = d$, $\dot x = 0$, and prove the corrected theorem for it: along
+# $x$ the eigenvalues are the roots of $s^2 + s + w_0$, across it 0 and $-1$, each $m - 1$ times. Why does that prove
+# nothing about $x = 0$?
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Let $e = x/\|x\|$ and $\tilde x$ be a small displacement. To first order
+# $\|x + \tilde x\| = d + \langle e, \tilde x\rangle$, so $1 - d/\|x+\tilde x\| = \langle e,\tilde x\rangle/d$, and
+# the force is $-w_0\langle e,\tilde x\rangle e$, as the factor vanishes at $x$ itself. So
+# $\ddot{\tilde x} = -w_0ee^\top\tilde x - \dot{\tilde x}$. Along $e$: $s^2 + s + w_0 = 0$. Across it: $s^2 + s = 0$,
+# that is 0 and $-1$, in each of $m - 1$ directions. For $w_0 > 0$ the roots along $e$ have negative real part, and
+# the zeros belong to turning the edge, along the sphere of equilibria. At $x = 0$ the force is not even defined, and
+# the linearisation at $\|x\| = d$ says nothing about states far from it.
+#
+# **Rubric, a point each:** the linearised force is computed; both pairs of eigenvalues with their multiplicities; a
+# linearisation is local, and the law is undefined at 0.

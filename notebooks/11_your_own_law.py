@@ -17,9 +17,33 @@
 # formula may lack, and what that costs. Then add a law of another kind in one file, its theorem in a second and its
 # proof in a third.
 #
+# ## A scene
+#
+# You have an idea: fish might attract each other with a force that grows up to some distance and then fades. By
+# tonight you want to know whether such a school keeps together, by tomorrow whether that can be proved. **How far is
+# it from an idea to a law with a verdict, and from a verdict to a theorem?** Five lines, three lines, and an
+# evening. This lecture is a workshop: it ends with a law, a theorem and a proof of your own.
+#
+# ## What makes a pair law
+#
+# A pair law needs a potential $\psi$ of the distance, and the weight $a_{ij}$ of the friction. From the potential
+# everything else follows by differentiating, once for the force, twice for the stiffness. But not every formula
+# gives a law for which the theorems hold. The proofs of lectures 01 to 03 used four properties: the force vanishes
+# smoothly where two agents coincide, it has no jump inside the range, it ends at the range without a jump, and the
+# weight is not negative. A formula may lack any of them, and then a theorem that used it claims nothing. The library
+# looks for each, and says which is missing.
+#
 # ## A law in five lines
 #
-# A double well: two agents repel each other within $d$, attract each other beyond it, and end smoothly at $r$.
+# Two agents are to repel each other nearer than $d$, to attract each other from $d$ to $r$, and to feel nothing beyond,
+# without a jump at $r$. So let the potential have the derivative $\psi'$ below, whose first factor changes its sign at
+# $d$ only. To integrate it, put $z = r^2 - \|q_j - q_i\|^2$ for the square that is left to the range, and $z_d = r^2 -
+# d^2$ for its value at $d$ (with the strength `k` of the code left out):
+#
+# $$\psi' = \|q_j-q_i\|\,\bigl(\|q_j-q_i\|^2 - d^2\bigr)\,z^2
+#   \quad\Longrightarrow\quad \psi = \tfrac12\Bigl(\tfrac14 z^4 - \tfrac13 z_dz^3 + \tfrac1{12} z_d^4\Bigr).$$
+#
+# It is 0 at $d$ and $z_d^4/24$ at $r$, and has a double zero of the force at $r$.
 
 # %%
 from pathlib import Path
@@ -34,7 +58,7 @@ from flockana.course import grade
 # %%
 s, d, r, k = sp.symbols("s d r k")
 well = fl.pair_law(
-    k * (s**2 - d**2) ** 2 * (r**2 - s**2) ** 2,
+    k / 2 * ((r**2 - s**2) ** 4 / 4 - (r**2 - d**2) * (r**2 - s**2) ** 3 / 3 + (r**2 - d**2) ** 4 / 12),
     adjacency=(1 - s / r) ** 2,
     range=3.0,
     length=2.0,
@@ -56,6 +80,9 @@ ax.set(xlabel="distance (length)", ylabel="length/time², length²/time²")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.1.** Force and potential of the law. The force repels below 2, attracts up to 3, and ends there without
+# a jump or a corner.
+#
 # ## Its verdicts in three
 
 # %%
@@ -133,6 +160,9 @@ ax.set(xlabel="t (time)", ylabel="K (length²/time²)")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.2.** The mismatch of thirty agents and the bound of the theorem, which is true and not sharp: it takes
+# the weight at the largest distance for all pairs.
+#
 # A verdict on a run is `numeric`: it says what this run did. For all runs there is the proof.
 #
 # ## The proof
@@ -144,6 +174,15 @@ for step in PROOF.steps():
     print("✓" if step.holds else "✗", step.text)
 
 # %% [markdown]
+# ## What surprised, and what a proof by computer does not say
+#
+# A formula can look right and be wrong in a way that no run shows: a potential that repels again beyond some
+# distance still holds agents at $d$, and fails only when somebody strays. The check "does the force change its sign
+# once?" costs a line. A symbolic proof of an identity for one generic pair is a proof for all $n$, *because* the
+# energy is a sum over pairs; for a law that is no such sum, like a normalised mean, the same computation for $n = 3$
+# proves the case $n = 3$. Say which of the two you have. And the rate that `flow` returns is a promise of yours: the
+# residual tests it along runs, the proof tests it for all.
+#
 # ## Summary
 #
 # - From the formula of a pair potential force, energy, Jacobian and compiled code follow, and what the formula lacks is
@@ -154,7 +193,7 @@ for step in PROOF.steps():
 # %% [markdown] tags=["exercise"]
 # ## Exercises
 #
-# **1.** ★ (1 point, reading) Morse's potential $\psi(s) = e^{-2(s-1)} - 2e^{-(s-1)}$ holds two agents at 1. Give it as
+# **1.** ★ (1 point, reading) Morse's potential `exp(-2*(s - 1)) - 2*exp(-(s - 1))` holds two agents at 1. Give it as
 # a formula with range 4 and no adjacency. How many things does it lack? (A whole number.)
 
 # %% tags=["answer"]
@@ -168,18 +207,20 @@ lacking = len(morse.faults)
 grade(lacking, 2, hint="look at the force at both ends of the range: morse.faults")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★★ (2 points, derivation) How stiff is a link of the double well at its length $d$? That is the slope of the
-# force there, by hand or by `sympy`, exactly.
+# **2.** ★★ (2 points, derivation) By hand or by `sympy`, for `well`: (a) how stiff is a link at its length $d$, that is
+# the slope of the force there? (b) How much energy does it take to pull a pair out of range? Give the list, each to
+# four significant digits.
 
 # %% tags=["answer"]
 stiffness = ...
 
 # %% tags=["solution"]
-psi = k * (s**2 - d**2) ** 2 * (r**2 - s**2) ** 2
-stiffness = float(sp.diff(psi, s, 2).subs({s: 2, d: 2, r: 3, k: sp.Rational(1, 100)}))
+force = k * s * (s**2 - d**2) * (r**2 - s**2) ** 2
+numbers = {d: 2, r: 3, k: sp.Rational(1, 100)}
+stiffness = [float(sp.diff(force, s).subs({s: 2} | numbers)), float((k * (r**2 - d**2) ** 4 / 24).subs(numbers))]
 
 # %% tags=["check"]
-grade(stiffness, 8.0, hint="only one of the two squares vanishes at d")
+grade(stiffness, [2.0, 0.260416667], digits=4, hint="product rule: one factor of the force vanishes at d")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★★ (2 points, experiment) Leave out the factor ½ in the rate that `flow` returns. What is the largest energy
@@ -203,21 +244,26 @@ residual = round(abs(wrong.energy_residual).max() / wrong.energy()[0])
 grade(residual, 1, hint="what is left of the balance when the integral is doubled?")
 
 # %% [markdown] tags=["exercise"]
-# **4.** ★★ (2 points, design) Write a pair potential as a formula in `s`, a text, that holds two agents at the distance
-# 1, has the range 3, needs no adjacency, and lacks nothing: `fl.pair_law(formula, adjacency=0, range=3.0,
+# **4.** ★★ (2 points, design) Write a pair potential as a formula in `s`, a text, whose force repels nearer than 1,
+# attracts from there to the range 3, and which lacks nothing: `fl.pair_law(formula, adjacency=0, range=3.0,
 # length=1.0).faults` is empty.
 
 # %% tags=["answer"]
 formula = ...
 
 # %% tags=["solution"]
-formula = "(s**2 - 1)**2*(9 - s**2)**3"
+formula = "(9 - s**2)**4/4 - 8*(9 - s**2)**3/3"  # the derivative is 2 s (s² − 1)(9 − s²)²
 print(fl.pair_law(formula, adjacency=0, range=3.0, length=1.0).faults)
 
 # %% tags=["check"]
 grade(
     formula,
-    lambda text: not fl.pair_law(text, adjacency=0, range=3.0, length=1.0).faults,
+    lambda text: next(
+        not law.faults
+        and (law.force(np.linspace(0.1, 0.95, 50)) < 0).all()
+        and (law.force(np.linspace(1.05, 2.9, 99)) > 0).all()
+        for law in [fl.pair_law(text, adjacency=0, range=3.0, length=1.0)]
+    ),
     form="word",
     hint="what must force and stiffness do at both ends of the range, and at the length?",
 )
@@ -225,8 +271,8 @@ grade(
 # %% [markdown] tags=["exercise"]
 # **5.** ★★★ (3 points, derivation) For $\beta > \tfrac12$ a flock may disperse: $B$ grows without bound, the rate that
 # the theorem guarantees falls to 0, and it promises nothing. Take two agents on a line, 1 apart, leaving each other at
-# relative speed $w$, with $g = 1$, $\beta = 1$. The relative velocity obeys $\dot w = -w/(1+x^2)$, hence $w(t) = w(0) -
-# \arctan x(t) + \arctan 1$. Above which $w(0)$ do they never match velocities? (Four significant digits.)
+# relative speed $v$, with $g = 1$, $\beta = 1$. The relative velocity obeys $\dot v = -v/(1+x^2)$, hence $v(t) = v(0) -
+# \arctan x(t) + \arctan 1$. Above which $v(0)$ do they never match velocities? (Four significant digits.)
 
 # %% tags=["answer"]
 escape = ...
@@ -235,12 +281,12 @@ escape = ...
 escape = np.pi / 2 - np.arctan(1.0)
 
 # %% tags=["check"]
-grade(escape, 0.78539816, digits=4, hint="w must not reach 0 as x → ∞")
+grade(escape, 0.78539816, digits=4, hint="v must not reach 0 as x → ∞")
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★★ (3 points, design) Capstone: write a law of your own, its theorem and its proof, after the three files in
 # `own_law/` (in cells, or in files beside this notebook). Any law will do that you can prove something about; try the
-# linear consensus $u_i = \frac sn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[THEOREM, run,
+# linear consensus $u_i = \frac gn\sum_j (p_j - p_i)$, and how fast its $K$ falls. Hand in the list `[THEOREM, run,
 # PROOF]`; the check verifies the theorem on the run and the steps of the proof, and your lecturer reads them.
 
 # %% tags=["answer"]
@@ -306,20 +352,53 @@ grade(
 
 # %% [markdown] tags=["exercise"]
 # **7.** ★★★ (3 points, words) Defend your capstone: state your theorem with all hypotheses, say where the proof uses
-# each of them, and give a law or a start for which the conclusion fails because one of them does. In your own words, at
-# least 30 of them. (The check counts words, and your lecturer reads the text.)
+# each of them, and give a law or a start for which the conclusion fails because one of them does. Answer in your own
+# words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Linear consensus with a positive strength g on the complete net: the mismatch K falls like exp(-2 g t). The proof
+# uses that every agent hears every other with the same weight, which gives the identity of the mean, and that g is
+# positive, which makes the rate negative. If g is negative K grows. If the net has two components the velocities
+# agree within each of them only, and K tends to a positive number.
+#
+# **Rubric, a point each:** a complete statement; the place of each hypothesis in the proof; a counterexample where
+# one of them fails.
+
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★ (1 point, player) Show `run.player()` for the run of Cucker and Smale's law, and watch the size of the
+# group. Is the largest distance of two agents at the end more than twice that at the start? Answer `True` or
+# `False`.
 
 # %% tags=["answer"]
-defence = ...
+spreads = ...
 
 # %% tags=["solution"]
-defence = """Linear consensus with a positive strength g on the complete net: the mismatch K falls like exp(-2 g t). The
-proof uses that every agent hears every other with the same weight, which gives the identity of the mean, and
-that g is positive, which makes the rate negative. If g is negative K grows. If the net has two components the
-velocities agree within each of them only, and K tends to a positive number."""
-# Rubric, a point each:
-# a complete statement; the place of each hypothesis in the proof; a counterexample where one
-# of them fails.
+run.player()
+print(fl.diameter(run.q[0]), fl.diameter(run.q[-1]))
+spreads = bool(fl.diameter(run.q[-1]) > 2.0 * fl.diameter(run.q[0]))
 
 # %% tags=["check"]
-grade(defence, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(spreads, True, hint="velocities agree in the end, but until then the agents part; fl.diameter")
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, proof) Prove the theorem of this lecture from its last displayed line: derive the identity
+# $\dot K = -\tfrac12\sum_{i,j}a_{ij}\|p_j-p_i\|^2$, then the inequality (use $\sum_{i,j}\|p_j-p_i\|^2 = 4nK$), then
+# the exponential bound.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# The mean velocity is constant, because $a_{ij} = a_{ji}$. So $\dot K = \sum_i\langle p_i - p_c, u_i\rangle =
+# \sum_{i,j}a_{ij}\langle p_i, p_j - p_i\rangle$, as $\sum_iu_i = 0$; exchange $i$ and $j$ in one half:
+# $-\tfrac12\sum_{i,j}a_{ij}\|p_j-p_i\|^2$. Each weight is at least $(g/n)(1+B^2)^{-\beta}$, and
+# $\sum_{i,j}\|p_j-p_i\|^2 = 2n\sum_i\|p_i-p_c\|^2 = 4nK$, since $\sum_i(p_i - p_c) = 0$. So $\dot K
+# \le -\tfrac12\cdot\tfrac gn(1+B^2)^{-\beta}\cdot4nK = -2g(1+B^2)^{-\beta}K$. Multiply by $e^{2g(1+B^2)^{-\beta}t}$:
+# the product does not rise, which is the bound.
+#
+# **Rubric, a point each:** the identity by exchanging names; the double sum and the bound of the weights; the
+# integrating factor.

@@ -16,6 +16,21 @@
 # **Aims.** Put the field's classics side by side: one start, many laws. What does each theorem promise from there,
 # which hypothesis does the work, and what happens where it fails?
 #
+# ## A scene
+#
+# At a conference six speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
+# and a theorem. In the coffee break somebody asks: "If I give all of you the *same* ten drones, at the same places,
+# with the same velocities, what does each of you promise me?" Silence; then six different answers, two of which are
+# "nothing". **What do the classics promise about one and the same start, and which hypothesis decides?**
+#
+# ## Two ideas, and two agents
+#
+# For two agents that see each other all laws do nearly the same: velocities tend to each other. There are two
+# reasons why. *Energy*: friction takes kinetic energy out of the relative motion, and what remains must be at rest
+# relative to each other, if the agents stay in touch. *Averaging*: each new velocity is a mean of the old ones, so
+# the larger falls and the smaller rises, if they keep hearing each other. The words after "if" are the theorem. For
+# $n$ agents everything depends on how they are kept in touch.
+#
 # Ten agents near a patch of a lattice, all at one speed, with headings about one direction:
 
 # %%
@@ -31,6 +46,8 @@ ax = plots.configuration(q, p, r=8.4, title="the start of them all")
 print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diameter {fl.diameter(p):.3g}")
 
 # %% [markdown]
+# **Figure 12.1.** The start: ten agents, links of nearly equal length, headings about one direction.
+#
 # ## What is promised
 #
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
@@ -59,6 +76,9 @@ for entry in ENTRIES:
 outcomes = compare()
 axes = plots.side_by_side(outcomes)
 
+# %% [markdown]
+# **Figure 12.2.** The same start (grey) under ten laws, and the end, with the verdict of the theorem above each.
+
 # %%
 for outcome in outcomes:
     happened = f"velocity diameter x {outcome.velocity_share:.1e}, {outcome.groups} group(s)"
@@ -66,6 +86,9 @@ for outcome in outcomes:
 ax = plots.velocity_diameters(outcomes)
 
 # %% [markdown]
+# **Figure 12.3.** The largest difference of two velocities over that at the start. The dead-zone flock has not
+# settled at 60.
+#
 # A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing about this start. Which
 # hypothesis failed stands in the verdict:
 
@@ -86,7 +109,25 @@ for outcome in outcomes:
 # > the nets of the interval is connected, then all headings tend to a common one.
 #
 # No single net need be connected: it is enough that the links seen over a window of time connect all, window after
-# window, for ever. Over a run we can see windows; "for ever" needs an argument. Two groups that meet:
+# window, for ever. Three agents, of which only two are linked at a time, first 0 and 1, then 1 and 2, show it. No net
+# is connected, each window of two steps is, and the three headings agree:
+
+# %%
+turns = [fl.laplacian(3, np.array([pair])).toarray() for pair in ((0, 1), (1, 2))]
+heading = np.array([0.0, 0.3, 1.0])
+for step in range(12):
+    print(f"step {step:2}: {heading.round(3)}" if step % 3 == 0 else "", end="\n" * (step % 3 == 0))
+    heading = heading - 0.5 * turns[step % 2] @ heading  # two linked agents take their mean, the third keeps its own
+print(f"spread after 12 steps: {np.ptp(heading):.4f}")
+
+# %% tags=["facts"]
+assert np.ptp(heading) < 1e-2
+assert len(fl.joint_windows(3, [np.array([pair]) for pair in ((0, 1), (1, 2)) * 6])) == 6
+assert not any(np.linalg.eigvalsh(net)[1] > 1e-9 for net in turns)  # no single net is connected
+
+# %% [markdown]
+# Over a run we can see windows; "for ever" needs an argument. In the next run two groups head for
+# each other and merge:
 
 # %%
 meet = fl.scenario("headings-meet").run()
@@ -96,6 +137,9 @@ plots.diameters(meet, ax=axes[1])
 print(fl.verify("jlm-headings", meet))
 
 # %% [markdown]
+# **Figure 12.4.** Left: relative connectivity, below 1 until the two groups meet at 35, and the windows across which
+# the agents are linked together. Right: the spread of velocities falls from then on.
+#
 # The argument: once headings nearly agree, all that distances can still change adds up to less than what each of them
 # is away from $r$. So no link is ever made or lost again, and a net that stays connected averages its headings to one.
 #
@@ -110,8 +154,10 @@ print(fl.verify("jlm-headings", fl.scenario("headings-part").run()))
 # > **Theorem** (Olfati-Saber and Murray 2004). On a fixed, undirected, connected net all solutions of $\dot x(t) =
 # > -Lx(t-\tau)$ tend to the mean of their starts if and only if $0 \le \tau < \pi/(2\lambda_n)$.
 #
-# A disturbance along an eigenvector of $\lambda_k$ grows like $e^{st}$ with $s = -\lambda_k e^{-s\tau}$. The root that
-# decides is $s = W_0(-\lambda_n\tau)/\tau$ with Lambert's function, $W_0(z)\,e^{W_0(z)} = z$. A further link never
+# A disturbance along an eigenvector of $\lambda_k$ grows like $e^{st}$ with $s = -\lambda_k e^{-s\tau}$. For each
+# $k$ the root farthest to the right is $s = W_0(-\lambda_k\tau)/\tau$ with Lambert's function, $W_0(z)\,e^{W_0(z)} =
+# z$. The one of $\lambda_n$ decides whether all disturbances die out; how fast they do is set by the slowest, for small
+# $\tau$ that of $\lambda_2$. A further link never
 # lowers $\lambda_n$, so a better connected net never bears *more* delay:
 
 # %%
@@ -146,6 +192,14 @@ shares = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.05, 1.1)
 slider(late, shares, name="τ/τ*", title="consensus of four agents that hear late", start=3)
 
 # %% [markdown]
+# ## What surprised, and what the theorems do not say
+#
+# The theorems do not differ in what flocking *is*; they differ in what keeps agents in touch: a pull, a potential
+# without bound at the range, weights that fall slowly, an assumption on the whole run. A vacuous verdict beside a
+# beautiful flock is the normal case, not the exception. And of the corrected dead-zone theorem above, that
+# velocities match within components is measured and not proved (lecture 09): a statement in a list is only as good
+# as its weakest clause.
+#
 # ## Summary
 #
 # - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.
@@ -167,17 +221,17 @@ degrees = (10.0 + 350.0) / 2.0
 grade(degrees, 180.0, hint="10° to the right of east is 350°; `fl.verify('jlm-cut')` has more of it")
 
 # %% [markdown] tags=["exercise"]
-# **2.** ★ (1 point, derivation) What delay does consensus on a star of 6 agents bear? (Its largest eigenvalue is its
-# number of agents; four significant digits.)
+# **2.** ★ (1 point, derivation) What delay does consensus bear (a) on a star of 6 agents, (b) on the complete net of 6?
+# (The largest eigenvalue of both is the number of agents. A list, each number to four significant digits.)
 
 # %% tags=["answer"]
 delay = ...
 
 # %% tags=["solution"]
-delay = np.pi / (2.0 * 6.0)
+delay = [np.pi / (2.0 * 6.0), np.pi / (2.0 * 6.0)]
 
 # %% tags=["check"]
-grade(delay, 0.26179939, digits=4, hint="the margin is stated above for any net")
+grade(delay, [0.26179939, 0.26179939], digits=4, hint="the margin is stated above for any net")
 
 # %% [markdown] tags=["exercise"]
 # **3.** ★ (1 point, experiment) Nets of four agents: link 0-1, then 1-2, then nothing, then 2-3, then 0-1, 1-2 and 2-3
@@ -207,8 +261,8 @@ rate = consensus_root(2.0, 1.5 * np.pi / 4.0).real
 grade(rate, 0.247105912, digits=4, hint="the deciding root is Lambert's; a rate is its real part")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, design) Design: six agents on a ring with weights $w$ on all links have $\lambda_n = 4w$ and
-# $\lambda_2 = w$. Their messages take 0.5 time units. Which $w$ must not be reached? (Four significant digits.)
+# **5.** ★★★ (3 points, design) Design: six agents on a ring with the weight $g$ on all links have $\lambda_n = 4g$ and
+# $\lambda_2 = g$. Their messages take 0.5 time units. Which $g$ must not be reached? (Four significant digits.)
 
 # %% tags=["answer"]
 weight = ...
@@ -221,19 +275,62 @@ grade(weight, 0.78539816, digits=4, hint="the delay margin, solved for the weigh
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, words) Take two of the six theorems, one on energy and one on averaging. Which hypothesis keeps
-# the agents of each in touch, who sees to it, the law or an assumption, and what does a start look like that breaks it?
-# In your own words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+# the agents of each in touch, who sees to it, the law or an assumption, and what does a start look like that breaks
+# it? Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# For Algorithm 2 the pull of the target keeps the flock in a ball, so cohesion comes from the law, for every start.
+# For averaging of headings the nets must connect the agents jointly, again and again, which is assumed about the
+# whole run: two groups that head away from each other break it, and then their headings need not agree.
+#
+# **Rubric, a point each:** for each theorem the hypothesis and who sees to it; a start that breaks one of them.
+
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★ (1 point, player) Move the slider of $\tau/\tau^*$. Which is the least value on it at which the swings
+# clearly grow? (Exactly.)
 
 # %% tags=["answer"]
-touch = ...
+grows = ...
 
 # %% tags=["solution"]
-touch = """For Algorithm 2 the pull of the target keeps the flock in a ball, so cohesion comes from the law, for every
-start. For averaging of headings the nets must connect the agents jointly, again and again, which is assumed
-about the whole run: two groups that head away from each other break it, and then their headings need not
-agree."""
-# Rubric, a point each:
-# for each theorem the hypothesis and who sees to it; a start that breaks one of them.
+grows = 1.05  # at 1 they neither grow nor die out
 
 # %% tags=["check"]
-grade(touch, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+grade(grows, 1.05, hint="at the margin itself the swings keep their size")
+
+# %% [markdown] tags=["exercise"]
+# **8.** ★★ (2 points, proof) Headings between $-\tfrac{\pi}{2}$ and $\tfrac{\pi}{2}$ are averaged as in the theorem.
+# Prove that the largest heading never rises and the least never falls, whatever the nets are, and give a sequence of
+# nets for which the headings do not tend to a common one.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Every new heading is a mean of old ones with non-negative weights that add up to 1, so it lies between the least
+# and the largest old heading. Hence the new largest is at most the old largest, and likewise for the least. If no
+# agent ever has a neighbour, $N_i(t) = \varnothing$, every heading stays as it is; two different starts never agree.
+#
+# **Rubric, a point each:** a mean with weights that add up to 1 stays in the span; a sequence of nets that is not
+# jointly connected.
+
+# %% [markdown] tags=["exercise"]
+# **9.** ★★★ (3 points, project) Open project, about two weeks: add a seventh entry to the comparison, a law from the
+# literature or your own, from the same start. State what its theorem promises of this start, which hypothesis does
+# the work, and what happened. Then find the smallest change of the start for which the verdict changes, for your law
+# and for two of the six.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# A good answer implements the law as in lecture 11, states its theorem with hypotheses, verifies it on the start,
+# and explains the verdict claim by claim. It varies one number of the start (a distance, the spread of headings)
+# systematically, and names for each law the hypothesis that fails first.
+#
+# **Rubric, a point each:** the law with a theorem stated in full and a verdict; the boundary found for three laws
+# with a stated search; the failing hypotheses named.

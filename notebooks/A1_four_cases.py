@@ -46,14 +46,15 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import grade, shows
 
 # %% [markdown] tags=["exercise"]
 # ## Case 1: Algorithm 1
 #
 # **1.** ★★★ (3 points, program) For each of the four cases the project asks for the first and last snapshot, all
 # trajectories, the speeds, the connectivity and the path of the centre of mass, each over its time or place. Write a
-# function `figures(run)` that draws these on at least six axes and returns them, and look at all four cases with it.
+# function `figures(run)` that draws these on at least six axes, labels both axes of each, returns the axes as a list or
+# an array, and look at all four cases with it.
 
 # %% tags=["answer"]
 figures = ...
@@ -79,15 +80,21 @@ for run in runs.values():
 # %% tags=["check"]
 grade(
     figures,
-    lambda f: (
-        sum(
-            ax.has_data()
-            for ax in np.ravel(f(fl.simulate(fl.Algorithm1(), [[0, 0], [6, 0]], [[0, 0], [0, 1]], (0, 1))))
+    lambda f: all(
+        len(axes) >= 6 and any(shows(ax, points) for ax in axes)
+        for run in [fl.simulate(fl.Algorithm1(), [[0, 0], [6, 0], [3, 5]], [[0, 0], [0, 1], [1, 0]], (0, 1))]
+        for axes in [list(np.ravel(f(run)))]
+        for points in (
+            run.q[0],
+            run.q[-1],
+            [*run.q[0], *run.q[-1]],
+            [[run.t[k], np.hypot(*run.p[k, 1])] for k in (0, -1)],
+            [[run.t[k], run.metrics().connectivity.values[k]] for k in (0, -1)],
+            [run.q[k].mean(axis=0) for k in (0, -1)],
         )
-        >= 6
     ),
     form="function",
-    hint="return an array or a list of the axes, at least six of them with something drawn",
+    hint="six axes, both labelled: each of the six quantities is looked for, at its first and last instant",
 )
 
 # %% [markdown] tags=["exercise"]
@@ -103,24 +110,20 @@ drift = 0.0  # every pair acts equally and oppositely, so Σp stays 0
 grade(drift, 0.0, hint="add up the inputs of all agents")
 
 # %% [markdown] tags=["exercise"]
-# **3.** ★★ (2 points, words) The group falls apart, and speeds differ widely between agents. Which theorem on Algorithm
-# 1 does that contradict, if any, and which of its hypotheses fails? In your own words, at least 30 of them. (The check
-# counts words, and your lecturer reads the text.)
+# **3.** ★★ (2 points, words) The group falls apart, and speeds differ widely between agents. Which theorem on
+# Algorithm 1 does that contradict, if any, and which of its hypotheses fails? Answer in your own words.
 
-# %% tags=["answer"]
-case_1 = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-case_1 = """None. Theorem 1 assumes that every solution which starts in a level set of H stays a cohesive flock.
-This start is not connected even at the beginning and agents leave, so the hypothesis fails and the theorem is
-vacuous. The energy still falls, as the energy identity says, and agents out of range of all others keep their
-velocities."""
-# Rubric, a point each:
-# no contradiction: the hypothesis of a cohesive flock fails; the energy falls all the same, and agents without
-# neighbours keep their velocity.
-
-# %% tags=["check"]
-grade(case_1, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# None. Theorem 1 assumes that every solution which starts in a level set of H stays a cohesive flock. This start is
+# connected, $C = 1$ at $t = 0$, but it does not stay so: $C = 0.29$ at the end. One solution that starts in the level
+# set and is no flock breaks the hypothesis, and the theorem is vacuous. The energy still falls, as the energy identity
+# says, and agents out of range of all others keep their velocities.
+#
+# **Rubric, a point each:** no contradiction: the hypothesis of a cohesive flock fails; the energy falls all the same,
+# and agents without neighbours keep their velocity.
 
 # %% [markdown] tags=["exercise"]
 # ## Case 2: a target at rest, no damping
@@ -150,24 +153,21 @@ far_side = 150.0 + (150.0 - 25.0)
 grade(far_side, 275.0, hint="the swing is symmetric about the target")
 
 # %% [markdown] tags=["exercise"]
-# **6.** ★★★ (3 points, words) In case 2 the connectivity is 1 throughout. Does the group flock? Name the hypothesis of
-# Theorem 3 that fails, say what is true of the shape nevertheless and why, and what is true of the centre. In your own
-# words, at least 30 of them. (The check counts words, and your lecturer reads the text.)
+# **6.** ★★★ (3 points, words) In case 2 the connectivity is 1 throughout. Does the group flock? Name the hypothesis
+# of Theorem 3 that fails, say what is true of the shape nevertheless and why, and what is true of the centre. Answer
+# in your own words.
 
-# %% tags=["answer"]
-case_2 = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-case_2 = """Theorem 3 needs c2 gamma > 0, which fails, so the theorem says nothing here. The centre of mass is an
-oscillator without damping and swings through the target for ever, so the target is not reached. The shape still
-loses energy by the velocity consensus between neighbours, because the energy of the shape does not contain the
-motion of the centre; so relative velocities shrink while the common velocity swings."""
-# Rubric, a point each:
-# c2γ > 0 fails, so Theorem 3 is vacuous; the shape dissipates by the consensus term; the centre swings without
-# damping.
-
-# %% tags=["check"]
-grade(case_2, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# Theorem 3 needs c2 gamma > 0, which fails, so the theorem says nothing here. The centre of mass is an oscillator
+# without damping and swings through the target for ever, so the target is not reached. The shape still loses energy
+# by the velocity consensus between neighbours, because the energy of the shape does not contain the motion of the
+# centre; so relative velocities shrink while the common velocity swings.
+#
+# **Rubric, a point each:** c2γ > 0 fails, so Theorem 3 is vacuous; the shape dissipates by the consensus term; the
+# centre swings without damping.
 
 # %% [markdown] tags=["exercise"]
 # ## Case 3: a sine
@@ -199,22 +199,19 @@ grade(
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, words) The project writes that the smaller sine is probably due to the velocity of the γ-agent,
-# whose $y$ component reverses instantaneously. Is that so? Give a reason, and the cause. In your own words, at least 30
-# of them. (The check counts words, and your lecturer reads the text.)
+# whose $y$ component reverses instantaneously. Is that so? Give a reason, and the cause. Answer in your own words.
 
-# %% tags=["answer"]
-case_3 = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-case_3 = """It is not so: the velocity of a sine is a cosine, which changes continuously, and the response of the
-centre to it is a sine of the same frequency. Its amplitude is the modulus of the transfer function. The cause is
-that the γ-agent hands over only 0.009 of its velocity, so that the centre is braked towards a velocity near zero;
-with the true velocity the ratio would be above one."""
-# Rubric, a point each:
-# the velocity of a sine does not jump; the velocity handed over is 0.009 of the true one, which sets the ratio.
-
-# %% tags=["check"]
-grade(case_3, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# It is not so: the velocity of a sine is a cosine, which changes continuously, and the response of the centre to it
+# is a sine of the same frequency. Its amplitude is the modulus of the transfer function. The cause is that the
+# γ-agent hands over only 0.009 of its velocity, so that the centre is braked towards a velocity near zero; with the
+# true velocity the ratio would be above one.
+#
+# **Rubric, a point each:** the velocity of a sine does not jump; the velocity handed over is 0.009 of the true one,
+# which sets the ratio.
 
 # %% [markdown] tags=["exercise"]
 # ## Case 4: a circle
@@ -284,23 +281,19 @@ grade(
 )
 
 # %% [markdown] tags=["exercise"]
-# **12.** ★★★ (3 points, words) Write the conclusion on case 4 that the project should have written: which of its three
-# explanations (the start inside the circle, the speed, the velocity handed over) holds, how each was tested, and what a
-# user of Algorithm 2 should take from it. In your own words, at least 30 of them. (The check counts words, and your
-# lecturer reads the text.)
+# **12.** ★★★ (3 points, words) Write the conclusion on case 4 that the project should have written: which of its
+# three explanations (the start inside the circle, the speed, the velocity handed over) holds, how each was tested,
+# and what a user of Algorithm 2 should take from it. Answer in your own words.
 
-# %% tags=["answer"]
-conclusion = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-conclusion = """The start does not matter in the long run, because its part of the solution decays with the poles of
-the centre of mass; a start outside gives the same circle. The speed matters only through the transfer function, and
-with little damping a faster target gives a larger circle, so the rule of the project is false. The velocity handed
-over decides: with the true velocity the measured ratio is above one, with 0.009 of it 0.85, as predicted. A user
-must hand over the velocity in the units of the law."""
-# Rubric, a point each:
-# the start is excluded by the decay of the homogeneous part; speed is excluded as a rule by the transfer
-# function; the velocity handed over is the cause, tested by prediction and measurement.
-
-# %% tags=["check"]
-grade(conclusion, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# The start does not matter in the long run, because its part of the solution decays with the poles of the centre of
+# mass; a start outside gives the same circle. The speed matters only through the transfer function, and with little
+# damping a faster target gives a larger circle, so the rule of the project is false. The velocity handed over
+# decides: with the true velocity the measured ratio is above one, with 0.009 of it 0.85, as predicted. A user must
+# hand over the velocity in the units of the law.
+#
+# **Rubric, a point each:** the start is excluded by the decay of the homogeneous part; speed is excluded as a rule by
+# the transfer function; the velocity handed over is the cause, tested by prediction and measurement.

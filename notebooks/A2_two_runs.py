@@ -111,7 +111,7 @@ grade(factor, 9.92168, digits=4, hint="the length of n_ij, for ten times the dif
 # ## The first run
 #
 # **4.** ★ (1 point, derivation) Which velocity has the centre of mass of the first run at the end, if it starts with
-# the mean velocity $(w, 0)$? Give the multiple of $w$, exactly.
+# the mean velocity $(v_0, 0)$? Give the multiple of $v_0$, exactly.
 
 # %% tags=["answer"]
 share = ...
@@ -123,24 +123,23 @@ share = 1.0  # Algorithm 1 conserves momentum
 grade(share, 1.0, hint="add up the inputs of all agents")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, words) The notebook concludes from its first film that Algorithm 1 makes the agents flock. Which
-# parts of a flock's definition does the run show, which not, and would a longer film help? In your own words, at least
-# 30 of them. (The check counts words, and your lecturer reads the text.)
+# **5.** ★★★ (3 points, words) The notebook concludes from its first film that Algorithm 1 makes the agents flock.
+# Which parts of a flock's definition does the run show, which not, and would a longer film help? Answer in your own
+# words.
 
-# %% tags=["answer"]
-first_run = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-first_run = """Inside each component velocities come together, as the energy identity suggests, and distances come
-near d. But the group is not connected at the start and is not at the end, and there is nothing in Algorithm 1 that
-could bring components together which are out of range and move apart: each conserves its momentum. A longer film
-would show the same components, farther from each other."""
-# Rubric, a point each:
-# velocities match and distances settle within components only; the group is not connected; components that part
-# conserve their momentum, so that time does not help.
-
-# %% tags=["check"]
-grade(first_run, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# Inside each component velocities come together, as the energy identity suggests, and distances come near d. But the
+# group has four components at the start and three at the end of the film. A longer film does show more: the components
+# happen to drift towards each other, meet, and form one component from $t = 7.14$ on. Nothing in Algorithm 1 guarantees
+# that. A component that feels no other keeps its momentum, so whether two of them meet is decided by their starts; with
+# other starts they part for ever.
+#
+# **Rubric, a point each:** velocities match and distances settle within components only; the group is not connected
+# during the film; a longer run was made and joins, or it is said that the momentum of each component decides, and that
+# the law guarantees neither outcome.
 
 # %% [markdown] tags=["exercise"]
 # ## The second run
@@ -159,24 +158,21 @@ wait = np.log(1000.0) / 0.5  # d(p_c − p_r)/dt = −c2γ (p_c − p_r), as c1�
 grade(wait, 13.8155106, digits=4, hint="c1γ = 0: what is left of the equation of the centre?")
 
 # %% [markdown] tags=["exercise"]
-# **7.** ★★★ (3 points, words) The notebook says that the second run moves toward the common goal. What do the agents do
-# instead? Say which number of the law is responsible, and why the energy falls all the same. In your own words, at
-# least 30 of them. (The check counts words, and your lecturer reads the text.)
+# **7.** ★★★ (3 points, words) The notebook says that the second run moves toward the common goal. What do the agents
+# do instead? Say which number of the law is responsible, and why the energy falls all the same. Answer in your own
+# words.
 
-# %% tags=["answer"]
-goal = ...
+# %% [markdown] tags=["answer"]
+# *Your answer:*
 
-# %% tags=["solution"]
-goal = """The agents take on the velocity (0.7, 0.1) which the γ-agent tells, and so move past the point (5, 5) and
-away from it for ever. Responsible is c1 gamma = 0: the position of the γ-agent does not occur in the law. The
-energy of the shape, without the pull, falls by the velocity consensus and by the velocity feedback, both of which
-need no pull; but then it does not bound the size of the group, which splits."""
-# Rubric, a point each:
-# they follow the velocity and leave the place; c1γ = 0; the dissipation does not depend on c1γ, but without it
-# the energy bounds no size.
-
-# %% tags=["check"]
-grade(goal, lambda text: len(text.split()) >= 30, form="text", hint="a text of at least 30 words")
+# %% [markdown] tags=["solution"]
+# The agents take on the velocity (0.7, 0.1) which the γ-agent tells, and so move past the point (5, 5) and away from
+# it for ever. Responsible is c1 gamma = 0: the position of the γ-agent does not occur in the law. The energy of the
+# shape, without the pull, falls by the velocity consensus and by the velocity feedback, both of which need no pull;
+# but then it does not bound the size of the group, which splits.
+#
+# **Rubric, a point each:** they follow the velocity and leave the place; c1γ = 0; the dissipation does not depend on
+# c1γ, but without it the energy bounds no size.
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, derivation) Let $c_1^\gamma = c_2^\gamma = 0.5$ instead. At which $x$ does the centre of mass

@@ -159,5 +159,5 @@ PROOF = Proof(
     rigour="smt",
     steps=_steps,
     size=15,
-    theorems=("os-1", "os-3", "any-potential"),
+    theorems=("os-1", "os-3", "any-potential", "E4"),
 )

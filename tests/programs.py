@@ -1,7 +1,5 @@
 """Programs as tests start them: they answer Ctrl-C themselves, show signs of life, and do not outlive the test."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

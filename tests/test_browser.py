@@ -4,8 +4,6 @@ Needs Chromium and playwright (`pip install flockana[browser]`; no browser of pl
 here only, is in tests/axe with its licence.
 """
 
-from __future__ import annotations
-
 import base64
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Arguments that users give are documented unless name and type say all; every other function says what it does."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import pkgutil

@@ -3,8 +3,6 @@
 Needs Chromium, playwright (`pip install flockana[browser]`) and tornado (`flockana[explore]`); skipped where one lacks.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import socket
@@ -324,3 +322,30 @@ def until_text(place, text):
     while place.inner_text() != text and time.monotonic() < end:
         time.sleep(0.05)
     assert place.inner_text() == text
+
+
+def test_field_run_and_code_never_differ_when_a_change_is_undone_in_the_field_itself(visit, address):
+    tab = visit(address)
+    field, code = tab.locator("[id='number-gains.c1_alpha']"), "document.getElementById('python').textContent"
+    field.fill("5")
+    field.press("Enter")
+    tab.wait_for_function(f"{code}.includes('c1_alpha=5')")
+    field.focus()
+    tab.keyboard.press("Control+z")
+    tab.wait_for_function(f"!{code}.includes('c1_alpha=5')")
+    assert field.input_value() == "30"
+    tab.click("#redo")
+    tab.wait_for_function(f"{code}.includes('c1_alpha=5')")
+    tab.wait_for_function("document.getElementById('said').textContent === 'done'")
+    assert field.input_value() == "5"
+    chip = tab.locator("#strip button").first
+    box = chip.bounding_box()
+    assert box["y"] < 300  # beside the canvas, seen without scrolling
+    assert chip.get_attribute("data-status") == "verified"
+    with tab.expect_download() as saved:
+        tab.click("#save")
+    assert saved.value.suggested_filename == "hexagon.nc"
+    tab.select_option("#start", "scenario:paper-flocking")
+    tab.wait_for_function("!document.getElementById('cancel').disabled")
+    tab.click("#cancel")
+    tab.wait_for_function("document.getElementById('said').textContent === 'cancelled'")

@@ -1,7 +1,5 @@
 """Tests mirror the package: tests/<room>/test_<module>.py tests flockana/<room>/<module>.py."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 TESTS = Path(__file__).parent

@@ -1,7 +1,5 @@
 """A new law, interaction, obstacle, theorem, scenario, proof or figure is one new file: toys that no table names."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 from pathlib import Path

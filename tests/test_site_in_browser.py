@@ -3,8 +3,6 @@
 Of a draft (`make docs OPTIONS=--draft`) what it has; a page that plays a run is in the whole site alone.
 """
 
-from __future__ import annotations
-
 import shutil
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer

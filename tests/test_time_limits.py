@@ -1,7 +1,5 @@
 """A test that hangs fails in time and takes no other with it, in compiled code too, with and without xdist."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -10,8 +10,10 @@ from __future__ import annotations
 import sys
 from itertools import groupby
 from pathlib import Path
+from typing import get_args
 
 from flockana.report.coverage import Reference, Row, Source, coverage, faults, locate
+from flockana.report.coverage.rows import Standing
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "coverage.md"
 _OPENING = """\
@@ -21,15 +23,16 @@ Written by `make coverage` from the tables in `flockana/report/coverage`; edit t
 where it stands there, what it is in our words, and what holds it: a *function* (or class) of the library, a *plot*, a
 *scenario* of the catalogue, a *report* (something that a source says of a run, judged on that scenario), a *theorem*,
 a *claim* of one, an *erratum*, an executable *proof*, a *notebook*. That a theorem holds an item means that it is
-checked, not that it is true: `flockana verify NAME` tells. Items in part are weaker than the source, and the remark
-says why.
+checked, not that it is true: `flockana verify NAME` tells. Items in part are weaker than the source, absent ones are
+not there, and the remark says why. The papers of other authors were not at hand where a table says "in our words".
 """
+_STANDING = {"held": "", "weaker": "*in part*", "absent": "*absent*", "prose": "*prose*"}
 _HEADER = ("place", "what stands there", "held by", "remark")
 
 
 def page(sources: tuple[Source, ...]) -> str:
     """The page as Markdown."""
-    parts = [_OPENING, _counts(sources), "## In part", _in_part(sources)]
+    parts = [_OPENING, _counts(sources), "## In part, or absent", _in_part(sources)]
     for source in sources:
         parts += [f"## {source.title}", markdown_table(_HEADER, [_cells(row) for row in source.rows])]
     return "\n\n".join(part.strip() for part in parts) + "\n"
@@ -37,26 +40,26 @@ def page(sources: tuple[Source, ...]) -> str:
 
 def _counts(sources: tuple[Source, ...]) -> str:
     rows = [(source.title, *(str(number) for number in (len(source.rows), *_numbers(source)))) for source in sources]
-    return markdown_table(("source", "items", "held", "in part", "prose"), rows)
+    return markdown_table(("source", "items", "held", "in part", "absent", "prose"), rows)
 
 
-def _numbers(source: Source) -> tuple[int, int, int]:
-    return source.count("held"), source.count("weaker"), source.count("prose")
+def _numbers(source: Source) -> tuple[int, ...]:
+    return tuple(source.count(standing) for standing in get_args(Standing))
 
 
 def _in_part(sources: tuple[Source, ...]) -> str:
     rows = [
-        (source.title, plain(row.place), plain(row.what), plain(row.remark))
+        (source.title, plain(row.place), plain(row.what), _STANDING[row.standing], plain(row.remark))
         for source in sources
         for row in source.rows
-        if row.standing == "weaker"
+        if row.standing in ("weaker", "absent")
     ]
-    return markdown_table(("source", "place", "what stands there", "why"), rows) if rows else "Nothing."
+    return markdown_table(("source", "place", "what stands there", "standing", "why"), rows) if rows else "Nothing."
 
 
 def _cells(row: Row) -> tuple[str, ...]:
     names = "; ".join(_named(kind, list(some)) for kind, some in groupby(row.held_by, key=lambda one: one.kind))
-    standing = {"held": "", "weaker": "*in part*", "prose": "*prose*"}[row.standing]
+    standing = _STANDING[row.standing]
     return (
         plain(row.place),
         plain(row.what),

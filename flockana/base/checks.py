@@ -16,13 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def ensure_finite_scalar(name: str, value: Any) -> float:
-    """Return `value` as a finite float.
-
-    Examples
-    --------
-    >>> ensure_finite_scalar("d", 7)
-    7.0
-    """
+    """Return `value` as a finite float."""
     try:
         number = float(_real(value))
     except (TypeError, ValueError, OverflowError):
@@ -77,13 +71,7 @@ def real_array(value: Any) -> FloatArray:
 
 
 def ensure_points(name: str, value: Any) -> FloatArray:
-    """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions.
-
-    Examples
-    --------
-    >>> ensure_points("q", [[0, 0], [1, 0]]).shape
-    (2, 2)
-    """
+    """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions."""
     try:
         points = real_array(value)
     except (TypeError, ValueError, OverflowError):
@@ -105,12 +93,7 @@ def ensure_points(name: str, value: Any) -> FloatArray:
 
 
 def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
-    """Return positions and velocities of equal shape (n, m).
-
-    Examples
-    --------
-    >>> q, p = ensure_state([[0.0, 1.0]], [[0.0, 0.0]])
-    """
+    """Return positions and velocities of equal shape (n, m)."""
     q = ensure_points("q", q)
     p = ensure_points("p", p)
     if q.shape != p.shape:
@@ -118,14 +101,22 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
     return q, p
 
 
-def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
-    """Return a finite float64 vector, of m components if `m` is given.
+def ensure_kind(name: str, value: Any, kind: type | str, example: str) -> None:
+    """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library.
 
     Examples
     --------
-    >>> ensure_vector("q", (150, 30), 2).tolist()
-    [150.0, 30.0]
+    >>> ensure_kind("system", None, "StateSpace", "a control.StateSpace")
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: system = None: expected a control.StateSpace
     """
+    names = {each.__name__ for each in type(value).__mro__}
+    if not (kind in names if isinstance(kind, str) else isinstance(value, kind)):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
+
+
+def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
+    """Return a finite float64 vector, of m components if `m` is given."""
     try:
         vector = real_array(value)
     except (TypeError, ValueError, OverflowError):
@@ -140,13 +131,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
 
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
-    """Return a finite float64 series, of the given length if there is one.
-
-    Examples
-    --------
-    >>> ensure_series("weights", (1, 2), 2).tolist()
-    [1.0, 2.0]
-    """
+    """Return a finite float64 series, of the given length if there is one."""
     try:
         series = real_array(value)
     except (TypeError, ValueError, OverflowError):
@@ -181,12 +166,7 @@ def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int3
 
 
 def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
-    """Raise before an array of floats is allocated that would take more than half of the machine's memory.
-
-    Examples
-    --------
-    >>> ensure_fits("A", (600, 600), "sparse=True")
-    """
+    """Raise before an array of floats is allocated that would take more than half of the machine's memory."""
     size = 8 * math.prod(shape)
     if not hasattr(os, "sysconf"):
         return  # a system that does not tell; the allocation itself may fail
@@ -200,13 +180,7 @@ def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
 
 
 def ensure_time_span(t_span: Any) -> tuple[float, float]:
-    """Return (t0, t1) with t0 < t1, both finite.
-
-    Examples
-    --------
-    >>> ensure_time_span((0, 5))
-    (0.0, 5.0)
-    """
+    """Return (t0, t1) with t0 < t1, both finite."""
     try:
         t0, t1 = (float(_real(t)) for t in t_span)
     except (TypeError, ValueError, OverflowError):
@@ -217,26 +191,14 @@ def ensure_time_span(t_span: Any) -> tuple[float, float]:
 
 
 def ensure_count(name: str, value: Any) -> int:
-    """Return `value` as a whole number >= 1.
-
-    Examples
-    --------
-    >>> ensure_count("n", 7)
-    7
-    """
+    """Return `value` as a whole number >= 1."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
         raise ArgumentError(f"{name} = {format_value(value)}: expected a whole number >= 1")
     return int(value)
 
 
 def ensure_seed(seed: Any) -> int:
-    """Return a seed, a whole number >= 0.
-
-    Examples
-    --------
-    >>> ensure_seed(7)
-    7
-    """
+    """Return a seed, a whole number >= 0."""
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise ArgumentError(f"seed = {format_value(seed)}: expected a whole number >= 0")
     return int(seed)
@@ -269,26 +231,14 @@ def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
 
 
 def ensure_choice(name: str, value: Any, choices: Collection[str]) -> str:
-    """Return `value` if it is one of the choices.
-
-    Examples
-    --------
-    >>> ensure_choice("average", "headings", ("headings", "sums"))
-    'headings'
-    """
+    """Return `value` if it is one of the choices."""
     if not isinstance(value, str) or value not in choices:
         raise ArgumentError(f"{name} = {format_value(value)}: expected one of {', '.join(choices)}")
     return value
 
 
 def ensure_dimension(m: int) -> int:
-    """Return the dimension m if it is 1, 2 or 3.
-
-    Examples
-    --------
-    >>> ensure_dimension(2)
-    2
-    """
+    """Return the dimension m if it is 1, 2 or 3."""
     if isinstance(m, bool) or not isinstance(m, int | float | np.number) or m not in (1, 2, 3):
         raise ArgumentError(f"m = {format_value(m)}: expected a dimension of 1, 2 or 3")
     return int(m)

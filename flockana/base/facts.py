@@ -12,13 +12,7 @@ _ORDER: tuple[FactStatus, ...] = ("unmet", "assumed", "met")
 
 @dataclass(frozen=True)
 class Fact:
-    """One property of a function.
-
-    Examples
-    --------
-    >>> Fact("unmet", "the force jumps at s = 1", (1.0, 1.0)).status
-    'unmet'
-    """
+    """One property of a function."""
 
     status: FactStatus
     detail: str = ""
@@ -26,12 +20,12 @@ class Fact:
     width: float = 0.0
 
 
-def together(facts: Iterable[Fact], proof: str = "") -> Fact:
+def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     """Return the conjunction of facts: unmet if one is, else assumed if one is, else met.
 
     Examples
     --------
-    >>> together([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
+    >>> conjunction([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
     'a'
     """
     facts = list(facts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -53,6 +54,27 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
     return target
 
 
+def ensure_folder_of(path: Any) -> Path:
+    """Return a path whose folder exists and can be written to; raise if it does not, rather than make it.
+
+    Examples
+    --------
+    >>> ensure_folder_of("no-such-folder/run.nc")
+    Traceback (most recent call last):
+    flockana.base.errors.FileError: cannot write no-such-folder/run.nc: ... mkdir -p no-such-folder
+    """
+    target = ensure_path(path, action="write")
+    folder = target.parent
+    if not folder.exists():
+        raise FileError(f"cannot write {target}: there is no folder {folder}; make it first: mkdir -p {folder}")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise FileError(f"cannot write to {folder}: {error.strerror or error}; choose another folder") from error
+    return target
+
+
 def _in_the_way(target: Path) -> str:
     """Return a description of a path's target that is not a regular file; empty if a file may be written."""
     if target.is_symlink():
@@ -64,18 +86,7 @@ def _in_the_way(target: Path) -> str:
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another file") -> Iterator[Path]:
-    """Open a temporary file that replaces the target when complete, and is removed after an error.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     target = Path(folder) / "it.txt"
-    ...     with atomic_write(target) as partial:
-    ...         _ = partial.write_text("whole")
-    ...     target.read_text(), partial.exists()
-    ('whole', False)
-    """
+    """Open a temporary file that replaces the target when complete, and is removed after an error."""
     target = ensure_target(path, remedy=remedy)
     # the suffix stays last: writers of pictures and films go by it
     partial = target.parent / f".{target.stem}.{os.getpid()}.partial{target.suffix}"

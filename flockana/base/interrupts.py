@@ -11,14 +11,7 @@ from multiprocessing import resource_tracker
 
 @contextmanager
 def defer_sigint() -> Iterator[list[int]]:
-    """Defer Ctrl-C to the end of the block; yields a list that fills when it arrives.
-
-    Examples
-    --------
-    >>> with defer_sigint() as came:
-    ...     print("whole", came)
-    whole []
-    """
+    """Defer Ctrl-C to the end of the block; yields a list that fills when it arrives."""
     # A blocked signal would not do: any other thread, such as linear algebra's, takes it for the main one. And where
     # Ctrl-C is ignored, as in a background job of a shell, it stays ignored.
     came: list[int] = []
@@ -37,13 +30,7 @@ def defer_sigint() -> Iterator[list[int]]:
 
 @contextmanager
 def block_sigint() -> Iterator[None]:
-    """Block Ctrl-C in processes that this thread starts inside the block.
-
-    Examples
-    --------
-    >>> with block_sigint():
-    ...     pass
-    """
+    """Block Ctrl-C in processes that this thread starts inside the block."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
@@ -57,17 +44,7 @@ def block_sigint() -> Iterator[None]:
 
 @contextmanager
 def restore_interrupts() -> Iterator[None]:
-    """Raise KeyboardInterrupt again where compiled code or a lock turned it into another error.
-
-    Examples
-    --------
-    >>> try:
-    ...     with restore_interrupts():
-    ...         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
-    ... except KeyboardInterrupt:
-    ...     print("interrupted")
-    interrupted
-    """
+    """Raise KeyboardInterrupt again where compiled code or a lock turned it into another error."""
     try:
         yield
     except Exception as error:

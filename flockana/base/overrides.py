@@ -11,18 +11,7 @@ from flockana.base.errors import ArgumentError
 
 
 def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool:
-    """Return whether no subclass overrides `others` without overriding `name` too.
-
-    Examples
-    --------
-    >>> class Square:
-    ...     side = 2.0
-    ...     area = 4.0
-    >>> class Larger(Square):
-    ...     side = 3.0
-    >>> overrides_consistently(Square, "area", ["side"]), overrides_consistently(Larger, "area", ["side"])
-    (True, False)
-    """
+    """Return whether no subclass overrides `others` without overriding `name` too."""
     ways = list(kind.__mro__)
     defined = next(k for k, base in enumerate(ways) if name in vars(base))
     return not any(other in vars(base) for base in ways[:defined] for other in others)

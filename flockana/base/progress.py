@@ -22,11 +22,6 @@ def progress_bar(
 
     `counted` shows both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate,
     for work of which each part takes about as long.
-
-    Examples
-    --------
-    >>> with progress_bar(2, enabled=False) as advance:
-    ...     advance(1, "second run")
     """
     from flockana.base.checks import ensure_flag  # and numpy, which to list needs not
 

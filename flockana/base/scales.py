@@ -7,13 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Scales:
-    """Natural length and time of a law; thresholds are multiples of them, so no verdict depends on units.
-
-    Examples
-    --------
-    >>> Scales(length=6.0, time=2.0).speed, Scales(length=6.0, time=2.0).force
-    (3.0, 1.5)
-    """
+    """Natural length and time of a law; thresholds are multiples of them, so no verdict depends on units."""
 
     length: float
     time: float

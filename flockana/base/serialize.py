@@ -25,13 +25,7 @@ _ROOMS = ("flockana.interactions", "flockana.environment", "flockana.laws")  # w
 
 @cache
 def parameter_classes() -> dict[str, type]:
-    """Return every parameter class that a file may name, by its name.
-
-    Examples
-    --------
-    >>> parameter_classes()["Algorithm1"].__module__
-    'flockana.laws.olfati_saber'
-    """
+    """Return every parameter class that a file may name, by its name."""
     classes_by_name: dict[str, type] = {}
     for module in chain.from_iterable(map(modules, _ROOMS)):
         classes = (x for x in vars(module).values() if isinstance(x, type))
@@ -40,13 +34,7 @@ def parameter_classes() -> dict[str, type]:
 
 
 def to_data(value: Any) -> Any:
-    """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``.
-
-    Examples
-    --------
-    >>> to_data((1.0, np.array([2.0, 3.0])))
-    [1.0, [2.0, 3.0]]
-    """
+    """Turn a parameter object into JSON data: dataclasses become a dict with their ``"type"``."""
     if is_dataclass(value) and not isinstance(value, type):
         data = {f.name: to_data(getattr(value, f.name)) for f in fields(value) if f.init}
         kind = type(value)
@@ -69,13 +57,7 @@ def to_data(value: Any) -> Any:
 
 
 def from_data(data: Any) -> Any:
-    """Rebuild an object from `to_data`; only classes of flockana, or of imported modules, are allowed.
-
-    Examples
-    --------
-    >>> from_data([1.0, "two"])
-    (1.0, 'two')
-    """
+    """Rebuild an object from `to_data`; only classes of flockana, or of imported modules, are allowed."""
     if isinstance(data, list):
         return tuple(from_data(v) for v in data)
     if not isinstance(data, dict):

@@ -23,15 +23,7 @@ from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
-    """Return a basin's certificate as plain data with its digest.
-
-    Examples
-    --------
-    >>> from flockana.certified.basin import certify
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> basin_certificate(certify([[0.0], [7.0]], law=Algorithm1()))["kind"]
-    'basin'
-    """
+    """Return a basin's certificate as plain data with its digest."""
     if not isinstance(basin, Basin):
         raise ArgumentError(f"basin = {basin!r}: expected a basin, as certify(...) gives it")
     basin.ensure_unedited()

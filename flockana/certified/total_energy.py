@@ -18,15 +18,7 @@ _ORDER = 12  # of the rate's Taylor polynomials
 
 
 def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
-    """Return the energy H of Algorithm 3 (obstacles, bounded pull, every pair once) on a box of states.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm3, StaticTarget
-    >>> law, zero = Algorithm3(target=StaticTarget((0.0,))), [[arb(0)]]
-    >>> total_energy(law, zero, [[arb(2)]]) == 2
-    True
-    """
+    """Return the energy H of Algorithm 3 (obstacles, bounded pull, every pair once) on a box of states."""
     with ctx.workprec(BITS):
         gains, par, area = law.gains, scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
         squares = [norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]

@@ -37,15 +37,7 @@ _TRIES = 30  # of an error that holds itself up
 
 
 def tube_certificate(tube: Tube, *, basin: Basin | None = None, weight: float = 10.0) -> dict[str, Any]:
-    """Return the certificate of the run in the middle of a tube, as plain data with its digest.
-
-    Examples
-    --------
-    >>> from flockana.certified.enclose import enclose
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> tube_certificate(enclose(Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 0.0625)))["kind"]
-    'tube'
-    """
+    """Return the certificate of the run in the middle of a tube, as plain data with its digest."""
     _ensure_certifiable(tube, basin)
     with ctx.workprec(BITS):
         data = _start(tube, weight) | {"times": [_hexadecimal(arb(t)) for t in tube.t], "paths": _paths(tube)}

@@ -2,24 +2,59 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from flockana.cli.options import AsJson
 from flockana.cli.threads import one_thread_for_matrices
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Words = Annotated[list[str] | None, typer.Argument(metavar="[WORD]...", help="Only entries with all these words.")]
+Source = Annotated[str, typer.Option(help="Only this source, or part of its name.", show_default=False)]
+Status = Annotated[
+    Literal["verified", "refuted", "vacuous", "inconclusive"] | None,
+    typer.Option(help="Only entries of which this is expected.", show_default=False),
+]
+Long = Annotated[bool, typer.Option("--long", help="Print all that is known of each.")]
+
 
 @one_thread_for_matrices()
-def scenarios_command() -> None:
-    """List the catalogue of published simulations."""
-    from rich.console import Console
+def scenarios_command(
+    words: Words = None, source: Source = "", status: Status = None, long: Long = False, as_json: AsJson = False
+) -> None:
+    """List the catalogue of published simulations, by source."""
+    from flockana.report.catalogues import scenario_entries, scenario_table, select
 
-    from flockana.report.catalogues import scenario_table
-
-    Console(highlight=False).print(scenario_table())
+    found = select(scenario_entries(), words or (), source=source, status=status or "")
+    _show(found, scenario_table, "scenarios", long=long, as_json=as_json)
 
 
 @one_thread_for_matrices()
-def theorems_command() -> None:
-    """List the theorems and errata that can be checked."""
-    from rich.console import Console
+def theorems_command(
+    words: Words = None, source: Source = "", status: Status = None, long: Long = False, as_json: AsJson = False
+) -> None:
+    """List the theorems and errata that can be checked, by source."""
+    from flockana.report.catalogues import select, theorem_entries, theorem_table
 
-    from flockana.report.catalogues import theorem_table
+    found = select(theorem_entries(), words or (), source=source, status=status or "")
+    _show(found, theorem_table, "theorems", long=long, as_json=as_json)
 
-    Console(highlight=False).print(theorem_table())
+
+def _show(
+    found: list[dict[str, Any]], table: Callable[[list[str]], Any], kind: str, *, long: bool, as_json: bool
+) -> None:
+    from flockana.cli.show import show, show_json
+    from flockana.report.catalogues import short_list
+
+    if as_json:
+        show_json(found)
+        return
+    if long:
+        show(kind, table([entry["name"] for entry in found]))
+    elif found:
+        typer.echo(short_list(found))
+    note = "" if long or not found else "; --long prints more of each"
+    typer.echo(f"{len(found)} {kind}{note}")

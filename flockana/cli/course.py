@@ -25,6 +25,9 @@ def course_command(
         Literal["otter", "nbgrader"] | None,
         typer.Option(help="Masters for a grader, with hidden tests: for `otter assign`, or nbgrader's folder source."),
     ] = None,
+    address: Annotated[
+        str, typer.Option(help="Where notebooks install flockana from if it is missing: git+https://HOST/PATH.")
+    ] = "",
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
@@ -50,7 +53,7 @@ def course_command(
     if grader is not None:
         notebooks = write_for(folder, grader)
     else:
-        notebooks = write_slides(folder) if slides else write(folder, version)
+        notebooks = write_slides(folder) if slides else write(folder, version, address=address)
     for written in notebooks:
         show_files(notebook=written)
     return OK

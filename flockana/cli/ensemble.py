@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flockana.base.files import write_atomic
-from flockana.cli.options import Drawing, Jobs, ScenarioName, output
-from flockana.cli.show import show, show_files
+from flockana.cli.options import AsJson, Drawing, Jobs, ScenarioName, output
+from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import OK, UNEXPECTED
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ def ensemble_command(
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
     save_to: Annotated[Path | None, output("netCDF file to write.")] = None,
     plot: Drawing = None,
+    as_json: AsJson = False,
 ) -> int:
     """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.
 
@@ -78,12 +79,16 @@ def ensemble_command(
         progress=True,
     )
     table = shares(runs, level=level)
-    _show(runs, table, axes)
+    if as_json:
+        show_json(share_rows(table))
+    else:
+        _show(runs, table, axes)
     if save_to is not None:  # in memory first: HDF5 tears itself apart on a disk that fills
         write_atomic(save_to, runs.to_netcdf(None, engine="h5netcdf"))
     if plot is not None:
         write_picture(lambda ax: _draw(ax, runs, table, axes), plot, m=2)
-    show_files(store=store, saved=save_to, picture=plot)
+    if not as_json:
+        show_files(store=store, saved=save_to, picture=plot)
     return UNEXPECTED if (runs.run != 0).any() else OK
 
 
@@ -172,6 +177,15 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
             console.print(f"  {message}", markup=False)
         if len(messages) > _MESSAGES:
             console.print(f"  … and {len(messages) - _MESSAGES} more kinds", markup=False)
+
+
+def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:
+    """Return the shares as plain data: a row for each claim and combination of parameters."""
+    rows = []
+    for values in table.to_dataframe().reset_index().to_dict("records"):
+        plain = {str(key): value.item() if hasattr(value, "item") else value for key, value in values.items()}
+        rows.append({key: None if value != value else value for key, value in plain.items()})
+    return rows
 
 
 def share_table(table: xarray.Dataset, axes: list[str]) -> Table:

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from flockana.cli.options import ScenarioName, Seed
-from flockana.cli.show import show, show_files
+from flockana.cli.options import AsJson, ScenarioName, Seed
+from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import OK
 
 
@@ -24,6 +24,7 @@ def export_command(
     consensus: Annotated[
         Literal["missing", "nearest"], typer.Option(help="Leave a consensus without a style out, or take the nearest.")
     ] = "missing",
+    as_json: AsJson = False,
 ) -> int:
     """Write law, start and run of a scenario for LAMMPS: input script, data file, tabulated pair style, README.txt.
 
@@ -46,6 +47,11 @@ def export_command(
         samples=samples,
         consensus=consensus,
     )
+    if as_json:
+        numbers = {"steps": told.steps, "dt": told.dt, "force error": told.force_error}
+        words = {name: list(getattr(told, name)) for name in ("exact", "near", "missing")}
+        show_json({"scenario": name, **numbers, **words, "files": [str(path) for path in told.files]})
+        return OK
     console = show(f"{item.name} for LAMMPS: {told.steps} steps of {told.dt:.6g}")
     for word, texts in (("exact", told.exact), ("nearly", told.near), ("missing", told.missing)):
         for text in texts:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.cli.options import output
-from flockana.cli.show import show, show_files
+from flockana.cli.options import AsJson, output
+from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def falsify_command(
     save_to: Annotated[Path | None, output("JSON file to write.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF of the search.")] = None,
     replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check a counterexample, search none.")] = None,
+    as_json: AsJson = False,
 ) -> int:
     """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
@@ -54,7 +56,7 @@ def falsify_command(
     if replay is not None:
         if (theorem, on, claim, save_to, plot) != (None,) * 5:
             raise ArgumentError("--replay FILE brings its own theorem and start: expected no other")
-        return _replay(replay)
+        return _replay(replay, as_json=as_json)
     if theorem is None or on is None:
         raise ArgumentError("expected THEOREM --on SCENARIO, such as os-3 --on three-agents-1d, or --replay FILE")
     ensure_file(save_to, (".json",))
@@ -72,19 +74,22 @@ def falsify_command(
         deepen=deepen,
         progress=True,
     )
-    _show(search)
-    if save_to is not None and search.found:
-        show_files(counterexample=search.save(save_to))
+    if as_json:
+        show_json(search_facts(search))
+    else:
+        _show(search)
+    saved = search.save(save_to) if save_to is not None and search.found else None
     if plot is not None:
         write_picture(lambda ax: falsification(search, ax=ax), plot, m=2)
-        show_files(picture=plot)
+    if not as_json:
+        show_files(counterexample=saved, picture=plot)
     if search.ended == "interrupted":
         return INTERRUPTED
     return OK if all(known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
-    """Bounds by parameter.
+    """Return bounds by parameter.
 
     Examples
     --------
@@ -106,7 +111,26 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
     return ranges
 
 
-def _replay(path: Path) -> int:
+def search_facts(search: Falsification) -> dict[str, Any]:
+    """Return a search as plain data."""
+    ends = {"margin": search.margin, "error": search.error}
+    return {
+        "theorem": search.theorem,
+        "claim": search.claim,
+        "scenario": search.scenario,
+        "found": search.found,
+        "status": search.status,
+        **{name: value if isfinite(value) else None for name, value in ends.items()},
+        "known to be false": search.found and known_false(search.theorem, search.claim),
+        "evaluations": search.evaluations,
+        "failures": search.failures,
+        "ended": search.ended,
+        "broken": list(search.broken),
+        "parameters": dict(search.parameters),
+    }
+
+
+def _replay(path: Path, *, as_json: bool) -> int:
     from rich.console import Console
 
     from flockana.falsify import Counterexample
@@ -115,6 +139,9 @@ def _replay(path: Path) -> int:
     counterexample = Counterexample.load(path)
     verdict = counterexample.check()
     status = {claim.name: claim.status for claim in verdict.claims}.get(counterexample.claim, "not judged")
+    if as_json:
+        show_json(verdict.to_dict())
+        return OK if status == "refuted" else UNEXPECTED
     Console(highlight=False).print(details(verdict))
     again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
     typer.echo(f"{counterexample.theorem}:{counterexample.claim}, found by flockana {counterexample.version}: {again}")

@@ -25,8 +25,10 @@ from flockana.cli.equilibrium import equilibrium_command
 from flockana.cli.explore import explore_command
 from flockana.cli.export import export_command
 from flockana.cli.falsify import falsify_command
+from flockana.cli.groups import Groups, example
 from flockana.cli.home import prepare_home
 from flockana.cli.lattice import lattice_command
+from flockana.cli.observe import observe_command
 from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
 from flockana.cli.stability import stability_command
@@ -54,6 +56,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "export": export_command,
     "course": course_command,
     "explore": explore_command,
+    "observe": observe_command,
 }
 
 
@@ -71,6 +74,7 @@ def _app(asked: str) -> typer.Typer:
     """Return the program with the requested command only, or with all."""
     app = typer.Typer(
         name=_NAME,
+        cls=Groups,
         help="Do these flocks do what the theorems say?",
         no_args_is_help=False,
         rich_markup_mode=None,  # its tables break sentences, and name types that say nothing
@@ -78,7 +82,7 @@ def _app(asked: str) -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_flockana)
     for name in [asked] if asked in _COMMANDS else _COMMANDS:
-        app.command(name, cls=Command)(_COMMANDS[name])
+        app.command(name, cls=Command, epilog=f"Example: {example(name)}")(_COMMANDS[name])
     return app
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import ensure_target, write_atomic
+from flockana.base.files import ensure_folder_of, ensure_target, write_atomic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,8 +22,6 @@ _DPI = 160
 
 def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
     """Raise if a picture of this kind cannot be written there."""
-    from flockana.report.build import ensure_directory
-
     if path is None:
         return
     if os.path.isdir(path):
@@ -31,7 +29,7 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
     if path.suffix.lower() not in kinds:
         raise ArgumentError(f"{path}: expected a file name that ends in {' or '.join(kinds)}")
     ensure_target(path)
-    ensure_directory(path.parent)
+    ensure_folder_of(path)
 
 
 def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None:

@@ -13,8 +13,8 @@ import typer
 
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
-from flockana.cli.options import Jobs, output
-from flockana.cli.show import show_files
+from flockana.cli.options import AsJson, Jobs, output
+from flockana.cli.show import show_files, show_json
 from flockana.cli.status import OK, UNEXPECTED
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def prove_command(
     time_limit: Annotated[
         float | None, typer.Option(min=0.0, metavar="SECONDS", help="For each proof, instead of its own limit.")
     ] = None,
+    as_json: AsJson = False,
 ) -> int:
     """Check the executable proofs, print what each proves, and write certificates (Markdown with LaTeX, and JSON).
 
@@ -61,12 +62,16 @@ def prove_command(
             outcomes.append(outcome)
     outcomes.sort(key=lambda outcome: chosen.index(outcome.id))
     certificates.write_index(outcomes, folder)
-    _show(outcomes, time.perf_counter() - started, folder)
+    if as_json:
+        names = ("id", "title", "statement", "rigour", "status", "seconds")
+        show_json([{name: getattr(outcome, name) for name in names} for outcome in outcomes])
+    else:
+        _show(outcomes, time.perf_counter() - started, folder)
     return OK if all(outcome.status == "proved" for outcome in outcomes) else UNEXPECTED
 
 
 def _module(name: str) -> Any:
-    """A module of the checkout's `proofs`, which is no part of the installed package.
+    """Import a module of the checkout's `proofs`, which is not part of the installed package.
 
     A course's folder has a `proofs` too, without what runs them, and may come first where modules are looked for.
     """

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from flockana.base.errors import ArgumentError
-from flockana.base.files import ensure_target
-from flockana.cli.options import ScenarioName, Seed, output
-from flockana.cli.show import show, show_files
+from flockana.base.files import ensure_folder_of, ensure_target
+from flockana.cli.options import AsJson, ScenarioName, Seed, output
+from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
 
@@ -20,9 +21,9 @@ def run_command(
     save_to: Annotated[Path, output("netCDF file to write.")],
     seed: Seed = 0,
     progress: Annotated[bool, typer.Option("--progress", help="Show a progress bar.")] = False,
+    as_json: AsJson = False,
 ) -> int:
     """Simulate a scenario and save the run, its law included, as netCDF."""
-    from flockana.report.build import ensure_directory
     from flockana.report.console import run_table
     from flockana.scenarios import scenario
 
@@ -30,10 +31,17 @@ def run_command(
     if os.path.isdir(save_to):
         raise ArgumentError(f"{save_to} is a folder: expected a file name, such as {save_to / name}.nc")
     ensure_target(save_to)
-    ensure_directory(save_to.parent)
+    ensure_folder_of(save_to)
     run = item.run(progress=progress)
-    console = show(f"{item.name}: {item.title}", run_table(run))
-    console.print(f"{run.status}: {run.message}; {run.stats['seconds']:.2f} s", markup=False)
-    run.save(save_to)  # last: what was computed is told even if it cannot be written
-    show_files(saved=save_to)
+    if as_json:
+        ends = {key: [float(series[k]) for k in (0, -1)] for key, series in run.metrics().items()}
+        finite = {key: [value if isfinite(value) else None for value in pair] for key, pair in ends.items()}
+        facts = {"scenario": item.name, "seed": seed, "status": run.status, "message": run.message}
+        show_json({**facts, "t": [float(run.t[0]), float(run.t[-1])], "file": str(save_to), "metrics": finite})
+    else:
+        console = show(f"{item.name}: {item.title}", run_table(run))
+        console.print(f"{run.status}: {run.message}; {run.stats['seconds']:.2f} s", markup=False)
+    run.save(save_to)  # last: results are printed even if they cannot be written
+    if not as_json:
+        show_files(saved=save_to)
     return {"complete": OK, "interrupted": INTERRUPTED}.get(run.status, UNEXPECTED)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from flockana.stability import Linearisation, Mode
 
+_SECONDS = {False: 5.0, True: 2.0}  # for 1000 agents: equilibrium and modes, or the slowest modes alone
+_SHORT, _LONGEST = 10.0, 600.0
 DENSE = 1200  # n m above which only the slowest modes are sought, without a dense matrix
 
 
@@ -60,6 +62,7 @@ def stability_command(
     ensure_file(plot, KINDS)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
+        _tell_time(len(q), as_given=as_given)
         here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
         linear = linearise(law, here, allow_residual=as_given)
         slow = slowest(linear, modes)
@@ -76,6 +79,21 @@ def stability_command(
     if not as_json:
         show_files(picture=plot)
     return OK
+
+
+def _tell_time(n: int, *, as_given: bool) -> None:
+    """Print the expected time for a large flock on the error stream; raise if it is too long."""
+    from flockana.base.errors import ArgumentError
+
+    seconds = _SECONDS[as_given] * (n / 1000.0) ** 2
+    if seconds < _SHORT:
+        return
+    what = "its slowest modes take" if as_given else "the search for its equilibrium takes"
+    text = f"n = {n}: {what} about {seconds:.0f} s on a machine of 2024"
+    if seconds > _LONGEST:
+        remedy = "measure fewer agents" if as_given else "with --as-given only the slowest modes at q are sought"
+        raise ArgumentError(f"{text}, more than {_LONGEST:.0f} s; {remedy}")
+    typer.echo(text, err=True)
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
@@ -149,7 +167,7 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
 
 
 def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
-    """Pole map, the slowest modes of the shape, and the centre's Bode plot where there is one."""
+    """Draw the pole map, the slowest modes, and the centre's Bode plot where there is one."""
     import numpy as np
 
     from flockana import plots
@@ -187,7 +205,7 @@ def _title(facts: dict[str, Any]) -> str:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """Facts in words."""
+    """Return the linearisation's facts as table rows."""
     drifts = f"; drifting: {', '.join(facts['drifting'])}" if facts["drifting"] else ""
     abscissa = facts["spectral abscissa"]
     rows = [

@@ -3,6 +3,6 @@
 Grading needs no more than numpy; writing notebooks needs what ``pip install 'flockana[course]'`` installs.
 """
 
-from flockana.course.grading import Grade, answered, form_of, grade
+from flockana.course.grading import Grade, answered, form_of, grade, shows
 
-__all__ = ["Grade", "answered", "form_of", "grade"]
+__all__ = ["Grade", "answered", "form_of", "grade", "shows"]

@@ -1,8 +1,9 @@
 """Building of lectures as notebooks, for students and with solutions, with the files that they need.
 
 A lecture is a text in jupytext's percent format whose cells are tagged: ``exercise`` poses, ``answer`` is what the
-student fills in, ``solution`` is our answer, and ``check`` grades it by one call of `grade`. ``facts`` asserts what the
-text says about the output above it; it is kept beside the solutions, where CI runs it.
+student fills in, ``solution`` is our answer, and ``check`` grades it by one call of `grade`. Answers in sentences have
+no check, and their solutions end with a rubric. ``facts`` asserts what the text says about the output above it; it is
+kept beside the solutions, where CI runs it.
 """
 
 from __future__ import annotations
@@ -28,14 +29,18 @@ _CHECKOUT = _PACKAGE.parent.parent
 _KERNEL = {"name": "python3", "language": "python", "display_name": "Python 3"}
 _LEFT_OUT = {"student": {"solution", "facts"}, "self-study": {"solution", "facts"}, "solutions": {"answer"}}
 _POSED = re.compile(r"\*\*(\d+)\.\*\* (★{1,3}) \((\d+) points?, (\w+)\)")
-KINDS = ("derivation", "design", "counterexample", "program", "experiment", "reading", "words")
+WRITTEN = ("proof", "project", "words")  # kinds whose answers are sentences, in a Markdown cell, read by a person
+KINDS = ("derivation", "design", "counterexample", "program", "experiment", "player", "reading", *WRITTEN)
 VERSIONS = tuple(_LEFT_OUT)
 _INSTALL = """# Where flockana is missing, as on Colab, this cell installs it; elsewhere it does nothing.
 import importlib.util
 
+address = {address!r}
 missing = importlib.util.find_spec("flockana") is None
+if missing and not address:
+    raise RuntimeError("flockana is missing: put the address of the course's checkout between the quotes above")
 if missing:
-    %pip install --quiet "flockana[course]\""""
+    %pip install --quiet "flockana[course] @ {{address}}\""""
 _COMPANIONS = """
 
     from pathlib import Path
@@ -49,13 +54,12 @@ _COMPANIONS = """
 class Exercise:
     """One exercise of a lecture."""
 
-    name: str  # the variable that takes the answer
+    name: str  # the variable that takes the answer, or text_ and the number where the answer is written
     number: int  # number, level, points: its place in the lecture, stars from 1 to 3, and what it counts
     level: int
     points: int
-    # what it takes to answer: paper, a choice, a search, code, a computation of one's own, an output, sentences
-    kind: str
-    form: str  # what is asked for, as `answered` takes it
+    kind: str  # what it takes to answer, one of KINDS
+    form: str  # what is asked for, as `answered` takes it, or "text"
 
 
 def lectures() -> Path:
@@ -71,19 +75,22 @@ def sources() -> list[Path]:
 
 
 def tags(cell: Any) -> list[str]:
-    """The tags of a cell."""
+    """Return the tags of a cell."""
     return list(cell.metadata.get("tags", ()))
 
 
-def notebook(source: Path, version: str) -> Any:
-    """The notebook of a lecture: for the student, for study alone (with checks), or with solutions."""
+def notebook(source: Path, version: str, *, address: str = "") -> Any:
+    """Return the notebook of a lecture: for the student, for self-study (with checks), or with solutions.
+
+    `address` is where its first cell installs flockana from if it is missing, such as ``git+https://host/flockana``.
+    """
     ensure_choice("version", version, VERSIONS)
     book = jupytext.read(source)
     book.metadata = nbformat.from_dict({"kernelspec": _KERNEL})
     book.cells = [cell for cell in book.cells if not _LEFT_OUT[version] & set(tags(cell))]
     entry = next(each for each in course_map(source.parent) if each.number == number_of(source))
     book.cells.insert(1, nbformat.v4.new_markdown_cell(header(entry, source.parent)))
-    book.cells.insert(2, _install(source))
+    book.cells.insert(2, _install(source, address))
     book.cells.append(nbformat.v4.new_markdown_cell(references(entry)))
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{entry.number}-{number:03d}"  # the same at every build
@@ -94,9 +101,9 @@ def notebook(source: Path, version: str) -> Any:
     return book
 
 
-def _install(source: Path) -> Any:
+def _install(source: Path, address: str) -> Any:
     """Return a cell that installs flockana and fetches companion files where they are missing, as on Colab."""
-    lines = _INSTALL + (_COMPANIONS if needs_companions(source) else "")
+    lines = _INSTALL.format(address=address) + (_COMPANIONS if needs_companions(source) else "")
     return nbformat.v4.new_code_cell(lines, metadata={"tags": ["install"], "jupyter": {"source_hidden": True}})
 
 
@@ -106,11 +113,20 @@ def needs_companions(source: Path) -> bool:
 
 
 def exercises(source: Path) -> Iterator[Exercise]:
-    """The exercises of a lecture, in order."""
-    posed = [cell for cell in jupytext.read(source).cells if {"exercise", "check"} & set(tags(cell))]
-    for text, check in zip(posed[::2], posed[1::2], strict=True):
-        number, stars, points, kind = _head(text.source, source)
-        name, form = asked(check.source)
+    """Return the exercises of a lecture, in order."""
+    parts: list[dict[str, str]] = []
+    for cell in jupytext.read(source).cells:
+        for tag in {"exercise", "check"} & set(tags(cell)):
+            parts += [{}] * (tag == "exercise")
+            parts[-1] = parts[-1] | {tag: cell.source}
+    for part in parts:
+        number, stars, points, kind = _head(part["exercise"], source)
+        if ("check" in part) is (kind in WRITTEN):
+            raise ArgumentError(
+                f"{source.name}: exercise {number} is of kind {kind}; expected a check unless it is one of "
+                f"{', '.join(WRITTEN)}, which a person reads"
+            )
+        name, form = asked(part["check"]) if "check" in part else (f"text_{number}", "text")
         yield Exercise(name, number, stars, points, kind, form)
 
 
@@ -158,11 +174,18 @@ def form_check(check: str) -> str:
     return f'from flockana.course import answered\n\nanswered({name}, "{form}")'
 
 
-def write(folder: Path, version: str = "student") -> list[Path]:
-    """Write a version of all lectures with everything that they import or show."""
-    books = {f"{source.stem}.ipynb": notebook_bytes(notebook(source, version)) for source in sources()}
+def write(folder: Path, version: str = "student", *, address: str = "") -> list[Path]:
+    """Write a version of all lectures with everything that they import or show; with solutions, the lecturer's too."""
+    books = {f"{each.stem}.ipynb": notebook_bytes(notebook(each, version, address=address)) for each in sources()}
     pages = {"map.md": map_page(lectures()).encode(), "notation.md": notation_page(lectures()).encode()}
+    if version == "solutions":
+        pages |= lecturer_pages()
     return deliver(folder, books | pages | companions())[: len(books)]
+
+
+def lecturer_pages() -> dict[str, bytes]:
+    """Return the pages for the lecturer by name: plan, notes, exam with solutions."""
+    return {f"lecturer/{path.name}": path.read_bytes() for path in sorted((lectures() / "lecturer").glob("*.md"))}
 
 
 def companions() -> dict[str, bytes]:

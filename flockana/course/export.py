@@ -13,19 +13,29 @@ from typing import Any
 import nbformat
 
 from flockana.base.checks import ensure_choice
-from flockana.course.build import Exercise, companions, exercises, needs_companions, notebook, sources, tags
+from flockana.course.build import (
+    Exercise,
+    companions,
+    exercises,
+    lecturer_pages,
+    needs_companions,
+    notebook,
+    sources,
+    tags,
+)
 from flockana.course.delivery import deliver, notebook_bytes
 from flockana.course.pages import number_of
 
-_IMPORTS = "from flockana.course import answered, grade\n\n"
+_IMPORTS = "from flockana.course import answered, grade, shows\n\n"
 _NBGRADER_CONFIG = """c = get_config()
 c.ClearSolutions.code_stub = {"python": "# your code here"}
+c.ClearSolutions.text_stub = "*Your answer:*"
 """
 GRADERS = ("otter", "nbgrader")
 
 
 def master(source: Path, grader: str) -> Any:
-    """The notebook that a grader starts from, with solutions and all tests: for lecturers only."""
+    """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, asked = notebook(source, "solutions"), iter(exercises(source))
@@ -37,8 +47,9 @@ def master(source: Path, grader: str) -> Any:
             parts[kind] = cell
         elif not {"facts", "install"} & set(tags(cell)):
             cells.append(cell)
-        if kind == "check":
-            cells += posed(next(asked), parts["exercise"], parts["solution"].source, cell.source)
+        if kind == "check" or (kind == "solution" and cell.cell_type == "markdown"):
+            check = cell.source if kind == "check" else ""
+            cells += posed(next(asked), parts["exercise"], parts["solution"].source, check)
     for number, cell in enumerate(cells):
         cell["id"] = f"{number_of(source)}-{number:03d}"
     book.cells = cells
@@ -56,11 +67,11 @@ def write_for(folder: Path, grader: str) -> list[Path]:
             others |= {f"{home}{name}": content for name, content in companions().items()}
     if grader == "nbgrader":
         others["nbgrader_config.py"] = _NBGRADER_CONFIG.encode()
-    return deliver(folder, books | others)[: len(books)]
+    return deliver(folder, books | others | lecturer_pages())[: len(books)]
 
 
 def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
-    """The test that students see, and the one that they do not."""
+    """Return the visible and the hidden test of an exercise."""
     seen = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
     return seen, f'assert {check.rstrip()}.status == "right"'
 
@@ -78,13 +89,16 @@ def _assignment(source: Path) -> str:
 
 def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for Otter: raw cells delimit a question, and the hidden test carries its points."""
-    by_hand = exercise.form == "text"
+    by_hand = not check
     head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
     yield _raw(head + "\nmanual: true" * by_hand)
     yield nbformat.v4.new_markdown_cell(text.source)
     yield _raw("# BEGIN SOLUTION")
-    prompt = f'""" # BEGIN PROMPT\n{exercise.name} = ...\n"""; # END PROMPT'
-    yield nbformat.v4.new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
+    if by_hand:
+        yield nbformat.v4.new_markdown_cell(solution)
+    else:
+        prompt = f'""" # BEGIN PROMPT\n{exercise.name} = ...\n"""; # END PROMPT'
+        yield nbformat.v4.new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
     yield _raw("# END SOLUTION")
     if not by_hand:
         seen, hidden = _tests(check, exercise)
@@ -101,20 +115,22 @@ def _scored(points: int, *, hidden: bool) -> str:
 
 def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for nbgrader: cell metadata, and solutions between ``### BEGIN`` and ``### END``."""
-    by_hand = exercise.form == "text"
     yield nbformat.v4.new_markdown_cell(text.source)
-    answer = nbformat.v4.new_code_cell(
-        f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION"
-    )
-    yield _marked(answer, exercise, grade=by_hand, solution=True)
-    if not by_hand:
+    if not check:
+        written = nbformat.v4.new_markdown_cell(f"### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
+        yield _marked(written, exercise, grade=True, solution=True)
+    else:
+        answer = nbformat.v4.new_code_cell(
+            f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION"
+        )
+        yield _marked(answer, exercise, grade=False, solution=True)
         seen, hidden = _tests(check, exercise)
         tests = nbformat.v4.new_code_cell(f"{seen}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
         yield _marked(tests, exercise, grade=True, solution=False)
 
 
 def _marked(cell: Any, exercise: Exercise, *, grade: bool, solution: bool) -> Any:
-    marks = {"schema_version": 3, "cell_type": "code", "task": False, "grade": grade, "solution": solution}
+    marks = {"schema_version": 3, "cell_type": cell.cell_type, "task": False, "grade": grade, "solution": solution}
     marks |= {"locked": not solution, "grade_id": f"{exercise.name}-{'answer' if solution else 'tests'}"}
     cell.metadata["nbgrader"] = marks | ({"points": exercise.points} if grade else {})
     return cell

@@ -66,7 +66,7 @@ def grade(
 
 
 def answered(answer: Any, form: str) -> Grade:
-    """Look at the form of an answer only: all that a student's copy checks.
+    """Check only the form of an answer, as a student's copy does.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def answered(answer: Any, form: str) -> Grade:
 
 
 def form_of(right: Any) -> str:
-    """The form of a right answer, as `answered` knows it; empty for a function, which may ask for anything.
+    """Return the form of a right answer; empty for a function.
 
     Examples
     --------
@@ -91,6 +91,28 @@ def form_of(right: Any) -> str:
     if isinstance(right, Callable):  # type: ignore[arg-type]
         return ""
     return next(name for name, fits in _FORMS.items() if fits(right))
+
+
+def shows(ax: Any, points: Any) -> bool:
+    """Return whether labelled axes draw all the points, as part of a curve or as markers.
+
+    Examples
+    --------
+    >>> from flockana.plots import subplots
+    >>> _, ax = subplots()
+    >>> _ = ax.plot([0.0, 1.0], [2.0, 3.0]), ax.set(xlabel="t (s)", ylabel="x (m)")
+    >>> shows(ax, [[1.0, 3.0]]), shows(ax, [[1.0, 2.0]])
+    (True, False)
+    """
+    if not (ax.get_xlabel() and ax.get_ylabel()):
+        return False
+    drawn = [np.asarray(line.get_xydata(), float) for line in ax.lines]
+    for each in ax.collections:
+        drawn += [np.asarray(each.get_offsets(), float), *(path.vertices for path in each.get_paths())]
+    found = np.vstack([np.empty((0, 2)), *(np.ma.filled(each, np.nan).reshape(-1, 2) for each in drawn)])
+    wanted = np.asarray(points, float).reshape(-1, 2)
+    near = 1e-6 * max(1.0, float(np.abs(wanted).max()))
+    return all(np.any(np.abs(found - each).max(axis=1) <= near) for each in wanted)
 
 
 def _number(x: Any) -> bool:
@@ -105,7 +127,6 @@ def _number(x: Any) -> bool:
 _FORMS: dict[str, Callable[[Any], bool]] = {
     "truth value": lambda x: isinstance(x, bool | np.bool_),
     "word": lambda x: isinstance(x, str),
-    "text": lambda x: isinstance(x, str),
     "function": callable,
     "list": lambda x: (
         isinstance(x, list | tuple | set | frozenset | range) or (isinstance(x, np.ndarray) and x.ndim > 0)

@@ -40,10 +40,9 @@ def discrete(
     times to keep the nearest steps are given, each once: between its steps a map has no state.
     """
     q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
-    steps = count_steps(*t_span, dt, np.floor)
-    wanted = None if keep is None else _nearest(t0, dt, steps, keep)
+    steps, wanted = count_steps(*t_span, dt, np.floor), wanted_steps(law, t_span, keep)
     if wanted is None or 0 in wanted:
-        extra = {name: values[None] for name, values in copied(memory).items()}
+        extra = {name: values[None] for name, values in copied(memory).items() if name not in law.private}
         yield Samples(np.array([t0]), q[None], p[None], np.zeros((1, *q.shape)), extra)
     at_once = max(1, min(law.steps_at_once, _NUMBERS // (3 * q0.size)))
     for first in range(0, steps, at_once):
@@ -60,7 +59,7 @@ def discrete(
         if kept.size:
             # of all steps a view, of some a copy: the others are let go
             at = slice(0, good) if kept.size == made.size else kept
-            some = {name: values[at] for name, values in series.items()}
+            some = {name: values[at] for name, values in series.items() if name not in law.private}
             t = np.minimum(t0 + (made[at] + first) * dt, t_span[1])  # which the last step may pass by its rounding
             yield Samples(t, qs[at], ps[at], us[at], some)
         done = int(made[good - 1]) if good else 0
@@ -70,6 +69,11 @@ def discrete(
             return
         # a copy: a law may change its memory in place
         q, p, memory = qs[-1], ps[-1], copied({name: values[-1] for name, values in series.items()})
+
+
+def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray | None) -> IndexArray | None:
+    """Numbers of the steps nearest to times to keep, each once; None if all are kept."""
+    return None if keep is None else _nearest(t_span[0], law.dt, count_steps(*t_span, law.dt, np.floor), keep)
 
 
 def _stretch(

@@ -80,7 +80,8 @@ class Tally:
 def start_sample(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: float) -> Sample:
     """The initial state as a sample."""
     if isinstance(law, DiscreteLaw):
-        return Sample(t0, q0, p0, np.zeros_like(q0), copied(law.start(q0, p0)))
+        memory = {name: value for name, value in law.start(q0, p0).items() if name not in law.private}
+        return Sample(t0, q0, p0, np.zeros_like(q0), copied(memory))
     extra = {"work": np.array(0.0)} if has_energy(law, t0, q0, p0) else {}
     return Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], extra)
 

@@ -27,6 +27,7 @@ from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
 from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
+from flockana.dynamics.delayed import followed
 from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
@@ -35,9 +36,12 @@ from flockana.dynamics.tolerance import error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
+from flockana.laws.stepped import Stepped
+from flockana.laws.wrapped import needs_steps, wrappers_of
 
 ADAPTIVE = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 METHODS = (*ADAPTIVE, "RK4", *(SCIPY + method for method in ADAPTIVE))
+_ORDERS = {"Euler-Maruyama": 1, "Heun": 2, "RK4": 4}  # schemes of wrapped laws
 
 
 def simulate(
@@ -70,7 +74,8 @@ def simulate(
     method : str
         DOP853, RK45, RK23, Radau, BDF, LSODA, or RK4 with a fixed step. The first three and RK4 are compiled for laws
         that are (Algorithms 1 and 2 and all sums of such terms); else they are scipy's, as `scipy-DOP853` and so on are
-        for every law. They make the same decisions with the same coefficients.
+        for every law. They make the same decisions with the same coefficients. A law that is wrapped by a delay, a
+        clock or noise takes Euler-Maruyama, Heun or, without noise, RK4, all with `dt`; by default the best of them.
     rtol : float
         Relative tolerance of the adaptive solvers: relative to the state as seen from the mean motion of the start, so
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
@@ -79,7 +84,7 @@ def simulate(
         Absolute tolerance of positions, a length; velocities and energies are allowed the same share of the law's own
         speed and energy. By default a hundredth of `rtol` times the law's own length.
     dt : float, optional
-        Step of RK4 (required there, meaningless elsewhere). The last step is shortened to end on time.
+        Step of RK4 and of wrapped laws (required there, meaningless elsewhere). RK4's last step ends on time.
     t_eval : array_like, optional
         Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
         such as `Trajectory.min_distance`, rest on the steps in either case.
@@ -105,6 +110,8 @@ def simulate(
     ('complete', True)
     """
     ensure_law(law)
+    if isinstance(law, Law) and needs_steps(law):
+        law, method, dt = _stepped(law, method, dt), "DOP853", None
     q0, p0 = ensure_state(q0, p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
@@ -119,7 +126,11 @@ def simulate(
             raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples: Iterator[Sample | Samples] = discrete(law, q0, p0, t_span, keep, tally)
+        samples: Iterator[Sample | Samples]
+        if isinstance(law, Stepped) and not law.noisy:
+            samples = followed(law, q0, p0, t_span, keep, tally)
+        else:
+            samples = discrete(law, q0, p0, t_span, keep, tally)
     elif _ensure_method(method, dt) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
@@ -140,6 +151,16 @@ def simulate(
             watch(_copy(first))
     t, q, p, u, extra = _stacked(kept)
     return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
+
+
+def _stepped(law: Law, method: str, dt: Any) -> Stepped:
+    """The steps of a law that has a past, a clock or chance."""
+    if dt is None:
+        raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, such as dt=0.01")
+    order = 2 if any(one.noisy for one in wrappers_of(law)) else 4
+    if method != "DOP853":
+        order = _ORDERS[ensure_known("method of a wrapped law", method, tuple(_ORDERS))]
+    return Stepped(law, dt, order)
 
 
 def _stacked(

@@ -37,13 +37,6 @@ def map_in_batches(
 
     The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
     items to send together; `watch` is told what is under way. An error of the function ends all.
-
-    Examples
-    --------
-    >>> from flockana.ensemble.executors import worker_pool
-    >>> with worker_pool(jobs=1) as workers:
-    ...     list(map_in_batches([2, 3], lambda batch: tuple(x * x for x in batch), workers))
-    [((2, 4),), ((3, 9),)]
     """
     waiting, suspects = deque(items), deque[Any]()
     pending: Pending = {}

@@ -14,13 +14,7 @@ from flockana.ensemble.processes import ProcessPool, cores
 
 
 class Serial(Executor):
-    """Executor that runs each call at once in the caller's thread.
-
-    Examples
-    --------
-    >>> Serial().submit(pow, 2, 5).result()
-    32
-    """
+    """Executor that runs each call at once in the caller's thread."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **options: Any) -> Future[Any]:
         """Call the function now; Ctrl-C ends it and goes on to the caller."""

@@ -102,11 +102,6 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
     """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V.
 
     They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
-
-    Examples
-    --------
-    >>> round(bound_range(AlphaInteraction())[0], 3)
-    6.568
     """
     if alpha.c_star <= alpha.far_potential:
         return 0.0, alpha.r
@@ -123,11 +118,6 @@ def largest_clique(ratio: float, m: int) -> int | None:
 
     On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of it
     and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's ball.
-
-    Examples
-    --------
-    >>> largest_clique(1.28, 2), largest_clique(1.5, 2), largest_clique(1.9, 1), largest_clique(1.28, 3)
-    (3, 4, 2, 4)
     """
     if not isfinite(ratio):
         return None
@@ -137,13 +127,7 @@ def largest_clique(ratio: float, m: int) -> int | None:
 
 
 def turan_pairs(n: int, clique: int) -> int:
-    """Return the most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941).
-
-    Examples
-    --------
-    >>> [turan_pairs(n, 3) for n in (3, 4, 6)]
-    [3, 5, 12]
-    """
+    """Return the most edges of a graph of n nodes without a clique of more than `clique` (Turán 1941)."""
     size, more = divmod(n, clique)
     inside = more * (size + 1) * size // 2 + (clique - more) * size * (size - 1) // 2
     return n * (n - 1) // 2 - inside
@@ -197,12 +181,6 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
     Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
     pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
     upper one doubles the agent with the most links in a compact lattice.
-
-    Examples
-    --------
-    >>> low, high = collision_bounds(AlphaInteraction(), 7)
-    >>> AlphaInteraction().c_star < low < high, round(high, 3)
-    (True, 56.799)
     """
     n, m = ensure_count("n", n), ensure_dimension(m)
     if n == 1:
@@ -211,13 +189,7 @@ def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float
 
 
 def coincident_lattice(alpha: AlphaInteraction, n: int, m: int = 2) -> FloatArray:
-    """Return a compact lattice of n − 1 agents with its most linked agent doubled, n >= 2.
-
-    Examples
-    --------
-    >>> coincident_lattice(AlphaInteraction(), 3).shape
-    (3, 2)
-    """
+    """Return a compact lattice of n − 1 agents with its most linked agent doubled, n >= 2."""
     lattice = hexagonal_spiral(n - 1, alpha.d) if m == 2 else lattice_starts(n - 1, m, alpha.d, 1, noise=0.0)[0]
     doubled = _most_linked_first(lattice, alpha)
     return np.vstack([doubled[:1], doubled])

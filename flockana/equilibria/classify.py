@@ -42,14 +42,7 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 
 
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
-    """Return the potential's second-order model about a configuration, with its residual force.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> landscape(Potential(Algorithm1()), np.array([[0.0], [7.0]])).values.size
-    1
-    """
+    """Return the potential's second-order model about a configuration, with its residual force."""
     kind = Landscape if q.size <= DENSE_SIZE else LargeLandscape
     return kind(
         potential.stiffness,
@@ -95,13 +88,7 @@ def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
 
 
 def classify_spectrum(modes: Spectrum) -> EquilibriumKind:
-    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open.
-
-    Examples
-    --------
-    >>> classify_spectrum(Spectrum(np.array([-1.0, 0.0, 2.0]), 3, 1, 1))
-    'saddle'
-    """
+    """Return the kind of a critical point: a negative eigenvalue excludes a minimum, a zero one leaves it open."""
     if modes.negative:
         return "maximum" if modes.negative == modes.eigenvalues.size else "saddle"
     return "degenerate" if modes.zero else "minimum"

@@ -25,11 +25,6 @@ def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:
 
     Of c agents at one place the motions against each other feel c φ_α(0) I from within, negative, and one block per
     agent elsewhere. These blocks must outweigh it in every direction, hence in the trace: k > m c |φ_α(0)|/max tr.
-
-    Examples
-    --------
-    >>> [least_with_coincidence(AlphaInteraction(), m) for m in (1, 2, 3)]
-    [4, 5, 6]
     """
     from scipy.optimize import minimize_scalar
 

@@ -36,7 +36,7 @@ class CollapseDiagram:
     kinds: tuple[tuple[str, ...], ...]  # kind of each equilibrium, ``"failed"`` where there is none
 
     def onset(self) -> FloatArray:
-        """Least ratio of the diagram at which agents coincide, for each size; NaN where they never do."""
+        """Return the least ratio of the diagram at which agents coincide, for each size; NaN if they never do."""
         return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
 
 
@@ -104,13 +104,7 @@ def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequ
 
 
 def natural_ratio(alpha: AlphaInteraction) -> float:
-    """Return the c1γ/c1α at which the pull of the γ-agent at distance d equals the largest repulsion of a pair.
-
-    Examples
-    --------
-    >>> round(natural_ratio(AlphaInteraction(a=50.0, b=50.0)) / natural_ratio(AlphaInteraction()), 9)
-    10.0
-    """
+    """Return the c1γ/c1α at which the pull of the γ-agent at distance d equals the largest repulsion of a pair."""
     return alpha.strength / alpha.d
 
 
@@ -121,15 +115,6 @@ def threshold(
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).
-
-    Examples
-    --------
-    >>> low, high = threshold(lambda ratio: ratio > 1.0, halvings=10)
-    >>> low <= 1.0 < high < 1.001
-    True
-    >>> low, high = threshold(lambda ratio: ratio > 1e-4)
-    >>> low <= 1e-4 < high
-    True
     """
 
     def seen(ratio: float) -> bool | None:

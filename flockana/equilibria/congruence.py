@@ -32,15 +32,6 @@ def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
 
     Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
     a spectrum.
-
-    Examples
-    --------
-    >>> triangle = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
-    >>> congruent(triangle, triangle[[2, 0, 1]] * [-1.0, 1.0] + 5.0, tol=1e-9)
-    True
-    >>> first, second = np.array([[0.0, 1, 4, 10, 12, 17], [0, 1, 8, 11, 13, 17]])[:, :, None]
-    >>> congruent(first, second, tol=1e-9)  # the same distances all the same
-    False
     """
     from scipy.spatial import KDTree
     from scipy.spatial.distance import cdist

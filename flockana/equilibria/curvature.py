@@ -40,20 +40,7 @@ class Curvatures(NamedTuple):
 
 
 class Landscape:
-    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby.
-
-    Examples
-    --------
-    A spring of stiffness 3 between two agents on a line, of which the sum is free:
-
-    >>> from scipy.sparse import csr_array
-    >>> spring = Landscape(
-    ...     lambda q: csr_array([[3.0, -3.0], [-3.0, 3.0]]),
-    ...     np.array([[0.0], [1.0]]), np.full((2, 1), 0.5**0.5), force=0.0, length=1.0, unit=3.0
-    ... )
-    >>> spring.curvatures().values.round(12).tolist(), spring.curvatures().signs.tolist()
-    ([6.0], [1])
-    """
+    """Hessian of a potential at a configuration, off the rigid motions, with bounds of its change nearby."""
 
     def __init__(
         self,
@@ -94,7 +81,7 @@ class Landscape:
         return vectors
 
     def curvatures(self) -> Curvatures:
-        """Eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
+        """Return eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""
         sizes = np.abs(self.values)
         decided = np.zeros(sizes.size, dtype=bool)
         left = np.flatnonzero(sizes > self.rounding)

@@ -33,25 +33,12 @@ class GradientLimit:
 
 
 def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
-    """Return −∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m).
-
-    Examples
-    --------
-    >>> structural_force(Algorithm1(), np.array([[0.0], [7.0]])).ravel().tolist()
-    [0.0, 0.0]
-    """
+    """Return −∇V(q) of Algorithm 1, −∇U_λ of Algorithm 2 in the moving frame, shape (n, m)."""
     return moving_frame(law.flow(0.0, q, np.zeros_like(q))[0])
 
 
 def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
-    """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method.
-
-    Examples
-    --------
-    >>> limit = gradient_flow(Algorithm1(), [[0.0, 0.0], [6.0, 0.0]])
-    >>> bool(abs(limit.q[1, 0] - limit.q[0, 0] - 7.0) < 1e-9)
-    True
-    """
+    """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method."""
     from scipy.integrate import LSODA  # BDF with the Jacobian, in compiled code; Adams' formulas where nothing is stiff
 
     q = ensure_points("q0", q0)

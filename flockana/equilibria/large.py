@@ -22,19 +22,7 @@ _GAP = 1e-9  # of the largest row sum: eigenvalues between which there is no mor
 
 
 class LargeLandscape(Landscape):
-    """`Landscape` that holds only its smallest eigenvalues and its largest.
-
-    Examples
-    --------
-    >>> from flockana.lattice import hexagonal_patch
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.equilibria.terminal import rigid_motions
-    >>> q = hexagonal_patch(3, 7.0)
-    >>> ways = [kind(Algorithm1().stiffness, q, rigid_motions(q), force=0.0, length=7.0, unit=1.0)
-    ...         for kind in (Landscape, LargeLandscape)]
-    >>> bool(np.allclose(ways[0].values[:12], ways[1].values[:12])), ways[1].values.size
-    (True, 13)
-    """
+    """`Landscape` that holds only its smallest eigenvalues and its largest."""
 
     @cached_property
     def values(self) -> FloatArray:

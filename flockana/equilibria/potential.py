@@ -50,12 +50,6 @@ def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
 class Potential:
     """Σ U^T over the terms of a law at one time: V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2),
     V_α + V_β + V_γ (Algorithm 3), c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> Potential(Algorithm1()).force(np.array([[0.0], [7.0]])).ravel().tolist()
-    [0.0, 0.0]
     """
 
     law: SumOfTerms  # the law, from `ensure_flock_law`

@@ -104,14 +104,6 @@ class Program:
     The unknown is x = q.ravel()/d, the objective the potential over force_scale d: gradients come out in units of the
     force scale. The gauge Cᵀ(x − x⁰) = 0, C a basis of the potential's symmetries at the start, takes the directions
     out in which it is flat by construction; every configuration has a copy that satisfies it, so nothing is lost.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> program = Program(Potential(Algorithm1()), (2, 1), np.array([[0, 1]], dtype=np.int32), 1)
-    >>> q, done, status = program.solve(np.array([[0.0], [6.5]]))
-    >>> bool(abs(q[1, 0] - q[0, 0] - 7.0) < 1e-6), done, status
-    (True, True, 'Solve_Succeeded')
     """
 
     @defer_sigint()

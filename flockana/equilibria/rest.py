@@ -20,12 +20,6 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
     """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares).
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
-
-    Examples
-    --------
-    >>> from flockana.laws.minimal import MinimalFlocking
-    >>> resting_state(MinimalFlocking(edges=[(0, 1)], spacing=2.0), [[0.0], [1.9]]).round(12).tolist()
-    [[-0.05], [1.95]]
     """
     if not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")

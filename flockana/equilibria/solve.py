@@ -120,7 +120,7 @@ class Equilibrium:
         return facts_html("Equilibrium", self.facts())
 
     def strain(self) -> float:
-        """Largest |link − d|/d to twelve digits; NaN without links.
+        """Return the largest |link − d|/d to twelve digits; NaN without links.
 
         Under dead-zone flocking of contacts only, the pairs that repel, with d₁ for d; NaN if no pair does.
         """
@@ -205,14 +205,7 @@ def find_equilibrium(
 
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
-    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> finish(Potential(Algorithm1()), np.array([[0.0], [7.0 + 1e-5]]), True, "given").residual < 1e-12
-    True
-    """
+    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
     q = _polish(potential, q) if converged and q.size <= DENSE_SIZE else q  # the descent has polished what is larger
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
@@ -262,13 +255,7 @@ def _fixed_in_space(potential: Potential) -> bool:
 
 
 def all_pairs(n: int) -> LinkArray:
-    """Return all pairs of n agents.
-
-    Examples
-    --------
-    >>> all_pairs(3).tolist()
-    [[0, 1], [0, 2], [1, 2]]
-    """
+    """Return all pairs of n agents."""
     return np.array(list(combinations(range(n), 2)), dtype=np.int32).reshape(-1, 2)
 
 

@@ -45,14 +45,7 @@ class TerminalState:
 def terminal_state(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, contact: float = 1e-9
 ) -> TerminalState:
-    """Return residual force, link lengths and Hessian off the rigid motions of a state.
-
-    Examples
-    --------
-    >>> at_rest = terminal_state(Algorithm1(), np.array([[0.0, 0.0], [7.0, 0.0]]), np.zeros((2, 2)))
-    >>> at_rest.strain, at_rest.force, at_rest.connected
-    (0.0, 0.0, True)
-    """
+    """Return residual force, link lengths and Hessian off the rigid motions of a state."""
     if law.target is not None:
         ensure_one_gain(law.gains)
     alpha = law.alpha
@@ -84,13 +77,7 @@ def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
 
 
 def rigid_motions(q: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k).
-
-    Examples
-    --------
-    >>> rigid_motions(np.array([[0.0, 0.0], [1.0, 0.0]])).shape
-    (4, 3)
-    """
+    """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k)."""
     n, m = q.shape
     x = moving_frame(q)
     size = float(np.linalg.norm(x))
@@ -108,14 +95,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
-    """Return the structural potential about a configuration; None where its Hessian is too large.
-
-    Examples
-    --------
-    >>> around = surroundings(Algorithm1(), np.array([[0.0], [7.0]]))
-    >>> around.holds(1e-3), around.holds(1e3)
-    (True, False)
-    """
+    """Return the structural potential about a configuration; None where its Hessian is too large."""
     if q.size > DENSE_LIMIT:
         return None
     own = law.scales

@@ -40,14 +40,7 @@ def _compile(name: str, gradient: list[Any], symbols: Any, values: dict[Any, flo
 
 @lru_cache(maxsize=64)
 def pair_term(pair: PairInteraction, m: int) -> ca.Function:
-    """Return gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i.
-
-    Examples
-    --------
-    >>> gradient, _ = pair_term(AlphaInteraction(), 2)([7.0, 0.0])
-    >>> float(gradient[0])
-    0.0
-    """
+    """Return gradient (m,) and Hessian (m, m) of the pair's potential in Δ = q_j − q_i."""
     delta = vector("Delta_", m)
     if isinstance(pair, DeadZoneInteraction):
         return _compile("pair", list(dead_zone_gradient(delta, pair)), delta)
@@ -76,13 +69,7 @@ def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix
 
 
 def has_form(pair: PairInteraction, others: Iterable[Term]) -> bool:
-    """Return whether gradient and Hessian of a potential can be generated from a formula.
-
-    Examples
-    --------
-    >>> has_form(AlphaInteraction(), ())
-    True
-    """
+    """Return whether gradient and Hessian of a potential can be generated from a formula."""
     known = isinstance(pair, AlphaInteraction | DeadZoneInteraction)
     return known and all(isinstance(term, Navigation | ObstacleTerm) for term in others)
 
@@ -107,27 +94,14 @@ def own_derivatives(term: Term, t: float, q: Any) -> Iterator[tuple[Any, Any]]:
 
 @lru_cache(maxsize=64)
 def pull_term(m: int, unit: float = 1.0) -> ca.Function:
-    """Return gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r.
-
-    Examples
-    --------
-    >>> [float(x) for x in ca.vertsplit(pull_term(2)([0.75, 0.0])[0])]
-    [0.6, 0.0]
-    """
+    """Return gradient and Hessian of ℓ²(√(1 + ‖x‖²/ℓ²) − 1), Algorithm 3's pull to the γ-agent, in x = q_i − q_r."""
     x = vector("x", m)
     return _compile("pull", list(unit * sigma_1(x / unit)), x)
 
 
 @lru_cache(maxsize=256)
 def obstacle_term(obstacle: Obstacle, beta: BetaInteraction) -> ca.Function:
-    """Return gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q.
-
-    Examples
-    --------
-    >>> gradient, _ = obstacle_term(Wall((0.0, 0.0), (0.0, 1.0)), BetaInteraction())([3.0, 9.0])
-    >>> float(gradient[1]) == 0.0
-    True
-    """
+    """Return gradient and Hessian of ψ_β(‖q̂ − q‖_σ) of one obstacle in the agent's position q."""
     m = obstacle.dimension
     q = vector("q", m)
     parameters = BetaSymbols(eps=beta.eps, h=beta.h, d=beta.d, unit=beta.unit)

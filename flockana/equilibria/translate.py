@@ -27,14 +27,7 @@ _RELATIONS: dict[Any, Callable[[Any, Any], Any]] = {
 
 
 def to_casadi(expression: Any, values: Mapping[Any, Any]) -> Any:
-    """Translate a sympy expression to CasADi; constants become the nearest floats.
-
-    Examples
-    --------
-    >>> x = ca.SX.sym("x")
-    >>> to_casadi(sp.sqrt(1 + sp.Symbol("x") ** 2), {sp.Symbol("x"): x})
-    SX(sqrt((1+sq(x))))
-    """
+    """Translate a sympy expression to CasADi; constants become the nearest floats."""
     if isinstance(expression, sp.Expr) and not expression.free_symbols and not expression.has(sp.Integral):
         return float(expression.evalf(25))
     if expression in values:

@@ -1,5 +1,5 @@
 // Verdicts, and the poles with the modes that move when they are chosen.
-function explorerAnswers(verdicts, poles) {
+function explorerAnswers(verdicts, poles, strip) {
   const make = (kind, words, parent, attributes = {}, space = null) => {
     const node = space ? document.createElementNS(space, kind) : document.createElement(kind);
     if (words) node.textContent = words;
@@ -9,11 +9,15 @@ function explorerAnswers(verdicts, poles) {
   };
   const short = (value) => String(Number(Number(value).toPrecision(4)));
   const open = new Set();
-  let rows = new Map(), stop = () => {};
+  let rows = new Map(), chips = new Map(), before = new Map(), stop = () => {};
+  const marks = { verified: "✓", refuted: "✗", vacuous: "∅", inconclusive: "?" };
 
   function expect(theorems) {
     rows = new Map();
+    for (const [id, chip] of chips) before.set(id, chip.dataset.status || before.get(id));
+    chips = new Map();
     verdicts.replaceChildren();
+    strip.replaceChildren();
     if (!theorems.length) make("p", "No theorem of the catalogue is checked on this law.", verdicts, { class: "muted" });
     for (const { id, title } of theorems) {
       const row = make("details", "", verdicts, { class: "verdict", id: `verdict-${id}` }), line = make("summary", "", row);
@@ -22,6 +26,9 @@ function explorerAnswers(verdicts, poles) {
       row.open = open.has(id);
       row.addEventListener("toggle", () => { if (row.open) open.add(id); else open.delete(id); });
       rows.set(id, row);
+      const chip = make("button", `… ${id}`, make("li", "", strip), { type: "button", title });
+      chip.addEventListener("click", () => { row.open = true; row.scrollIntoView({ block: "center" }); line.focus(); });
+      chips.set(id, chip);
     }
     stop();
     poles.replaceChildren();
@@ -30,19 +37,27 @@ function explorerAnswers(verdicts, poles) {
   function verdict(found) {
     const row = rows.get(found.theorem);
     if (!row) return;
+    const chip = chips.get(found.theorem), was = before.get(found.theorem);
+    chip.textContent = `${marks[found.status] || "–"} ${found.theorem}`;
+    chip.className = found.status.replace(" ", "-");
+    chip.dataset.status = found.status;
+    chip.setAttribute("aria-label", `${found.theorem}: ${found.status}`);
+    if (was && was !== found.status) chip.classList.add("changed");
     const status = row.querySelector(".status");
     status.textContent = found.status;
     status.className = `status ${found.status}`;
     row.querySelectorAll("p, ul").forEach((node) => node.remove());
     if (found.summary) make("p", found.summary, row);
     make("p", found.error || found.statement, row, { class: "muted" });
+    const unmet = new Set(found.hypotheses.filter(({ status }) => status === "unmet").map(({ name }) => name));
     const list = (items, words) => {
       if (!items.length) return;
       const all = make("ul", "", row, { "aria-label": words });
-      for (const { status: how, name, detail, margin, rigour, by } of items) {
+      for (const { status: how, name, detail, margin, rigour, by, needs } of items) {
         const item = make("li", "", all);
         make("span", how, item, { class: `status ${how}` });
-        const more = [detail, margin === null || margin === undefined ? "" : `margin ${Number.isFinite(Number(margin)) ? short(margin) : margin}`, rigour || ""];
+        const missed = how === "vacuous" && (needs || []).find((need) => unmet.has(need));
+        const more = [missed && !detail.startsWith(missed) ? `unmet: ${missed}` : "", detail, margin === null || margin === undefined ? "" : `margin ${Number.isFinite(Number(margin)) ? short(margin) : margin}`, rigour || ""];
         const whose = by && by !== found.author ? `${found.bylines[by]}: ` : "";
         item.append(` ${whose}${name}: ${more.filter(Boolean).join("; ")}`);
       }

@@ -1,5 +1,5 @@
 // The page: its case, the socket that answers it, and the player of what comes.
-const { first, kinds } = JSON.parse(document.getElementById("data").textContent);
+const { first, groups } = JSON.parse(document.getElementById("data").textContent);
 const by = (id) => document.getElementById(id);
 const said = by("said"), wrong = by("wrong"), place = by("player");
 const say = (text) => { said.textContent = text; };
@@ -7,11 +7,18 @@ const fail = (text) => { wrong.hidden = !text; wrong.textContent = text || ""; }
 
 let player = null, number = 0, waiting = false, dirty = false, asked = null, fresh = true, since = 0;
 const state = { touched: false, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, time: null, end: false };
-const form = explorerForm(by("form"), kinds, ask);
-const handles = explorerHandles(place, () => player && { ...player, time: () => state.time }, form, () => { state.touched = true; });
-const answers = explorerAnswers(by("verdicts"), by("poles"));
+const form = explorerForm(by("form"), groups, ask);
+const handles = explorerHandles(place, () => player && { ...player, time: () => state.time }, form, () => { state.touched = true; }, () => {
+  player.show(player.run.t[0]); state.time = player.run.t[0]; state.end = false; state.playing = false;
+  say("back at the start of the run: here agents can be dragged");
+});
+const answers = explorerAnswers(by("verdicts"), by("poles"), by("strip"));
 
-function ask(next, anew = false) {
+const history_ = explorerHistory((one) => ask(one, false, true));
+
+function ask(next, anew = false, kept = false) {
+  if (asked) history_.add({ ...next });
+  if (kept && next.name !== asked.name) anew = true;
   asked = { ...next };
   if (anew) { fresh = true; state.touched = false; state.time = null; state.end = false; }
   form.show(asked, null);
@@ -21,6 +28,7 @@ function ask(next, anew = false) {
 function send() {  // the newest case, and no other before the first frames of the last came
   dirty = true;
   if (waiting || !socket || socket.readyState !== WebSocket.OPEN) return;
+  by("cancel").disabled = false;
   dirty = false; waiting = true; number += 1; marks = []; since = performance.now();
   say("running …");
   slow(number);
@@ -38,8 +46,9 @@ const acts = {
   verdict: (found) => { answers.verdict(found); mark(number, (found.marks || []).map(([t, label]) => ({ t, label }))); },
   poles: (found) => answers.spectrum(found),
   threshold: (found) => form.mark(found),
-  error: (found) => { fail(found.text); say("see above"); arrived(); },
-  done: () => { if (!said.textContent.startsWith("see")) say("done"); document.body.dataset.done = String(number); arrived(); },
+  cancelled: () => { say("cancelled"); by("cancel").disabled = true; arrived(); },
+  error: (found) => { by("cancel").disabled = true; fail(found.text); say("see above"); arrived(); },
+  done: () => { by("cancel").disabled = true; if (!said.textContent.startsWith("see")) say("done"); document.body.dataset.done = String(number); arrived(); },
   begun: () => {},
 };
 
@@ -98,7 +107,7 @@ async function show(of, bytes) {
   if (focus) (next.querySelector(`[aria-label="${focus.getAttribute("aria-label")}"]`) || next.querySelector("canvas")).focus();
   by("hint").textContent = run.m === 3
     ? "A run in three dimensions turns under the mouse; to place an agent, type its coordinates."
-    : "At the start of the run agents, balls, walls and the γ-agent can be dragged.";
+    : "At the start of the run agents, balls, walls and the γ-agent can be dragged; a click on an agent goes back there.";
   requestAnimationFrame(() => {  // drawn
     if (document.body.dataset.number !== String(of)) document.body.dataset.frames = String(Math.round(performance.now() - since));
     document.body.dataset.number = String(of);
@@ -138,9 +147,23 @@ by("copy").addEventListener("click", async () => {
   await navigator.clipboard.writeText(by("python").textContent).catch(() => getSelection().selectAllChildren(by("python")));
   say("the lines of Python are copied");
 });
+by("cancel").addEventListener("click", () => socket && socket.send(JSON.stringify({ number, cancel: true, case: asked })));
+by("link").addEventListener("click", async () => {
+  await navigator.clipboard.writeText(location.href).catch(() => {});
+  say("the address of this page, with all its changes, is copied");
+});
+by("picture").addEventListener("click", () => explorerGive(`${asked.name}.png`, place.querySelector("canvas").toDataURL("image/png"), say));
+by("film").addEventListener("click", () => player && explorerFilm(place.querySelector("canvas"), player, 8, say, (film) => explorerGive(`${asked.name}.webm`, film, say)));
+by("save").addEventListener("click", async () => {
+  say("the run is being written …");
+  const token = new URLSearchParams(location.search).get("token");
+  const answer = await fetch(`/run?token=${encodeURIComponent(token)}&case=${encodeURIComponent(JSON.stringify(asked))}`);
+  if (answer.ok) explorerGive(`${asked.name}.nc`, await answer.blob(), say); else fail(await answer.text());
+});
 let begin = first;
 try { const kept = JSON.parse(decodeURIComponent(location.hash.slice(1))); if (kept && kept.kind) begin = kept; } catch { /* no case in the address */ }
 asked = begin;
+history_.add({ ...begin });
 dirty = true;
 form.show(asked, null);
 connect();

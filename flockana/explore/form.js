@@ -1,7 +1,7 @@
 // What can be changed: the start, the law's numbers with sliders, one agent's place.
 const DECADES = 1.5, RATIOS = [-3, 2];
 
-function explorerForm(place, kinds, ask) {
+function explorerForm(place, groups, ask) {
   let current = null, told = null, threshold = null;
   const make = (kind, words, parent, attributes = {}) => {
     const node = document.createElement(kind);
@@ -22,9 +22,9 @@ function explorerForm(place, kinds, ask) {
   const start = make("fieldset", "", place), numbers = make("div", "", place), agents = make("fieldset", "", place);
   make("legend", "Start", start);
   const chosen = make("select", "", make("div", "", start, { class: "field wide" }), { "aria-label": "Scenario or law", id: "start" });
-  for (const [kind, names] of Object.entries(kinds)) {
-    const group = make("optgroup", "", chosen, { label: { scenario: "Scenarios", law: "Laws, with a flock at random", file: "File" }[kind] });
-    for (const name of Object.keys(names)) make("option", name, group, { value: `${kind}:${name}` });
+  for (const { label, kind, names } of groups) {
+    const group = make("optgroup", "", chosen, { label });
+    for (const [name, title] of Object.entries(names)) make("option", title ? `${name}: ${title}` : name, group, { value: `${kind}:${name}` });
   }
   chosen.addEventListener("change", () => {
     const [kind, name] = [chosen.value.slice(0, chosen.value.indexOf(":")), chosen.value.slice(chosen.value.indexOf(":") + 1)];
@@ -38,8 +38,6 @@ function explorerForm(place, kinds, ask) {
     return input;
   };
   const fields = { seed: whole("seed", "seed", 0, 1e9), n: whole("n", "agents", 1, 3000), m: whole("m", "dimensions", 1, 3), duration: whole("duration", "duration", 0, 1e9) };
-  const back = make("button", "undo all changes", start, { type: "button" });
-  back.addEventListener("click", () => ask({ kind: current.kind, name: current.name, seed: current.seed || 0, ...(current.n ? { n: current.n } : {}), ...(current.m ? { m: current.m } : {}) }, true));
 
   make("legend", "Place of an agent at the start", agents);
   const row = make("div", "", agents, { class: "vector" });

@@ -1,5 +1,5 @@
 // Agents, balls, walls and the γ-agent as things to take hold of, on the player's canvas at the start of a run.
-function explorerHandles(place, player, form, taken) {
+function explorerHandles(place, player, form, taken, rewound) {
   const close = (event) => (event.pointerType === "touch" ? 20 : 10);
 
   function axes({ drawing, run }) {  // pixels are an affine function of places: origin and inverse of its matrix
@@ -9,7 +9,8 @@ function explorerHandles(place, player, form, taken) {
   }
   function found(event) {
     const now = player();
-    if (!now || now.run.m > 2 || !now.drawing.project || now.time() !== now.run.t[0]) return null;
+    if (!now || now.run.m > 2 || !now.drawing.project) return null;
+    if (now.time() !== now.run.t[0]) return null;
     const { run, drawing } = now, { m } = run, canvas = place.querySelector("canvas");
     const box = canvas.getBoundingClientRect(), u = event.clientX - box.left - canvas.clientLeft, v = event.clientY - box.top - canvas.clientTop;
     const far = (values, i) => { const [x, y] = drawing.project(values, i); return Math.hypot(x - u, y - v); };
@@ -32,9 +33,27 @@ function explorerHandles(place, player, form, taken) {
     return best && { ...best, now, x: event.clientX, y: event.clientY, from: best.moved.map(([values, i]) => Array.from(values.slice(i, i + m))) };
   }
 
+  function near(event, { run, drawing, time }) {  // whether an agent, where it is now, is under the pointer
+    const canvas = place.querySelector("canvas"), box = canvas.getBoundingClientRect();
+    const u = event.clientX - box.left - canvas.clientLeft, v = event.clientY - box.top - canvas.clientTop;
+    let k = 0;
+    while (k + 1 < run.t.length && run.t[k + 1] <= time()) k++;
+    for (let i = 0; i < run.n; i++) {
+      const [x, y] = drawing.project(run.q, (k * run.n + i) * run.m);
+      if (Math.hypot(x - u, y - v) <= close(event)) return true;
+    }
+    return false;
+  }
   let held = null;
   place.addEventListener("pointerdown", (event) => {
     if (event.target.tagName !== "CANVAS" || event.button) return;
+    const now = player();
+    if (now && now.run.m < 3 && now.time() !== now.run.t[0] && near(event, now)) {
+      event.preventDefault(); event.stopPropagation();
+      now.pause();
+      rewound();
+      return;
+    }
     held = found(event);
     if (!held) return;
     event.preventDefault(); event.stopPropagation();  // or the player would move its view

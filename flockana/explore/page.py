@@ -9,9 +9,9 @@ from typing import Any
 
 from flockana import player
 from flockana.explore.starts import law_names
-from flockana.scenarios import scenario, scenarios
+from flockana.report.catalogues import scenario_entries
 
-_SCRIPTS = ("form.js", "handles.js", "answers.js", "explore.js")
+_SCRIPTS = ("form.js", "handles.js", "answers.js", "history.js", "explore.js")
 
 
 @cache
@@ -20,11 +20,12 @@ def _text(name: str) -> str:
 
 
 def page(first: dict[str, Any], nonce: str) -> str:
-    """The page."""
-    kinds = {"scenario": {name: _titles()[name] for name in scenarios()}, "law": {name: name for name in law_names()}}
+    """Return the HTML of the page."""
+    groups = [{"label": source, "kind": "scenario", "names": names} for source, names in _scenarios().items()]
+    groups.append({"label": "Laws, with a flock at random", "kind": "law", "names": dict.fromkeys(law_names(), "")})
     if first["kind"] == "file":
-        kinds["file"] = {first["name"]: first["name"]}
-    data = json.dumps({"first": first, "kinds": kinds}).replace("<", "\\u003c")
+        groups.append({"label": "File", "kind": "file", "names": {first["name"]: ""}})
+    data = json.dumps({"first": first, "groups": groups}).replace("<", "\\u003c")
     scripts = player.script() + "".join(map(_text, _SCRIPTS))
     return (
         _text("explore.html")
@@ -36,5 +37,9 @@ def page(first: dict[str, Any], nonce: str) -> str:
 
 
 @cache
-def _titles() -> dict[str, str]:
-    return {name: scenario(name).title for name in scenarios()}
+def _scenarios() -> dict[str, dict[str, str]]:
+    """Return titles of scenarios by source and name."""
+    groups: dict[str, dict[str, str]] = {}
+    for entry in scenario_entries():
+        groups.setdefault(entry["source"], {})[entry["name"]] = entry["title"]
+    return groups

@@ -20,10 +20,11 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.interrupts import block_sigint
 from flockana.ensemble.processes import single_threaded_children
 from flockana.explore.page import page
+from flockana.explore.saving import run_file
 from flockana.explore.worker import work
 
 HOST = "127.0.0.1"
@@ -36,13 +37,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'
 
 
 class Process:
-    """A worker process, whose messages reach the server's own thread.
-
-    Parameters
-    ----------
-    limit : float
-        Seconds that a run may take.
-    """
+    """A worker process, whose messages reach the server's own thread."""
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")
@@ -73,7 +68,7 @@ class Process:
         self.deliver(message)  # to whoever has it now
 
     def end(self) -> None:
-        """End it at once."""
+        """End the process at once."""
         self.deliver = lambda message: None
         self.process.kill()
 
@@ -89,14 +84,14 @@ class Server:
     spare: Process | None = None
 
     def take(self) -> Process:
-        """A process that is, with luck, ready; another is started to be the next."""
+        """Return a process, ready if possible, and start another for the next page."""
         spare, self.spare = self.spare, None
         taken = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return taken
 
     def prepare(self) -> None:
-        """Have a process ready."""
+        """Start a process in reserve."""
         if self.spare is None or not self.spare.process.is_alive():
             self.spare = Process(self.limit)
 
@@ -105,6 +100,12 @@ class Server:
         for process in (self.spare, *(tab.process for tab in self.tabs)):
             if process is not None:
                 process.end()
+
+    def admitted(self, case: Any) -> Any:
+        """Return a case; raise on a file other than the one that the explorer was started with."""
+        if case.get("kind") == "file" and case != {**case, "kind": self.first["kind"], "name": self.first["name"]}:
+            raise ArgumentError("expected the file that the explorer was started with")
+        return case
 
     def admits(self, handler: RequestHandler) -> bool:
         """Return whether a request has the token and addresses this machine by its own name."""
@@ -115,7 +116,7 @@ class Server:
 
 class _Page(RequestHandler):
     def get(self) -> None:
-        """The page."""
+        """Answer with the page."""
         server: Server = self.application.settings["explorer"]
         if not server.admits(self):
             raise HTTPError(403)
@@ -131,6 +132,23 @@ class _Page(RequestHandler):
         self.finish(wrong if status_code == 403 else f"{status_code}")
 
 
+class _Run(RequestHandler):
+    async def get(self) -> None:
+        """Simulate a case once more and send the run as netCDF."""
+        server: Server = self.application.settings["explorer"]
+        if not server.admits(self):
+            raise HTTPError(403)
+        try:
+            case = server.admitted(json.loads(self.get_query_argument("case")))
+            data = await asyncio.to_thread(run_file, case)
+        except (ValueError, AttributeError, FlockanaError) as error:
+            self.set_status(400)
+            self.finish(f"the run cannot be written: {error}")
+            return
+        self.set_header("Content-Type", "application/x-netcdf")
+        self.finish(data)
+
+
 class _Tab(WebSocketHandler):
     """Tab with its own process, which answers the newest question."""
 
@@ -139,13 +157,13 @@ class _Tab(WebSocketHandler):
     analysing, silent = False, 0
 
     def prepare(self) -> None:
-        """Turn away whoever does not know the token."""
+        """Reject requests without the token."""
         self.server: Server = self.application.settings["explorer"]
         if not self.server.admits(self):
             raise HTTPError(403)
 
     def open(self, *_: Any) -> None:
-        """Take a process."""
+        """Take a process for a new page."""
         if len(self.server.tabs) >= _TABS:
             self.close(4000, f"{_TABS} tabs are open: close one")
             return
@@ -160,18 +178,17 @@ class _Tab(WebSocketHandler):
         return taken
 
     def on_message(self, message: str | bytes) -> None:
-        """Ask the process."""
+        """Send a question to the process."""
         try:
             asked = json.loads(message)
             number, case = int(asked["number"]), asked["case"]
-            if case.get("kind") == "file" and case != {
-                **case,
-                "kind": self.server.first["kind"],
-                "name": self.server.first["name"],
-            }:
-                raise ArgumentError("expected the file that the explorer was started with")
+            self.server.admitted(case)
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             self._say({"number": -1, "kind": "error", "text": f"no question: {error}"})
+            return
+        if asked.get("cancel"):
+            self._take()
+            self._say({"number": number, "kind": "cancelled"})
             return
         self.number, self.asked = number, case
         self._ask()
@@ -224,7 +241,7 @@ class _Tab(WebSocketHandler):
             self.on_close()
 
     def on_close(self) -> None:
-        """End the process."""
+        """End the process of a closed page."""
         self.server.tabs.discard(self)
         if self.process is not None:
             self.process.end()
@@ -249,7 +266,7 @@ def kept_token() -> str:
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
     """Serve until cancelled."""
-    routes = [("/", _Page), ("/socket", _Tab)]
+    routes = [("/", _Page), ("/socket", _Tab), ("/run", _Run)]
     application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)
     try:

@@ -176,7 +176,7 @@ class AlphaInteraction(PairInteraction):
         return float(np.abs(forces).max())
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """ψ_α(‖x‖_σ) at Euclidean distances x.
+        """Return ψ_α(‖x‖_σ) at Euclidean distances x.
 
         Parameters
         ----------
@@ -225,7 +225,7 @@ class AlphaInteraction(PairInteraction):
         return self._parts[1]
 
     def sigma_norm(self, x: Any) -> Any:
-        """‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length.
+        """Return ‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length.
 
         Parameters
         ----------
@@ -236,7 +236,7 @@ class AlphaInteraction(PairInteraction):
             return evaluate(_SIGMA_NORM, np.square(np.asarray(x, dtype=np.float64)), self.eps)
 
     def bump(self, z: Any) -> Any:
-        """ρ_h(z).
+        """Return the bump function ρ_h(z).
 
         Parameters
         ----------
@@ -246,7 +246,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_BUMP, z, self.h)
 
     def phi(self, s: Any) -> Any:
-        """φ(s) = ½[(a+b) σ₁(s/ℓ² + c) + (a−b)].
+        """Return φ(s) = ½[(a+b) σ₁(s/ℓ² + c) + (a−b)].
 
         Parameters
         ----------
@@ -256,7 +256,7 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI, np.asarray(s, dtype=np.float64) / self.unit**2, self.a, self.b, self.c)
 
     def phi_alpha(self, z: Any) -> Any:
-        """φ_α(z) = ρ_h(z/r_α) φ(z − d_α): negative repels.
+        """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α); negative repels.
 
         Parameters
         ----------

@@ -114,7 +114,7 @@ class BetaInteraction:
         return self._parts[1]
 
     def phi_beta(self, z: Any) -> Any:
-        """φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0.
+        """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class BetaInteraction:
         return evaluate(_PHI_BETA, z, self.par)
 
     def psi_beta(self, z: Any) -> Any:
-        """ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0.
+        """Return ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0.
 
         Parameters
         ----------

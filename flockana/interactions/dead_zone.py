@@ -175,7 +175,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def strength(self) -> float:
-        """Unit of force, `contact_force`."""
+        """Unit of force: `contact_force`, the force at the end of repulsion."""
         return self.contact_force
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
@@ -267,7 +267,7 @@ class DeadZoneInteraction(PairInteraction):
         return evaluate(_POTENTIAL, s, self.par, self.panels)
 
     def jumps(self) -> tuple[Jump, ...]:
-        """Discontinuities of F: at r, and without a ramp at both ends of the dead zone."""
+        """Return discontinuities of F: at r, and without a ramp at both ends of the dead zone."""
         s, inside = np.array([self.d1, self.d2, self.r]), np.nextafter
         par = self.par
         sides = [
@@ -308,7 +308,7 @@ class DeadZoneInteraction(PairInteraction):
 
 
 def _fractions(ramp: float, d1: float) -> FloatArray:
-    """Rising offsets from d₁ inwards, 0 to ramp, no panel wider than its distance from the pole at 0."""
+    """Return offsets from d₁ inwards, 0 to ramp, as ends of panels narrower than their distance from the pole at 0."""
     marks, left = [0.0], d1
     while left - (d1 - ramp) > 0.5 * left:
         left *= 0.5

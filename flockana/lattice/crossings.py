@@ -117,13 +117,7 @@ class _Exact:
 
 
 def turns_left(q: FloatArray, centre: Any, first: Any, second: Any) -> Any:
-    """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly.
-
-    Examples
-    --------
-    >>> turns_left(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]]), [0, 0], [1, 1], [2, 3]).tolist()
-    [True, False]
-    """
+    """Return whether the turn around `centre` from agent `first` to `second` is to the left, exactly."""
     near = _squarable(q)
     a, b = near[first] - near[centre], near[second] - near[centre]
     left, right = a[:, 0] * b[:, 1], a[:, 1] * b[:, 0]

@@ -36,17 +36,7 @@ class _Front(NamedTuple):
 
 
 class Elimination:
-    """LDLᵀ factorisation of a symmetric matrix A: the signs of its eigenvalues, and A⁻¹ b.
-
-    Examples
-    --------
-    >>> from scipy.sparse import csr_array
-    >>> spring = csr_array([[1.0, -2.0], [-2.0, 1.0]])
-    >>> q = np.array([[0.0], [1.0]])
-    >>> found = Elimination(spring, q)
-    >>> found.negative, found.solve(np.array([3.0, 0.0])).round(12).tolist()
-    (1, [-1.0, -2.0])
-    """
+    """LDLᵀ factorisation of a symmetric matrix A: the signs of its eigenvalues, and A⁻¹ b."""
 
     def __init__(
         self, matrix: Any, q: FloatArray, *, keep: bool = True, least: float | None = None, definite: bool = False

@@ -89,7 +89,7 @@ def is_alpha_lattice(q: Any, d: float, r: float, tol: float = 1e-9) -> bool:
 
 
 def classify(strain: float, *, lattice: float, quasi: float) -> str:
-    """Classify a configuration by its largest relative link error: α-lattice, quasi-α-lattice, or neither.
+    """Return the kind of a configuration from its largest relative link error: α-lattice, quasi-α-lattice, neither.
 
     Parameters
     ----------

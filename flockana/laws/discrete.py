@@ -45,6 +45,7 @@ class DiscreteLaw(LawOfMotion):
     dt: float
     approximates: ClassVar[bool] = False  # whether it is a scheme that integrates `law`, and no law of its own
     steps_at_once: ClassVar[int] = 1
+    private: ClassVar[tuple[str, ...]] = ()  # names in the memory that a run does not record
     extra_units: ClassVar[Mapping[str, Powers]] = {}
 
     @property

@@ -171,7 +171,7 @@ def bounds_over_hull(
 
 
 def _halves(curves: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """De Casteljau: control points of both halves of every curve."""
+    """Return the control points of both halves of every curve (De Casteljau)."""
     levels = [curves]
     for _ in range(5):
         levels.append(0.5 * (levels[-1][:, :-1] + levels[-1][:, 1:]))

@@ -75,7 +75,7 @@ class Reynolds:
         return plus, minus, neutral
 
     def counts(self) -> IndexArray:
-        """Numbers of positive, negative and neutral friends of every agent, shape (n, 3)."""
+        """Return the numbers of positive, negative and neutral friends of every agent, shape (n, 3)."""
         n = len(self.centring)
         signs = (self.stress > 0.0, self.stress < 0.0, self.stress == 0.0)
         columns = [np.bincount(self.links[sign].ravel(), minlength=n) for sign in signs]

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.plots.snapshot import configuration, draw_sample, in_view
 from flockana.plots.style import (
@@ -22,8 +23,8 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
-    head,
     in_plane,
+    write_title,
 )
 from flockana.plots.symbols import typeset
 
@@ -69,7 +70,7 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
         ax.axvline(place, color=MUTED, linewidth=0.8, linestyle=":")
         ax.annotate(typeset(name), (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
     ax.set_xlim(0.0, far)
-    head(ax, "below 0 it repels", color=MUTED, fontsize=8)
+    write_title(ax, "below 0 it repels", color=MUTED, fontsize=8)
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
 
 
@@ -86,6 +87,7 @@ def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axe
     ArgumentError
         If the law measures no energy of neighbours.
     """
+    ensure_run(trajectory)
     metrics = trajectory.metrics()
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")

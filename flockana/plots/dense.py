@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ _INSTANTS = 1500  # about as many as a figure has pixels across
 
 def velocities_between(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Return times and velocities within the solver's steps, by cubics through velocities and accelerations."""
+    ensure_run(trajectory)
     t, _, p, u, _ = trajectory.path
     parts = -(-_INSTANTS // max(1, len(t) - 1))
     if isinstance(trajectory.law, DiscreteLaw) or len(t) < 2 or parts == 1:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.dynamics.predicates import ensure_run
 from flockana.measures.windows import windows_of
-from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, head
+from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +26,7 @@ def diameters(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ax : matplotlib.axes.Axes, optional
         Where to draw; its scale becomes logarithmic.
     """
+    ensure_run(trajectory)
     axes: Any = ensure_axes(ax)
     series = (("position_diameter", "positions", VERMILLION, "--"), ("velocity_diameter", "velocities", BLUE, "-"))
     for name, label, colour, dash in series:
@@ -50,6 +52,7 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ArgumentError
         If the law has no net.
     """
+    ensure_run(trajectory)
     windows = windows_of(trajectory)
     axes: Any = ensure_axes(ax)
     t = trajectory.t
@@ -63,5 +66,5 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         axes.axvspan(rest, t[-1], facecolor="none", edgecolor=FAINT, hatch="//", linewidth=0, zorder=0)
     axes.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="-", drawstyle="steps-post")
     axes.set_ylim(-0.03, 1.05)
-    head(axes, f"{len(windows)} windows of joint connectivity", fontsize=9)
+    write_title(axes, f"{len(windows)} windows of joint connectivity", fontsize=9)
     return finish_over_time(axes, t, "C, relative connectivity")

@@ -11,13 +11,7 @@ from PIL import Image
 
 
 def durations(frames: int, fps: float) -> list[int]:
-    """Return the time of each frame in milliseconds, whole hundredths whose sum is right.
-
-    Examples
-    --------
-    >>> durations(3, 15.0), sum(durations(150, 15.0))
-    ([70, 60, 70], 10000)
-    """
+    """Return the time of each frame in milliseconds, whole hundredths whose sum is right."""
     ends = [round(100.0 * k / fps) for k in range(frames + 1)]
     return [10 * (end - start) for start, end in itertools.pairwise(ends)]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.plots.snapshot import configuration, draw_sample
 from flockana.plots.style import INK, ensure_axes, finish_over_time, line_width_and_opacity
@@ -25,6 +26,7 @@ def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ArgumentError
         If the run remembers no headings.
     """
+    ensure_run(trajectory)
     if "heading" not in trajectory.extra or trajectory.extra["heading"].ndim != 2:
         raise ArgumentError(f"a run of {type(trajectory.law).__name__} has no headings: expected HeadingAveraging")
     axes: Any = ensure_axes(ax)

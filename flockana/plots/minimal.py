@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.minimal import MinimalFlocking
 from flockana.plots.snapshot import configuration, draw_sample, drawn_law, nearest_sample
 
@@ -41,6 +42,7 @@ def perception(
     ArgumentError
         If it is a run of another law, or on a time that is not of the run.
     """
+    ensure_run(trajectory)
     law = drawn_law(trajectory)
     if not isinstance(law, MinimalFlocking):
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of MinimalFlocking")

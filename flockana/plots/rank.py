@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.measures.nets import links, printed_rank_connectivity
 from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, finish_over_time
 
@@ -31,6 +32,7 @@ def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes
     ArgumentError
         If the law has no such range.
     """
+    ensure_run(trajectory)
     pair = trajectory.law.pair
     if pair is None or not np.isfinite(pair.range):
         raise ArgumentError(f"law = {trajectory.law!r}: expected one whose agents interact within a range")

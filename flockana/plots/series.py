@@ -9,6 +9,7 @@ from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
 from flockana.base.vectors import lengths
+from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
@@ -48,6 +49,7 @@ def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axe
     UnknownNameError
         If there is no such metric.
     """
+    ensure_run(trajectory)
     drawn, ax = trajectory.measure(name), ensure_axes(ax)
     try:
         values = trajectory.metric(name)
@@ -72,7 +74,7 @@ def _spans_decades(values: Any) -> bool:
 
 
 def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
-    """Shade what lies below the error that one step of the solver may carry, where the curve reaches that far down."""
+    """Shade the band below the error that one step of the solver may carry."""
     place, speed, _ = trajectory.floors
     d = trajectory.scales.length
     floor = {
@@ -106,6 +108,7 @@ def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
     -------
     ndarray of matplotlib.axes.Axes, shape (4,)
     """
+    ensure_run(trajectory)
     flat = np.ravel(subplots(2, 2, size=(8.4, 5.0))[1] if ax is None else ax)
     for name, each in zip(PANEL, flat, strict=True):
         measure(trajectory, name, ax=each)

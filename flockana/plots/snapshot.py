@@ -23,6 +23,7 @@ from flockana.base.checks import (
     ensure_series,
 )
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
@@ -39,9 +40,9 @@ from flockana.plots.style import (
     colour_bar,
     ensure_axes,
     frame_space,
-    head,
     in_plane,
     lines,
+    write_title,
 )
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ def snapshot(
         On a time before or after the run, or if circles are asked for where there are none: of a law without a range,
         or on a line or in space.
     """
+    ensure_run(trajectory)
     k = nearest_sample(trajectory.t, time)
     law = drawn_law(trajectory)
     moving = float(np.linalg.norm(trajectory.p[k], axis=1).max()) > _AT_REST * trajectory.scales.speed
@@ -133,6 +135,7 @@ def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
 
 def drawn_law(trajectory: Trajectory) -> Any:
     """Return the law of a run, or of a map the law that it steps."""
+    ensure_run(trajectory)
     return trajectory.law.continuous or trajectory.law
 
 
@@ -231,7 +234,7 @@ def configuration(
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
-    head(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
+    write_title(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, seen, m)
 
 

@@ -18,6 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_count
+from flockana.dynamics.predicates import ensure_run
 from flockana.plots.paper import column_size
 from flockana.plots.symbols import typeset
 
@@ -176,6 +177,7 @@ def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]],
 
     def decorated(draw: Callable[[Trajectory, Any], str | None]) -> OverTime:
         def plot(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+            ensure_run(trajectory)
             axes = ensure_axes(ax)
             if reason := draw(trajectory, axes):
                 return finish_empty(axes, label, reason)
@@ -207,7 +209,7 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     return finish(ax, y=y)
 
 
-def head(ax: Any, title: str, **look: Any) -> None:
+def write_title(ax: Any, title: str, **look: Any) -> None:
     """Write the title at the left above the axes."""
     look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
     ax.set_title(typeset(title), loc="left", **look)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.predicates import ensure_run
 from flockana.plots.style import (
     BLUE,
     INK,
@@ -30,6 +31,7 @@ _STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
 
 def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw every agent's path with its end, and the γ-agent's; on a line, positions over time."""
+    ensure_run(trajectory)
     axes = ensure_axes(ax, m=trajectory.m)
     paths = np.stack([_plane(trajectory.t, trajectory.q[:, i]) for i in range(trajectory.n)])
     width, alpha = line_width_and_opacity(trajectory.n)
@@ -43,6 +45,7 @@ def trajectories(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
 
 def centre_path(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     """Draw the path of the centre of mass against the γ-agent's; on a line, both over time."""
+    ensure_run(trajectory)
     axes = ensure_axes(ax, m=trajectory.m)
     centre = _plane(trajectory.t, trajectory.q.mean(axis=1))
     axes.plot(*centre.T, color=BLUE, linestyle="-", linewidth=1.8, label="centre of mass")

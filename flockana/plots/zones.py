@@ -13,6 +13,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
+from flockana.dynamics.predicates import ensure_run
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_world import ZoneWorld
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -33,11 +34,11 @@ from flockana.plots.style import (
     curves,
     ensure_axes,
     frame_space,
-    head,
     levels,
     line_width_and_opacity,
     lines,
     over_time,
+    write_title,
 )
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ def zones(
     ArgumentError
         If it is a run of another law, or of agents on a line, or on a time that is not of the run.
     """
+    ensure_run(trajectory)
     law, m = _law(trajectory), trajectory.m
     if m == 1:
         raise ArgumentError("the agents live on a line: expected m = 2 or 3")
@@ -95,7 +97,7 @@ def zones(
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
-    head(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
+    write_title(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
     return frame_space(axes, np.vstack(seen), m)
 
 

@@ -1,19 +1,114 @@
-"""Catalogues as terminal tables; nothing here draws, solves or integrates."""
+"""Catalogues as terminal tables and plain data; nothing here draws, solves or integrates."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from rich.table import Column, Table
 from rich.text import Text
 
+from flockana.base.errors import ArgumentError
 from flockana.report.tables import column, headed_table
+from flockana.report.text import source_name
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems
 
+_KINDS = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
 
-def scenario_table() -> Table:
-    """The catalogue of scenarios: size, law and time span, title, source, theorems."""
+
+def scenario_entries() -> list[dict[str, Any]]:
+    """Return the catalogue of scenarios as plain data."""
+    items = map(scenario, scenarios())
+    return [
+        {
+            "name": item.name,
+            "title": item.title,
+            "source": _first(item.references),
+            "printed": item.source,
+            "law": type(item.law).__name__,
+            "n": item.shape[0],
+            "m": item.shape[1],
+            "t_span": [float(t) for t in item.t_span],
+            "theorems": list(item.theorems),
+            "statuses": sorted({status for key, status in item.expected.items() if ":" not in key}),
+        }
+        for item in items
+    ]
+
+
+def theorem_entries() -> list[dict[str, Any]]:
+    """Return the catalogue of theorems as plain data; statuses are those expected of it itself or on scenarios."""
+    expected: dict[str, set[str]] = {name: set() for name in theorems()}
+    for item in map(scenario, scenarios()):
+        for key, status in item.expected.items():
+            if key in expected:
+                expected[key].add(status)
+    entries = []
+    for name in theorems():
+        known = theorem(name)
+        statuses = expected[name] | {status for key, status in known.expected.items() if key == name}
+        entries.append(
+            {
+                "name": name,
+                "title": known.title,
+                "source": _first(known.references),
+                "printed": known.source,
+                "checked on": _KINDS[known.kind],
+                "statuses": sorted(statuses),
+            }
+        )
+    return entries
+
+
+def _first(references: Sequence[str]) -> str:
+    """Return the first source that is not flockana itself."""
+    return next((source_name(key) for key in references if key != "flockana"), "flockana")
+
+
+def select(
+    entries: Iterable[dict[str, Any]], words: Sequence[str] = (), *, source: str = "", status: str = ""
+) -> list[dict[str, Any]]:
+    """Return the entries that contain all words, of one source, with one expected status.
+
+    Examples
+    --------
+    >>> [entry["name"] for entry in select(theorem_entries(), ["collision"], source="olfati", status="verified")]
+    ['collision-energy', 'os-1', 'os-3']
+    """
+    every = list(entries)
+    sources = sorted({entry["source"] for entry in every})
+    if source and not any(source.casefold() in known.casefold() for known in sources):
+        raise ArgumentError(f"--source {source}: expected part of {', '.join(sources)}")
+
+    def fits(entry: dict[str, Any]) -> bool:
+        text = " ".join(map(str, entry.values())).casefold()
+        found = all(word.casefold() in text for word in words)
+        return found and source.casefold() in entry["source"].casefold() and (not status or status in entry["statuses"])
+
+    return [entry for entry in every if fits(entry)]
+
+
+def short_list(entries: Sequence[dict[str, Any]]) -> str:
+    """Return a line for each entry, grouped by source.
+
+    Examples
+    --------
+    >>> print(short_list([{"name": "os-1", "title": "Algorithm 1", "source": "Olfati-Saber 2006"}]))
+    Olfati-Saber 2006
+      os-1  Algorithm 1
+    """
+    width, lines = max((len(entry["name"]) for entry in entries), default=0), []
+    for source in dict.fromkeys(entry["source"] for entry in entries):
+        own = (entry for entry in entries if entry["source"] == source)
+        lines += [source, *(f"  {entry['name']:{width}}  {entry['title']}" for entry in own)]
+    return "\n".join(lines)
+
+
+def scenario_table(names: Iterable[str]) -> Table:
+    """Return scenarios with size, law and time span, title, source, theorems."""
     table = headed_table(column("scenario"), Column("what", ratio=1, overflow="fold"), show_lines=True)
-    for name in scenarios():
+    for name in names:
         item = scenario(name)
         n, m = item.shape
         law = type(item.law).__name__
@@ -23,14 +118,13 @@ def scenario_table() -> Table:
     return table
 
 
-def theorem_table() -> Table:
-    """The catalogue of theorems: id, title, what each is checked on, source."""
+def theorem_table(names: Iterable[str]) -> Table:
+    """Return theorems with title, what each is checked on, source."""
     name_column = Column("theorem", no_wrap=True, style="bold")
     table = headed_table(
         name_column, Column("what, and where it is printed", ratio=1, overflow="fold"), column("checked on")
     )
-    kinds = {"trajectory": "a run", "configuration": "positions", "fixed": "itself"}
-    for name in theorems():
+    for name in names:
         item = theorem(name)
-        table.add_row(name, Text.assemble(item.title, "\n", (item.source, "bright_black")), kinds[item.kind])
+        table.add_row(name, Text.assemble(item.title, "\n", (item.source, "bright_black")), _KINDS[item.kind])
     return table

@@ -18,7 +18,7 @@ from flockana.report.tables import WholeTable, column, headed_table
 from flockana.report.text import MARKS, show
 from flockana.theorems import Verdict
 from flockana.theorems.errata import SORTS, errata, erratum_of
-from flockana.theorems.headline import BYLINES
+from flockana.theorems.headline import BYLINES, merged
 
 _NARROW = 72  # columns below which a table of verdicts leaves out how they are known
 _COLOURS = {"verified": "green", "refuted": "dark_orange3", "vacuous": "bright_black", "inconclusive": "yellow"}
@@ -100,11 +100,11 @@ def details(verdict: Verdict) -> Group:
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
     whose = verdict.author
-    for c in sorted(verdict.claims, key=lambda claim: (claim.by != verdict.author, claim.by)):
+    for name, c in merged(sorted(verdict.claims, key=lambda claim: (claim.by != verdict.author, claim.by))):
         if c.by != whose:
             table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
-        table.add_row(Text(c.name), _status(c.status), Text(c.detail + margin))
+        table.add_row(Text(name), _status(c.status), Text(c.account + margin))
     return Group(title, *(Padding(Text(line), (0, 0, 0, 2)) for line in lines), Padding(table, (0, 0, 1, 2)))
 
 

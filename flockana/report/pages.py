@@ -60,7 +60,7 @@ class Finding:
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """Return plain data for JSON."""
         return self.verdict.to_dict() | {
             "title": self.title,
             "expected": dict(self.expected),
@@ -103,7 +103,7 @@ class FixedPage:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The one verdict."""
+        """The single verdict."""
         return (self.finding,)
 
     @property

@@ -11,8 +11,6 @@ from .delay import delay_margin as delay_margin
 from .delay import delay_system as delay_system
 from .delay import rightmost_roots as rightmost_roots
 from .delay import scalar_margin as scalar_margin
-from .delayed_run import DelayedRun as DelayedRun
-from .delayed_run import simulate_delayed as simulate_delayed
 from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
 from .design import gain_problem as gain_problem
@@ -26,6 +24,9 @@ from .norms import disturbance_system as disturbance_system
 from .norms import h2_norm as h2_norm
 from .norms import hinf_norm as hinf_norm
 from .norms import norms_against_size as norms_against_size
+from .robustness import RobustnessMargins as RobustnessMargins
+from .robustness import open_loop as open_loop
+from .robustness import robustness_margins as robustness_margins
 from .sampling import ModePeriod as ModePeriod
 from .sampling import SamplingMargin as SamplingMargin
 from .sampling import sampling_margin as sampling_margin

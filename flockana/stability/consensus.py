@@ -50,7 +50,7 @@ def _closed_groups(matrix: FloatArray) -> int:
     from scipy.sparse.csgraph import connected_components
 
     heard = np.abs(matrix - np.diag(np.diag(matrix))) > 0.0
-    count, group = connected_components(csr_array(heard), directed=True, connection="strong")
+    count, group = connected_components(csr_array(heard.astype(float)), directed=True, connection="strong")
     listener, speaker = np.nonzero(heard)
     open_groups = np.unique(group[listener][group[listener] != group[speaker]])
     return int(count) - len(open_groups)

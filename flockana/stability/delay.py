@@ -16,7 +16,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_nonnegative, ensure_positive
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_kind,
+    ensure_known,
+    ensure_nonnegative,
+    ensure_positive,
+)
 from flockana.base.progress import progress_bar
 from flockana.equilibria.curvature import EPS
 from flockana.laws.law import Law
@@ -186,6 +193,7 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     >>> round(delay_margin(DelaySystem(prompt, late)).delay, 5)
     1.43389
     """
+    ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
     if not _stable(system):
         return DelayMargin(0.0, float("nan"), 0.0)
     parts = list(_strong_parts(system))
@@ -272,6 +280,7 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
     >>> [round(float(abs(s)), 9) for s in rightmost_roots(one, 0.5 * pi, count=2) - np.array([1j, -1j])]
     [0.0, 0.0]
     """
+    ensure_kind("system", system, DelaySystem, "what delay_system(...) gives")
     delay, nodes = ensure_positive("delay", delay), ensure_count("nodes", nodes)
     (k0, d0), (k1, d1) = system.prompt, system.late
     size, zero, one = len(k0), np.zeros_like(k0), np.eye(len(k0))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_known, ensure_positive
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_positive
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
@@ -50,6 +50,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
     >>> disturbance_system(flock, output="deviations") is None
     True
     """
+    ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     import control
 
     ensure_known("output", output, OUTPUTS)
@@ -65,7 +66,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
 
 
 def _dimension(flock: Blocks) -> int:
-    """m, from the translations, which are the rigid motions that move all agents alike."""
+    """Return m, from the translations among the rigid motions."""
     for m in (3, 2, 1):
         n, rest = divmod(len(flock.stiffness), m)
         moves = np.tile(np.eye(m), (n, 1))
@@ -75,7 +76,7 @@ def _dimension(flock: Blocks) -> int:
 
 
 def h2_norm(system: StateSpace) -> float:
-    """Square root of the power of the output under white noise of unit intensity in every input.
+    """Return the H₂ norm, from white noise of unit intensity in every input to the output.
 
     The controllability Gramian by Bartels and Stewart's method (scipy); infinite unless the system is stable.
 
@@ -92,6 +93,7 @@ def h2_norm(system: StateSpace) -> float:
     >>> round(h2_norm(control.ss([[0, 1], [-8, -1]], [[0], [1]], [[1, 0]], 0)), 12)
     0.25
     """
+    ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     from scipy.linalg import solve_continuous_lyapunov
 
     if system.nstates == 0 or system.noutputs == 0:
@@ -103,7 +105,7 @@ def h2_norm(system: StateSpace) -> float:
 
 
 def h2_bounds(flock: Blocks) -> tuple[float, float]:
-    """Closed-form bounds of the H₂ norm to the shape: √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)), K⁺ on shapes.
+    """Return closed-form bounds √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)) of the H₂ norm to the shape.
 
     With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
     d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
@@ -115,6 +117,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     >>> bool(abs(high / low - 1.0) < 1e-12)
     True
     """
+    ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))
     rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)
     seen = positions.T @ shapes
@@ -128,7 +131,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
 
 
 def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
-    """(H∞ norm, frequency of the peak): the largest gain over all harmonic disturbances.
+    """Return (H∞ norm, frequency of the peak), the largest gain over all harmonic disturbances.
 
     Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
     between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
@@ -156,6 +159,7 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     >>> round(norm * 24, 9), round(peak**2, 5)
     (1.0, 7.0)
     """
+    ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     if system.nstates == 0 or system.noutputs == 0:
         return 0.0, 0.0
     tol, a, b, c = ensure_positive("tol", tol), system.A, system.B, system.C
@@ -210,7 +214,7 @@ class NormTable:
 
 
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
-    """H₂ and H∞ of the equilibria that hexagonal spirals of these sizes relax to (in the plane).
+    """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 
     Parameters
     ----------

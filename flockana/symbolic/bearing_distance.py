@@ -20,13 +20,7 @@ _X = sp.Symbol("x", nonnegative=True)
 
 
 def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
-    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and a neighbour.
-
-    Examples
-    --------
-    >>> pair_symbols(2)[2].T
-    Matrix([[p_j1, p_j2]])
-    """
+    """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and a neighbour."""
     p_i, v_i, p_j, v_j = (vector(name, ensure_dimension(m)) for name in ("p_i", "v_i", "p_j", "v_j"))
     return p_i, v_i, p_j, v_j
 

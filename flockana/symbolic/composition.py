@@ -42,11 +42,6 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
 
     H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² +
     Σ (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
-
-    Examples
-    --------
-    >>> given_frame_identity(1).holds
-    True
     """
     q, p, (q_r, _, _) = _state(m)
     u, energy, rate = _between_agents(q, p)
@@ -67,11 +62,6 @@ def moving_frame_identity(m: int = 2) -> Derivation:
 
     H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
     acts on all alike does no work there.
-
-    Examples
-    --------
-    >>> moving_frame_identity(1).holds
-    True
     """
     q, p, (q_r, p_r, a_r) = _state(m)
     u, energy, rate = _between_agents(q, p)

@@ -15,11 +15,6 @@ def copies_balance() -> Derivation:
     """Derive what the pull to a copy adds to dH/dt, a component of one agent: q'' = f - c1 (q - q_r) - c2 (q' - q_r').
 
     f is all else; what it does, p f, is counted where its energy is.
-
-    Examples
-    --------
-    >>> copies_balance().holds
-    True
     """
     q, place, other = (sp.Function(name)(T) for name in ("q", "q_r", "f"))
     p, rate = q.diff(T), place.diff(T)

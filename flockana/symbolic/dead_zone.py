@@ -80,26 +80,14 @@ def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def repulsive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return P_r with dP_r/ds = (2k_r/s^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0.
-
-    Examples
-    --------
-    >>> repulsive_primitive(eta=sp.Integer(0))
-    k_delta*rho**2/2 + 2*k_r*log(rho)
-    """
+    """Return P_r with dP_r/ds = (2k_r/s^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0."""
     if eta == 0:
         return 2 * K_R * sp.log(s) + K_DELTA * s**2 / 2
     return -2 * K_R * sp.asinh(1 / (sp.sqrt(eta) * s)) + K_DELTA * sp.sqrt(1 + eta * s**2) / eta
 
 
 def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return P_a with dP_a/ds = (2k_r/(r_d - s)^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0.
-
-    Examples
-    --------
-    >>> attractive_primitive(eta=sp.Integer(0)).subs(K_DELTA, 0)
-    2*k_r*(r_d/(r_d - rho) + log(r_d - rho))
-    """
+    """Return P_a with dP_a/ds = (2k_r/(r_d - s)^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0."""
     if eta == 0:
         return 2 * K_R * (R_D / (R_D - s) + sp.log(R_D - s)) + K_DELTA * s**2 / 2
     big, root = 1 + eta * R_D**2, sp.sqrt(1 + eta * s**2)
@@ -180,11 +168,6 @@ def saturated_energy_identity(m: int = 2) -> Derivation:
     H is a sum over pairs of psi(min(rho, r)) and over agents of |p_i|^2/2 (of the deviations from the mean: momentum
     is conserved), so an identity for one pair is one for every n. It holds on either side of every switch, and psi is
     continuous across them.
-
-    Examples
-    --------
-    >>> saturated_energy_identity(3).holds
-    True
     """
     q_i, q_j, p_i, p_j = (vector(name, ensure_dimension(m)) for name in ("q_i", "q_j", "p_i", "p_j"))
     delta, slip = q_j - q_i, p_j - p_i

@@ -45,16 +45,7 @@ class UndefinedError(ArithmeticError):
 
 
 class Enclosed:
-    """Formula in one variable as a function of balls.
-
-    Examples
-    --------
-    >>> s = sp.Symbol("s", positive=True)
-    >>> with precision(64, 3):
-    ...     values = Enclosed(sp.exp(s) * s, s).series(arb(1))
-    >>> [round(float(value), 12) for value in values]
-    [2.718281828459, 5.436563656918, 4.077422742689]
-    """
+    """Formula in one variable as a function of balls."""
 
     def __init__(self, expression: sp.Expr, variable: sp.Symbol) -> None:
         self.variable = variable

@@ -86,13 +86,7 @@ class EnergyIdentity:
 
 
 class GenericPair:
-    """Two agents i and j among n, by components: the terms of dH/dt that involve both.
-
-    Examples
-    --------
-    >>> GenericPair(1).tidy(pair_potential(*GenericPair(1).q))
-    c_1^alpha*psi_alpha(z_ij)
-    """
+    """Two agents i and j among n, by components: the terms of dH/dt that involve both."""
 
     z = sp.Symbol("z_ij", nonnegative=True)
 

@@ -49,17 +49,7 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
-    """Return the sympy expression of a text, in the given names.
-
-    Examples
-    --------
-    >>> s, k = sp.symbols("s k")
-    >>> read_formula("k*(s - 2)**2/2", {"s": s, "k": k})
-    k*(s - 2)**2/2
-    >>> read_formula("().__class__", {"s": s})
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: the formula: '().__class__' is no formula; expected names, numbers, ...
-    """
+    """Return the sympy expression of a text, in the given names."""
     if not isinstance(text, str):
         raise ArgumentError(f"{where} = {text!r}: expected a sympy expression, or text")
     if len(text) > LENGTH:
@@ -76,17 +66,17 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
     return _with_pieces(value, where)
 
 
-def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
+def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
     """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers.
 
     Examples
     --------
     >>> s = sp.Symbol("s")
-    >>> measured(sp.exp(sp.exp(s)) + s**8, {})
+    >>> expression_size(sp.exp(sp.exp(s)) + s**8, {})
     (7, 2, 8)
     """
     if value not in known:
-        rows = [measured(each, known) for each in value.args] or [(0, 0, 1)]
+        rows = [expression_size(each, known) for each in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)
         tower, degree = (max(row[k] for row in rows) for k in (1, 2))
         if isinstance(value, sp.Pow) and value.exp.is_number:
@@ -117,14 +107,7 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 
 def write_formula(expression: sp.Expr) -> str:
-    """Return a text that `read_formula` reads as the same expression, every number to the last bit.
-
-    Examples
-    --------
-    >>> s = sp.Symbol("s")
-    >>> write_formula(sp.Piecewise((0.1 * s, s < 1), (sp.Abs(s), True)))
-    'Piecewise((0.1*s, s < 1), (Abs(s), True))'
-    """
+    """Return a text that `read_formula` reads as the same expression, every number to the last bit."""
     return str(_Printer().doprint(expression))
 
 
@@ -237,7 +220,7 @@ class _Reader:
 
     def _ensure_small(self, value: sp.Expr) -> None:
         """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
-        nodes, tower, degree = measured(value, self._sizes)
+        nodes, tower, degree = expression_size(value, self._sizes)
         for found, most, what in ((nodes, NODES, "parts"), (tower, TOWER, "exponentials within each other"),
                                   (degree, DEGREE, "as its degree")):  # fmt: skip
             if found > most:

@@ -25,11 +25,6 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
 
     H = sum |p_i - p_l|^2/2 + sum psi(rho_ij^2) + c_1/2 sum of the pinned |q_i - q_l|^2; its rate has -k_2 p^T L p
     within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
-
-    Examples
-    --------
-    >>> led_energy_identity(1).holds
-    True
     """
     ensure_dimension(m)
     q, p = ([vector(f"{name}_{i}", m) for i in range(3)] for name in "qp")

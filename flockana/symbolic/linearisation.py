@@ -43,11 +43,6 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
     w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j),
     side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
     residuals hold each of them.
-
-    Examples
-    --------
-    >>> derive_pair_jacobian(2).holds
-    True
     """
     pair = GenericPair(m)
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
@@ -86,13 +81,7 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
 
 
 def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bool = False) -> Derivation:
-    """Derive the γ-agent's part of ∂u_i/∂(q_i, p_i), x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I.
-
-    Examples
-    --------
-    >>> derive_agent_jacobian(3, bounded=True).holds
-    True
-    """
+    """Derive the γ-agent's part of ∂u_i/∂(q_i, p_i), x = q_i − q_r: −c1 I, or −c1 (I/w − x xᵀ/w³), and −c2 I."""
     q_i, p_i, q_r, p_r = (vector(name, ensure_dimension(m)) for name in ("q_i", "p_i", "q_r", "p_r"))
     x = q_i - q_r
     force = (gamma_force if bounded else own_force)(q_i, p_i, q_r, p_r, gains=gains)
@@ -144,11 +133,6 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
     With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i
     −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2 b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i
     c2 b (D − I).
-
-    Examples
-    --------
-    >>> derive_obstacle_jacobian("sphere", 2).holds
-    True
     """
     one = GenericObstacle(kind, m)
     gap, slip, z = one.gap, one.rate - one.p, one.z

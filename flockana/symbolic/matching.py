@@ -18,11 +18,6 @@ def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
     """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n.
 
     H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
-
-    Examples
-    --------
-    >>> matching_identity(1).holds
-    True
     """
     ensure_dimension(m)
     q, p = ([vector(f"{name}_{i}", m) for i in range(3)] for name in "qp")

@@ -59,13 +59,7 @@ def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) 
 
 
 class GenericObstacle:
-    """Agent and obstacle of one kind, by components.
-
-    Examples
-    --------
-    >>> GenericObstacle("sphere", 2).reduce(sp.sqrt(sp.Symbol("x1", real=True)**2 + sp.Symbol("x2", real=True)**2))
-    rho
-    """
+    """Agent and obstacle of one kind, by components."""
 
     distance = sp.Symbol("rho", positive=True)
     z = sp.Symbol("z_ik", nonnegative=True)
@@ -181,15 +175,7 @@ class Braking:
 
 
 def derive_braking(kind: str, m: int = 2) -> Braking:
-    """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall.
-
-    Examples
-    --------
-    >>> derive_braking("wall").terms
-    (0, -w**2)
-    >>> derive_braking("sphere").inside
-    (T*tau, -w**2)
-    """
+    """Derive <p, p_hat - p> = (mu - 1) |P p|^2 - <a, p>^2 and the sign of each term; mu = 1 at a wall."""
     generic = GenericObstacle(kind, m)
     residual = generic.reduce(generic.braking() - generic.geometric_braking())
 

@@ -10,14 +10,7 @@ from flockana.symbolic.pair_formula import EPS, PairFormula, S, Z
 
 
 def pair_derivation(formula: PairFormula) -> Derivation:
-    """Derive the consequences of a formula, with the residual of every equation that can be checked.
-
-    Examples
-    --------
-    >>> from flockana.symbolic.pair_formula import read_pair
-    >>> pair_derivation(read_pair("k*(s**2 - d**2)**2", "", "1", ["k"])).holds
-    True
-    """
+    """Derive the consequences of a formula, with the residual of every equation that can be checked."""
     y = formula.distance
     psi, named = sp.Function("psi")(y), "s" if y == S else "z"
     derivative = formula.derivative

@@ -36,16 +36,7 @@ def incidence_matrix(edges: Edges) -> sp.Matrix:
 
 
 def receiver_matrix(edges: Edges) -> sp.Matrix:
-    """Return D_in: the entries +1 of D.
-
-    Examples
-    --------
-    >>> receiver_matrix([(0, 1), (1, 2)]) * incidence_matrix([(0, 1), (1, 2)]).T
-    Matrix([
-    [ 0,  0, 0],
-    [-1,  1, 0],
-    [ 0, -1, 1]])
-    """
+    """Return D_in: the entries +1 of D."""
     return incidence_matrix(edges).applyfunc(lambda entry: sp.Max(entry, 0))
 
 
@@ -170,13 +161,7 @@ def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Ex
 
 
 def symmetric_part(children: int) -> Derivation:
-    """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2.
-
-    Examples
-    --------
-    >>> symmetric_part(5).result, symmetric_part(5).holds
-    (1 - sqrt(5)/2, True)
-    """
+    """Derive the spectrum of the symmetric part of D^T D_in for root -> a -> k children: 1 and 1 +- sqrt(k)/2."""
     edges = [(0, 1), *((1, 2 + k) for k in range(children))]
     edge_laplacian = incidence_matrix(edges).T * receiver_matrix(edges)
     symmetric = (edge_laplacian + edge_laplacian.T) / 2

@@ -50,24 +50,12 @@ def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
 
 
 def over_pairs(summand: sp.Expr) -> sp.Expr:
-    """Return the sum over all unordered pairs i < j of an expression in i and j.
-
-    Examples
-    --------
-    >>> write_out(over_pairs(sp.Integer(1)), 4)
-    6
-    """
+    """Return the sum over all unordered pairs i < j of an expression in i and j."""
     return _sum(summand, (J_, I_ + 1, N), (I_, 1, N))
 
 
 def over_agents(summand: sp.Expr) -> sp.Expr:
-    """Return the sum over all agents of an expression in i.
-
-    Examples
-    --------
-    >>> write_out(over_agents(X[I_, 1]), 2)
-    x[1, 1] + x[2, 1]
-    """
+    """Return the sum over all agents of an expression in i."""
     return _sum(summand, (I_, 1, N))
 
 

@@ -36,14 +36,7 @@ def _over_obstacles(summand: sp.Expr) -> sp.Expr:
 def gamma_force(
     q_i: sp.Matrix, p_i: sp.Matrix, q_r: sp.Matrix, p_r: sp.Matrix, *, gains: GainSymbols = GAINS
 ) -> sp.Matrix:
-    """Return the navigational feedback of Algorithm 3: -c1_gamma sigma_1(q_i - q_r) - c2_gamma (p_i - p_r).
-
-    Examples
-    --------
-    >>> zero = sp.Matrix([0])
-    >>> gamma_force(sp.Matrix([sp.Rational(3, 4)]), zero, zero, zero)
-    Matrix([[-3*c_1^gamma/5]])
-    """
+    """Return the navigational feedback of Algorithm 3: -c1_gamma sigma_1(q_i - q_r) - c2_gamma (p_i - p_r)."""
     return -gains.c1_gamma * sigma_1(q_i - q_r) - gains.c2_gamma * (p_i - p_r)
 
 
@@ -127,13 +120,7 @@ def condition_76_residual(m: int = 2) -> sp.Expr:
 
 
 def e2_identity(m: int = 2) -> EnergyIdentity:
-    """Derive dH/dt of the printed H, which counts every pair twice: dV_alpha/dt is left over, and it has no sign.
-
-    Examples
-    --------
-    >>> e2_identity(1).holds
-    False
-    """
+    """Derive dH/dt of the printed H, which counts every pair twice: dV_alpha/dt is left over, and it has no sign."""
     printed = theorem6_identity(m, copies=sp.Integer(2))
     left = Step(r"The difference is $\dot V_\alpha$ with every pair once, which has no sign:", printed.residual)
     name = r"E2: the printed $V_\alpha = \sum_i \sum_{j \neq i} \psi_\alpha$"
@@ -144,11 +131,6 @@ def e2_counterexample() -> RisingEnergy:
     """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises.
 
     The gamma-agent rests at the origin; no obstacle is near.
-
-    Examples
-    --------
-    >>> e2_counterexample().rate.evalf(6), e2_counterexample().true_rate
-    (1.60489, -2/25)
     """
     alpha = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, TypeGuard, Unpack, overload
 
 import numpy as np
 
@@ -14,17 +14,18 @@ from flockana.base.modules import modules
 from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, with_doubt
-from flockana.theorems.theorem import Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
-    from flockana.certified.tube import Tube
+    from flockana.recorded.recording import Recording
     from flockana.theorems.together import Verdicts
 
 T_SPAN = (0.0, 20.0)  # of a law that is run without one
 _RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"
-_REMEDY = "simulate(law, q0, p0, t_span) makes one; metrics, plots and the player take recordings as they are"
+_REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are judged as Recording(t, q, p, bound=...)"
 
 
 @cache
@@ -97,13 +98,28 @@ def _printed(source: str) -> str:
     return re.split(r";| \(", source)[0]
 
 
+class _Case(TypedDict, total=False):
+    """Keyword arguments of `verify`."""
+
+    basin: Any
+    law: Any
+    q0: Any
+    p0: Any
+    t_span: Any
+    q: Any
+    d: float | None
+    r: float | None
+    tolerances: Tolerances | None
+    subject: str
+
+
 @overload
-def verify(name: None = None, trajectory: Any = None, **case: Any) -> Verdicts: ...
+def verify(name: None = None, trajectory: Any = None, **case: Unpack[_Case]) -> Verdicts: ...
 @overload
-def verify(name: str | Theorem, trajectory: Any = None, **case: Any) -> Verdict: ...
+def verify(name: str | Theorem, trajectory: Any = None, **case: Unpack[_Case]) -> Verdict: ...
 def verify(
     name: str | Theorem | None = None,
-    trajectory: Trajectory | Tube | None = None,
+    trajectory: Any = None,
     *,
     basin: Any = None,
     law: Any = None,
@@ -124,10 +140,11 @@ def verify(
     ----------
     name : str or Theorem, optional
         One of `theorems`, or a theorem of your own; by default all that are about the law.
-    trajectory : Trajectory or Tube, optional
-        The run, for theorems about motion. Of a tube (`flockana.enclose`) the claims are decided rigorously, for every
-        start that it encloses, and their rigour reads ``"interval"``; they are those of the law whose parameters are
-        the decimals that they print as.
+    trajectory : Trajectory, Tube or Recording, optional
+        The run, for theorems about motion. Of a recording with `law` the first hypothesis is that its samples follow
+        the law, within their stated accuracy; definitions about samples take d and r instead of a law. Of a tube
+        (`flockana.enclose`) the claims are decided rigorously, for every start that it encloses, and their rigour reads
+        ``"interval"``; they are those of the law whose parameters are the decimals that they print as.
     basin : Basin, optional
         With a tube: a certified basin (`flockana.certify`) that it may end in, which decides claims about limits.
     law, q0, p0, t_span : optional
@@ -159,6 +176,16 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
+    if _is_recording(trajectory):
+        if name is None or basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
+            raise ArgumentError(
+                "of a recording: expected verify(theorem, recording, law=...), or d= and r= without a law"
+            )
+        from flockana.theorems.on_recordings import verify_recording
+
+        item = name if isinstance(name, Theorem) else theorem(name)
+        used = Tolerances() if tolerances is None else tolerances
+        return verify_recording(item, trajectory, used, law=law, d=d, r=r, subject=subject)
     if name is None:
         from flockana.theorems.together import verify_together  # which checks each theorem by this function
 
@@ -198,6 +225,24 @@ def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
     return simulate(law, q0, np.zeros(np.shape(q0)) if p0 is None else p0, T_SPAN if t_span is None else t_span)
 
 
+def _is_recording(run: Any) -> TypeGuard[Recording]:
+    """Return whether it is a recording, without loading what reads them for what is none."""
+    if run is None or isinstance(run, Trajectory):
+        return False
+    from flockana.recorded.recording import Recording
+
+    return isinstance(run, Recording)
+
+
+def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
+    """The vacuous verdict on a run of a wrapped law: a theorem about the law says nothing of it."""
+    around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
+    detail = f"the run is of the law within {around}; the theorem is about the law itself"
+    missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
+    claims = tuple(Claim(name, "vacuous", detail=detail, needs=(missed,), by=item.by(name)) for name in item.claims)
+    return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)
+
+
 def _is_tube(run: Any) -> bool:
     """Whether it is a tube, told without loading Arb for what is none."""
     if run is None or isinstance(run, Trajectory):
@@ -225,6 +270,8 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     ensure_sealed("trajectory", run, _RUN, _REMEDY)
+    if wrappers_of(run.law) and not (item.wrapped and run.law is run.law.continuous):
+        return _of_another_law(item, run, tolerances, subject)
     ensure_fits(run)
     seen = Observed.of(run)
     hypotheses, claims = item.examine(seen, tolerances)

@@ -50,8 +50,40 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
     needs = [need for claim in silent for need in (*claim.needs, *verdict.hypotheses) if need.status == "unmet"]
     if not needs:
         return f": {silent[0].detail}" if silent[0].detail else ""
-    name = needs[0].name
-    return f": {name if re.search('[<>=≤≥]', name) else repr(name)} does not hold"
+    return f": {does_not_hold(needs[0].name)}"
+
+
+def does_not_hold(need: str) -> str:
+    """Say of a hypothesis that it does not hold; a name in words is quoted.
+
+    Parameters
+    ----------
+    need : str
+        Name of the hypothesis.
+
+    Examples
+    --------
+    >>> does_not_hold("H(0) < c*"), does_not_hold("connected")
+    ('H(0) < c* does not hold', "'connected' does not hold")
+    """
+    return f"{need if re.search('[<>=≤≥]', need) else repr(need)} does not hold"
+
+
+def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
+    """Return claims with their names; neighbours that are vacuous for one reason as one, with all their names.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+        In the order in which they are shown.
+    """
+
+    def reason(claim: Claim) -> tuple[str, str]:
+        silent = claim.status == "vacuous" and claim.computed is None
+        return claim.by, claim.detail if silent else claim.name
+
+    groups = (list(group) for _, group in groupby(claims, reason))
+    return [(", ".join(claim.name for claim in group), group[0]) for group in groups]
 
 
 def _listed(claims: Iterable[Claim]) -> str:

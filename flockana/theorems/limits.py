@@ -88,25 +88,6 @@ def limit_claim(
 ) -> Claim:
     """Return a claim about a limit: verified by a certificate or a proof, refuted by an escape, else inconclusive.
 
-    Parameters
-    ----------
-    name : str
-        Of the claim.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim: an assumed one leaves it inconclusive.
-    certificates : iterable of Certificate
-        Each of which implies the limit.
-    escape : Certificate, optional
-        Of something that excludes the limit.
-    proof : str, optional
-        Id of an executable proof of exactly this limit, under the needs.
-    evidence : str
-        What the run shows, which decides nothing.
-    detail : str
-        In words.
-    **fields
-        Further fields of the claim.
-
     Examples
     --------
     >>> limit_claim("i", [], [Certificate(-1.0, "no basin is known")], detail="x").status

@@ -149,7 +149,7 @@ class Observed(ResultCache):
     def window(self, start: float, end: float) -> Observed:
         """Return the part of the run within some times, with what is known of its error there."""
         given, run, other = (each.window(start, end) for each in (self.given, self.run, self.other))
-        return Observed(given, run, other, self.errors, self.doubt)
+        return replace(self, given=given, run=run, other=other)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
         """Largest half width from one law time before each start to one after each end."""
@@ -168,7 +168,7 @@ class Observed(ResultCache):
             Of one run.
         """
         given, run, other = (change(each) for each in (self.given, self.run, self.other))
-        return Observed(given, run, other, self.errors, self.doubt)
+        return replace(self, given=given, run=run, other=other)
 
     @cached_property
     def between_error(self) -> FloatArray:
@@ -206,6 +206,26 @@ class Observed(ResultCache):
             if self.begins_exactly:
                 apart[0] = 0.0
         return Enclosure.around(best, apart + floor)
+
+    @property
+    def accuracy_of_end(self) -> float:
+        """How far the last positions of what is judged may be off as given: those of a run are its own."""
+        return 0.0
+
+    @property
+    def allowed(self) -> tuple[Trajectory, ...]:
+        """Other states that are known alike; none of a run."""
+        return ()
+
+    def sensitivity(self, observable: Callable[[Trajectory], Any]) -> Any:
+        """Return by how much an observable differs between states that are known alike: 0 of a run.
+
+        Parameters
+        ----------
+        observable : callable
+            Of a run.
+        """
+        return 0.0
 
     @cached_property
     def energy(self) -> Enclosure:
@@ -324,15 +344,20 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
     made from enclosures of its parts instead.
     """
-    best, other = check(seen.run), check(seen.other)
+    best, *others = (check(run) for run in (seen.run, seen.other, *seen.allowed))
     if best.margin is None or best.status not in ("verified", "refuted"):
         return best
-    apart = abs(best.margin - other.margin) if other.margin is not None else np.inf
+    other = max(others, key=lambda each: (each.status != best.status, _apart(best, each)))
+    apart = _apart(best, other)
     error = (best.error or 0.0) + (DOUBT * apart if best.margin != other.margin else 0.0)
     if other.status == best.status and abs(best.margin) > error:
         return replace(best, error=error)
     detail = f"{best.detail}; the second run reads {other.status}, and differs by {apart:.2g}"
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
+
+
+def _apart(one: Claim, other: Claim) -> float:
+    return np.inf if one.margin is None or other.margin is None else abs(one.margin - other.margin)
 
 
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:

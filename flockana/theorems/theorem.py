@@ -9,18 +9,18 @@ from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import BYLINES, headline
+from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged
 from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
 Status = Literal["verified", "refuted", "vacuous", "inconclusive"]
-Rigour = Literal["symbolic", "smt", "interval", "numeric"]
+Rigour = Literal["symbolic", "smt", "interval", "numeric", "statistical"]
 HypothesisStatus = Literal["met", "unmet", "assumed"]
 About = Literal["run", "limit", "all"]
 Kind = Literal["trajectory", "configuration", "fixed"]
 By = Literal["source", "corrected", "flockana"]  # whose statement it is
 
-_RIGOURS: tuple[Rigour, ...] = ("numeric", "interval", "smt", "symbolic")  # weakest first
+_RIGOURS: tuple[Rigour, ...] = ("statistical", "numeric", "interval", "smt", "symbolic")  # weakest first
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Claim:
         Short name, such as ``"iii"``.
     status : {"verified", "refuted", "vacuous", "inconclusive"}
         Whether it holds.
-    rigour : {"symbolic", "smt", "interval", "numeric"}
-        How it is known.
+    rigour : {"symbolic", "smt", "interval", "numeric", "statistical"}
+        How it is known; "statistical" of a recording whose noise is stated.
     computed, stated : object
         What was computed here, and what the theorem states.
     margin : float, optional
@@ -119,6 +119,14 @@ class Claim:
                 f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "
                 "inconclusive"
             )
+
+    @property
+    def account(self) -> str:
+        """The detail, of a vacuous claim after the need that does not hold."""
+        missed = unmet(self.needs) if self.status == "vacuous" else None
+        if missed is None or self.detail.startswith(missed.name):
+            return self.detail
+        return f"{does_not_hold(missed.name)}; {self.detail}"
 
     @property
     def cited(self) -> str:
@@ -219,8 +227,9 @@ class Verdict:
         lines = [f"{self.theorem}: {self.status} ({self.rigour}){' on ' + self.subject if self.subject else ''}"]
         lines += [f"  {self.summary}"]
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
-        lines += [f"  {c.name:>14} {c.status:12} {c.detail}{c.cited}" for c in self.main_claims]
-        lines += [f"  {c.name:>14} {c.status:12} [{BYLINES[c.by]}] {c.detail}{c.cited}" for c in self.further_claims]
+        for name, c in merged((*self.main_claims, *self.further_claims)):
+            whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
+            lines.append(f"  {name:>14} {c.status:12} {whose}{c.account}{c.cited}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
@@ -273,6 +282,8 @@ class Theorem:
         Whose theorem it is; the claims are the author's unless named below.
     corrected, ours : tuple of str
         Names of the claims that correct the source, and of the library's own.
+    wrapped : bool
+        Whether it is about laws within disturbances, delays, clocks or limits too; else it is vacuous of their runs.
     """
 
     id: str
@@ -291,6 +302,7 @@ class Theorem:
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
+    wrapped: bool = False
 
     @property
     def erratum(self) -> Erratum | None:

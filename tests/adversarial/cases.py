@@ -1,7 +1,5 @@
 """A planted case: a start whose truth is known, and what a verdict on it may say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

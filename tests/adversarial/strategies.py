@@ -1,7 +1,5 @@
 """Laws, starts and ways to integrate them: extreme, but valid. Sizes are pure numbers times the law's own scales."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

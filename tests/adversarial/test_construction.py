@@ -1,7 +1,5 @@
 """Verdicts that the mechanism makes impossible: cases that were wrong, and a fuzz over laws, starts and tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

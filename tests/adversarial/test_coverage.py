@@ -1,7 +1,5 @@
 """Every theorem is attacked, and oracles call none of the library's formulas."""
 
-from __future__ import annotations
-
 import ast
 from importlib import import_module
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The dead-zone theorem: parting for ever, gliding within the dead zone, an energy that jumps, undamped swings."""
 
-from __future__ import annotations
-
 from math import asinh, exp, sinh, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What was made or changed by hand is no evidence: of every kind, each field alone, at every door."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from dataclasses import fields, replace

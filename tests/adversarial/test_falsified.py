@@ -3,8 +3,6 @@
 That what is false is found: tests/falsify/test_campaign.py.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -16,7 +16,7 @@ TRUTHS = {
     "E1": {"r": "printed printed-state printed-run", "v": "corrected"},
     "E2": {"r": "printed printed-state printed-run", "v": "corrected"},
     "E3": {"r": "share double-agent smallest strained algorithm-2"},
-    "E4": {"v": "printed found vacuous barrier"},
+    "E4": {"v": "printed found vacuous barrier together"},
     "E5": {"r": "printed-13 printed-8", "v": "uncrossed-13 uncrossed-8 six"},
     "E6": {"r": "printed", "v": "corrected sharp"},
     "E7": {"r": "printed", "v": "corrected connectivity-1 connectivity-2 share-2"},

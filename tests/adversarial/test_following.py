@@ -1,7 +1,5 @@
 """E12 against the transfer function in closed form; the linearisation where a run ends."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import assume, given

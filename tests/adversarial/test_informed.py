@@ -4,8 +4,6 @@ One agent that feels a leader alone is a damped spring: it is where `truth.harmo
 nobody else follows. Where nothing damps, it touches the bound, and no verdict may call that too far.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

@@ -11,12 +11,21 @@ from hypothesis import strategies as st
 from flockana.interactions.log_potential import LogPotential
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.cucker_smale import CuckerSmale
+from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from tests.adversarial import truth
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds
 
-THEOREMS = ("cucker-smale", "ha-liu", "ha-liu-sharp", "cucker-smale-pair", "tanner-fixed", "tanner-switching")
+THEOREMS = (
+    "cucker-smale",
+    "cucker-smale-steps",
+    "ha-liu",
+    "ha-liu-sharp",
+    "cucker-smale-pair",
+    "tanner-fixed",
+    "tanner-switching",
+)
 ALL = dict.fromkeys(("bounded", "rate", "flock"), TRUE)
 units = st.sampled_from((1.0, 1e-6, 1e4))
 
@@ -48,6 +57,21 @@ def test_flocks_that_match(n, m, decay, speed, seed, unit):
     if decay <= 0.5:
         assert printed.status != "vacuous"
         hold("cucker-smale", case, {"bounded": TRUE, "rate": TRUE, "velocities": VERIFIED})
+
+
+@effort(0.2)
+@given(st.integers(2, 4), st.sampled_from((0.0, 0.5, 1.0)), powers(-2.0, 0.2), powers(-2.0, 0.5), seeds, units)
+def test_flocks_in_steps(n, decay, step, speed, seed, unit):
+    """h λ from 0.01 to 1.6: true while it is at most 1, beyond it the theorem says nothing."""
+    assume(abs(step - 1.0) > 1e-9)
+    rng = np.random.default_rng(seed)
+    q, p = unit * rng.normal(size=(n, 2)), unit * speed * rng.normal(size=(n, 2))
+    law = SemiImplicitEuler(CuckerSmale(RationalWeight(1.0, decay, unit)), step / n)
+    case = Case(law, q, p, 30 * step / n)
+    claims = ("bounded", "rate", "velocities")
+    verdict = hold("cucker-smale-steps", case, dict.fromkeys(claims, VACUOUS if step > 1.0 else TRUE))
+    if step < 1.0 and decay <= 0.5:
+        assert verdict.claim("velocities").status == "verified"
 
 
 @effort(0.3)

@@ -1,7 +1,5 @@
 """Collisions: two agents head on by the reduced problem and by energy to 30 digits, near misses, erratum E13."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Energies: identities of every flock, printed ones that are none, Theorem 6 with and without its hypotheses."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Two agents with averaged headings: whether they ever agree is known by algebra, far above and below rounding."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

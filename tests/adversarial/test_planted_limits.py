@@ -1,7 +1,5 @@
 """Claims about t → ∞: two agents near their balance, damped or not, and flocks of springs alone, in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import assume, given

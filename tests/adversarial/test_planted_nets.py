@@ -1,7 +1,5 @@
 """Theorem 5: lattices counted in integers, ratios exactly at their limits, crossings counted in exact arithmetic."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from math import comb, sqrt
 

@@ -5,8 +5,6 @@ violation it is far beyond the error of integration: the claim is refuted, or co
 does, the violation is within that error, and the numbers decide nothing. Neither ever verifies.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

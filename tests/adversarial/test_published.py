@@ -1,7 +1,5 @@
 """Which changes of a published verdict are told, and which are rounding."""
 
-from __future__ import annotations
-
 import copy
 
 import pytest

@@ -1,7 +1,5 @@
 """The bearing-distance theorem on frozen trees: springs in closed form, equilibria to the last bit, collisions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """The oracles themselves, against published numbers and against each other: a wrong truth would prove anything."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 Laws are read as plain parameters (d, r, ε, h, a, b, σ₁'s unit of length, the gains, the target's numbers).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Damaged certificates, and what is no certificate: rejected in words, at once, and never by an error of another's."""
 
-from __future__ import annotations
-
 import copy
 import json
 

@@ -1,7 +1,5 @@
 """Bad input on the command line: exit status 2, one line that says what is wrong, no traceback and no file left."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

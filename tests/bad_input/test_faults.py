@@ -1,7 +1,5 @@
 """Full disks, readers that leave, encodings without Greek, Ctrl-C at the worst moment: what is done is kept."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

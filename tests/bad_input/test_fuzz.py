@@ -1,7 +1,5 @@
 """Damaged files: every one is refused in words, or gives what was written; none crashes, hangs or is believed."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

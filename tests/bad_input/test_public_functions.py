@@ -1,7 +1,5 @@
 """Every public function, each of its arguments in turn something strange: refused in words, or taken for what it is."""
 
-from __future__ import annotations
-
 import inspect
 from contextlib import suppress
 

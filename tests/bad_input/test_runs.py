@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.stability import simulate_delayed
 from tests.bad_input.values import (
     INF,
     LAW,
@@ -106,9 +105,15 @@ def cases():
     yield "is_cohesive radius", POSITIVE, lambda v: fl.predicates.is_cohesive(RUN, v)
     for name in ("is_flock", "is_dynamic_flock", "is_quasi_flock"):
         yield name, {"none": None, "a number": 3, "a text": "x"}, getattr(fl.predicates, name)
-    delays = POSITIVE | {"beyond memory": 1e-12}
-    yield "simulate_delayed delay", delays, lambda v: simulate_delayed(LAW, Q, P, (0.0, 1.0), delay=v)
-    yield "simulate_delayed q0", POINTS, lambda v: simulate_delayed(LAW, v, P, (0.0, 1.0), delay=0.1)
+    yield "Delayed", NUMBERS | {"negative": -0.1}, lambda v: fl.Delayed(LAW, v)
+    yield "Sampled", POSITIVE, lambda v: fl.Sampled(LAW, v)
+    yield "Saturated", POSITIVE, lambda v: fl.Saturated(LAW, v)
+    yield "Disturbed intensity", NUMBERS | {"negative": -0.1}, lambda v: fl.Disturbed(LAW, intensity=v)
+    yield "Measured position", NUMBERS | {"negative": -0.1}, lambda v: fl.Measured(LAW, v)
+    yield "Lossy", NUMBERS | {"negative": -0.1, "above one": 1.1}, lambda v: fl.Lossy(LAW, v)
+    late = fl.Delayed(LAW, 0.1)
+    yield "dt of a delayed law", POSITIVE | {"no divisor": 0.03}, lambda v: fl.simulate(late, Q, P, (0.0, 1.0), dt=v)
+    yield "q0 of a delayed law", POINTS, lambda v: fl.simulate(late, v, P, (0.0, 1.0), dt=0.1)
 
 
 def paths():
@@ -138,7 +143,7 @@ def test_what_is_no_path_is_refused_and_nothing_is_left(table, call, tmp_path, m
 def test_sizes_are_told_with_the_memory_that_they_would_need():
     with pytest.raises(fl.errors.ArgumentError, match=r"would take .* bytes, more than half .* take longer steps"):
         simulated((0.0, 1.0), method="RK4", dt=1e-13)
-    with pytest.raises(fl.errors.ArgumentError, match=r"would take .* bytes, more than half .* a longer delay"):
-        simulate_delayed(LAW, Q, P, (0.0, 1.0), delay=1e-12)
+    with pytest.raises(fl.errors.ArgumentError, match=r"would take .* bytes, more than half .* a shorter delay"):
+        fl.simulate(fl.Delayed(LAW, 1e12), Q, P, (0.0, 1.0), dt=0.1)
     sampled = fl.simulate(LAW, Q, P, (0.0, 1e-10), method="RK4", dt=1e-11, t_eval=[1e-10])
     assert sampled.status == "complete"

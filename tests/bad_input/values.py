@@ -1,7 +1,5 @@
 """Values that are wrong for every argument of a kind, by what is wrong with them, and what a refusal must say."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

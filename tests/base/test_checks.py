@@ -1,7 +1,5 @@
 """Checks write whatever they are given on one line, and compare it with choices only if it can be one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

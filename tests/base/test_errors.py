@@ -1,7 +1,5 @@
 """Errors and the checks at the boundary: every message names what it got and what was expected."""
 
-from __future__ import annotations
-
 import pickle
 import re
 

@@ -1,7 +1,5 @@
 """Parameters to plain data and back."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import dataclass, is_dataclass

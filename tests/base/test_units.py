@@ -1,7 +1,5 @@
 """The same law in other units: forces, energies, rates and derivatives change by their powers, nothing else does."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """The C loop computes Algorithm 2: else the ratio says nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

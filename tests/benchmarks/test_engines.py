@@ -1,7 +1,5 @@
 """The engines' side of the comparison, as far as it can be seen without them: that it says what they document."""
 
-from __future__ import annotations
-
 import sys
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace

@@ -1,7 +1,5 @@
 """The baselines in numpy are the law: else the ratio says nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Methods compared at equal error."""
 
-from __future__ import annotations
-
 import pytest
 
 from benchmarks import before, precision

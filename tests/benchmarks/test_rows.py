@@ -1,7 +1,5 @@
 """Rows of the table: what they promise, and that nothing is lost on the way to JSON and back."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """Functions that take turns."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from benchmarks.timing import interleaved, ratio

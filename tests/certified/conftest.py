@@ -1,7 +1,5 @@
 """Basins that several tests read, each certified once."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The motion that a checker of tubes believes in is the law's: of unequal a and b, in the plane, on each piece."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

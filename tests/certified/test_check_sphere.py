@@ -1,7 +1,5 @@
 """Certificates of runs past a sphere: the checker's own formulas, and that what was altered is rejected."""
 
-from __future__ import annotations
-
 import copy
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The checker's bound of an error's growth is never below what an error grows by."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import pytest

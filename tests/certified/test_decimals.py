@@ -1,7 +1,5 @@
 """The numbers that proofs print: bounds rounded away from what they bound, and statements made of what was computed."""
 
-from __future__ import annotations
-
 import ast
 import re
 from dataclasses import replace

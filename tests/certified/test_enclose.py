@@ -1,7 +1,5 @@
 """Tubes: exact solutions, runs in high precision and numerical runs lie in them; without a bound they do not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath

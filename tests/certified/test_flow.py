@@ -1,7 +1,5 @@
 """The right-hand side in balls and in series against the library's own formulas, which share no code with it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, arb_series, ctx

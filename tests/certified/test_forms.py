@@ -1,7 +1,5 @@
 """Forms of certificates: nothing that is not checked has a place, at any depth, and no number is without end."""
 
-from __future__ import annotations
-
 import copy
 import json
 import time

@@ -1,7 +1,5 @@
 """Verified linear algebra: what is certain is found, and what is not certain is not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, arb_mat, ctx

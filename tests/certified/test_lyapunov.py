@@ -1,7 +1,5 @@
 """The proved rate of decay: it satisfies its inequalities, exactly and sharply, and the search finds about the best."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import fmpq

@@ -1,7 +1,5 @@
 """Spheres in balls and in series against the library's own formulas, and a tube that passes one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, ctx

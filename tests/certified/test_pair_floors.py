@@ -1,7 +1,5 @@
 """Bounds of a pair's curvature along a displacement: true ones are proved, false ones never."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

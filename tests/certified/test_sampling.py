@@ -1,7 +1,5 @@
 """Sampled basins: starts that must return do, starts that cannot do not, and the picture says both."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Shells of curvature: which pairs they hold, what follows from them, and that nothing unproved does."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Certificates of tubes: what was altered is rejected, by the digest or, sealed again, by the mathematics."""
 
-from __future__ import annotations
-
 import copy
 import json
 from math import sqrt

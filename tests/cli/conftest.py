@@ -1,7 +1,5 @@
 """The command line, called in an empty folder."""
 
-from __future__ import annotations
-
 import json
 from importlib import import_module
 

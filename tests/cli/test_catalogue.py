@@ -1,7 +1,5 @@
 """Commands that start fewer threads and look for garbage seldom leave the process as they found it."""
 
-from __future__ import annotations
-
 import gc
 import os
 

@@ -1,7 +1,5 @@
 """What all commands do with their arguments: no path is '', and what is refused is named."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

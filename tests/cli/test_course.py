@@ -1,7 +1,5 @@
 """`flockana course`."""
 
-from __future__ import annotations
-
 import sys
 
 import pytest

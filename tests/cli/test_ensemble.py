@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import os
 import sqlite3
 from contextlib import closing
@@ -18,18 +16,18 @@ COMMAND = ("ensemble",)
 
 def test_it_prints_shares_and_writes_what_is_asked_for(call, tmp_path):
     given = ["hexagon", "--seeds", 4, "--theorem", "alpha-flocking", "--jobs", 1, "--store", "s.sqlite"]
-    code, out, err = call(*given, "-o", "new/all.nc", "--plot", "new/all.png")
+    code, out, err = call(*given, "-o", "all.nc", "--plot", "all.png")
     assert (code, err) == (0, "")
     assert "hexagon: 4 runs" in out
     # 4 of 4: from (0.025)^(1/4) on, to 3 digits
     rows = [line.split() for line in out.splitlines()]
     assert ["giant", "4", "100.0", "[39.8,", "100.0]", "0.0", "[0.0,", "60.2]"] in rows
-    for label, name in (("store", "s.sqlite"), ("saved", "new/all.nc"), ("picture", "new/all.png")):
+    for label, name in (("store", "s.sqlite"), ("saved", "all.nc"), ("picture", "all.png")):
         assert f"{label}: {name}" in out
-    stored = xarray.load_dataset(tmp_path / "new" / "all.nc", engine="h5netcdf")
+    stored = xarray.load_dataset(tmp_path / "all.nc", engine="h5netcdf")
     direct = ensemble("hexagon", range(4), theorems=["alpha-flocking"], jobs=1)
     assert stored.drop_vars("seconds").identical(direct.drop_vars("seconds"))
-    Image.open(tmp_path / "new" / "all.png").verify()
+    Image.open(tmp_path / "all.png").verify()
     again, same, _ = call(*given)
     assert again == 0
     assert same.splitlines() == [line for line in out.splitlines() if not line.startswith(("saved", "picture"))]

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
@@ -65,15 +63,15 @@ def test_algorithm_2_presses_and_the_scale_is_the_users(found):
 
 
 def test_what_is_saved_is_verified_when_it_is_read(call, found, tmp_path):
-    code, out, _ = call("hexagonal-spiral:7", "-o", "new/seven.json", "--picture", "seven.png")
+    code, out, _ = call("hexagonal-spiral:7", "-o", "seven.json", "--picture", "seven.png")
     assert code == 0
-    assert "saved: new/seven.json" in out
+    assert "saved: seven.json" in out
     assert "picture: seven.png" in out
-    again = read_equilibrium(tmp_path / "new" / "seven.json")
+    again = read_equilibrium(tmp_path / "seven.json")
     assert (again.kind, len(again.links), again.law) == ("minimum", 12, Algorithm1())
     assert (tmp_path / "seven.png").stat().st_size > 1000
-    assert found("new/seven.json")["energy"] == pytest.approx(again.energy, rel=1e-12)
-    text = (tmp_path / "new" / "seven.json").read_text().replace('"minimum"', '"saddle"')
+    assert found("seven.json")["energy"] == pytest.approx(again.energy, rel=1e-12)
+    text = (tmp_path / "seven.json").read_text().replace('"minimum"', '"saddle"')
     (tmp_path / "forged.json").write_text(text)
     code, out, err = call("forged.json")
     assert (code, out) == (2, "")

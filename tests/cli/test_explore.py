@@ -1,7 +1,5 @@
 """`flockana explore`: what cannot be opened is said before anything starts."""
 
-from __future__ import annotations
-
 import socket
 import sys
 

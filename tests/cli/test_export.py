@@ -1,7 +1,5 @@
 """`flockana export lammps`."""
 
-from __future__ import annotations
-
 import pytest
 
 COMMAND = ("export",)

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 
 import numpy as np
@@ -20,16 +18,16 @@ TWICE = ["collision-energy", "--on", "head-on", "--claim", "twice", "--budget", 
 
 
 def test_a_false_claim_is_found_written_drawn_and_replayed(call, tmp_path):
-    code, out, err = call(*TWICE, "-o", "new/c.json", "--plot", "new/c.png")
+    code, out, err = call(*TWICE, "-o", "c.json", "--plot", "c.png")
     assert (code, err) == (0, "")
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line.split()[:1]}
     assert (rows["twice"][0], *rows["twice"][2:4]) == ("4.839", "✗", "refuted")
     assert float(rows["twice"][1]) < 0.0
     assert rows["below"][2:4] == ["✓", "verified"]
     assert "found: twice is broken, and it is known to be false" in out
-    assert "counterexample: new/c.json" in out
-    assert np.ptp(np.asarray(Image.open(tmp_path / "new" / "c.png").convert("L"))) > 200
-    code, out, err = call("--replay", "new/c.json")
+    assert "counterexample: c.json" in out
+    assert np.ptp(np.asarray(Image.open(tmp_path / "c.png").convert("L"))) > 200
+    code, out, err = call("--replay", "c.json")
     assert (code, err) == (0, "")
     assert "it breaks again" in out
     assert "✗ refuted" in out

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import json
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -191,11 +189,11 @@ def test_an_unwritable_film_is_refused_before_the_run(call, monkeypatch, tmp_pat
 
 
 def test_animate_writes_a_film(call, catalogue, monkeypatch, tmp_path):
-    film = ("animate", "right", "-o", "new/film.gif", "--seconds", 0.3, "--fps", 10)
+    film = ("animate", "right", "-o", "film.gif", "--seconds", 0.3, "--fps", 10)
     code, out, err = call(*film)
     assert (code, err) == (0, "")
-    assert "written: new/film.gif" in out
-    with Image.open(tmp_path / "new" / "film.gif") as image:
+    assert "written: film.gif" in out
+    with Image.open(tmp_path / "film.gif") as image:
         assert image.n_frames == 3
     whole = Scenario.run
     for status, expected in (("failed", 3), ("interrupted", 130)):
@@ -204,15 +202,15 @@ def test_animate_writes_a_film(call, catalogue, monkeypatch, tmp_path):
 
 
 def test_run_saves_and_verify_reads_it_back(call, catalogue, tmp_path):
-    code, out, err = call("run", "right", "-o", "new/run.nc", "--seed", 1)
+    code, out, err = call("run", "right", "-o", "run.nc", "--seed", 1)
     assert (code, err) == (0, "")
-    assert "saved: new/run.nc" in out
+    assert "saved: run.nc" in out
     assert "energy H" in out
-    saved = Trajectory.load(tmp_path / "new" / "run.nc")
+    saved = Trajectory.load(tmp_path / "run.nc")
     assert saved.q[0, 1, 0] == 8.5
-    assert call("verify", "energy", "--on", "new/run.nc")[0] == 0  # nothing is expected of a saved run by itself
-    assert call("verify", "right", "--on", "new/run.nc", "--no-report")[0] == 0
-    assert call("verify", "wrong", "--on", "new/run.nc", "--no-report")[0] == 3
+    assert call("verify", "energy", "--on", "run.nc")[0] == 0  # nothing is expected of a saved run by itself
+    assert call("verify", "right", "--on", "run.nc", "--no-report")[0] == 0
+    assert call("verify", "wrong", "--on", "run.nc", "--no-report")[0] == 3
     assert "run.nc" in Path("report/index.html").read_text(encoding="utf-8")
 
 
@@ -290,7 +288,7 @@ def test_an_interrupted_run_is_saved(call, catalogue, monkeypatch, tmp_path):
 
 def test_lists_fit_in_80_columns(call):
     for name in ("scenarios", "theorems"):
-        code, out, err = call(name)
+        code, out, err = call(name, "--long")
         assert (code, err) == (0, "")
         assert max(map(len, out.splitlines())) <= 80
         assert "\x1b" not in out
@@ -323,8 +321,8 @@ def test_no_name_is_cut_and_what_was_expected_is_seen_at_any_width(call, offer, 
         ),
         (("falsify", "os-3", "--on", "three-agents-1d", "--budget", 1), ("iv-printed", "1.411e+04", "inconclusive")),
         (("stability", "hexagon", "--start", "start"), ("breathing", "1.9637", "0.09292", "translation", "-1.96375")),
-        (("theorems",), ("alpha-flocking-strict", "Definition", "positions")),
-        (("scenarios",), ("algorithm1-flocks", "fragments")),
+        (("theorems", "--long"), ("alpha-flocking-strict", "Definition", "positions")),
+        (("scenarios", "--long"), ("algorithm1-flocks", "fragments")),
         (("lattice", "line:4"), ("infinitesimally", "quantitative", "α-lattice")),
         (("run", "three-agents-1d", "-o", "run.nc"), ("normalised_velocity_mismatch:", "3.2594e+05", "-0.00091")),
     ],

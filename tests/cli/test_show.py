@@ -1,10 +1,9 @@
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
 
+from flockana.base.errors import FileError
 from flockana.cli.picture import ensure_file
 from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import complain
@@ -40,5 +39,7 @@ def test_what_is_wrong_is_one_line_on_the_error_stream(capsys):
 
 def test_a_file_that_is_not_asked_for_is_never_wrong(tmp_path):
     ensure_file(None, (".png",))
-    ensure_file(tmp_path / "new" / "it.PNG", (".png",))
-    assert (tmp_path / "new").is_dir()
+    ensure_file(tmp_path / "it.PNG", (".png",))
+    with pytest.raises(FileError, match=r"make it first: mkdir -p .*new"):
+        ensure_file(tmp_path / "new" / "it.PNG", (".png",))
+    assert not (tmp_path / "new").exists()

@@ -1,12 +1,11 @@
 """Lectures as notebooks: which cells a version keeps, what a student's copy gives away, and every check by answers."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re
 import subprocess
 import sys
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ import pytest
 import flockana as fl
 from flockana import lattice
 from flockana.base.errors import ArgumentError
-from flockana.course import build, grade
+from flockana.course import build, grade, shows
 from flockana.course.pages import number_of
 from tests.course.answers import ANSWERS, connectivity
 
@@ -46,7 +45,9 @@ def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
     assert not tree.body  # it stands alone: one call, on constants
 
     def status(answer):
-        return eval(expression, {"grade": grade, "np": np, "fl": fl, "lattice": lattice, name: answer}).status
+        return eval(
+            expression, {"grade": grade, "shows": shows, "np": np, "fl": fl, "lattice": lattice, name: answer}
+        ).status
 
     assert len(wrong) >= 3
     assert len(right) >= 2
@@ -59,30 +60,69 @@ def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
 def test_versions_of_a_lecture(source):
     books = {version: build.notebook(source, version) for version in build.VERSIONS}
     exercises = list(build.exercises(source))
+    checked = [each for each in exercises if each.kind not in build.WRITTEN]
     assert [each.number for each in exercises] == list(range(1, len(exercises) + 1))
     assert len(exercises) >= 5
     assert all(each.points == each.level for each in exercises)
     assert max(each.level for each in exercises) > 1
-    assert {each.name for each in exercises} == set(ANSWERS[number_of(source)])
+    assert {each.name for each in checked} == set(ANSWERS[number_of(source)])
     for version, book in books.items():
-        assert len(of(book, "check")) == len(of(book, "exercise")) == len(exercises)
+        assert len(of(book, "check")) == len(checked)
+        assert len(of(book, "exercise")) == len(exercises)
         assert len(of(book, "answer")) == (0 if version == "solutions" else len(exercises))
         assert len(of(book, "solution")) == (len(exercises) if version == "solutions" else 0)
-    assert all("= ..." in text for text in of(books["student"], "answer"))
+    assert all("= ..." in text or "*Your answer:*" in text for text in of(books["student"], "answer"))
 
 
-def test_every_kind_of_exercise_is_asked_for_and_outputs_are_read_once_at_most():
-    table = {number_of(source): [each.kind for each in build.exercises(source)] for source in SOURCES}
-    assert [*table] == ["00", "00a", *(f"{k:02d}" for k in range(1, 14)), "A1", "A2"]
-    for number, kinds in table.items():
+def test_every_lecture_asks_for_a_proof_for_parts_and_for_the_player():
+    table = {number_of(source): list(build.exercises(source)) for source in SOURCES}
+    lectures = [number for number in table if not number.startswith("A")]
+    assert lectures == ["00", "00a", *(f"{k:02d}" for k in range(1, len(lectures) - 1))]
+    for source in SOURCES[: len(lectures)]:
+        number, kinds = number_of(source), [each.kind for each in table[number_of(source)]]
+        assert len(kinds) >= 6, number
         assert kinds.count("reading") <= 1, number
-        assert kinds.count("words") >= 1, number
-        assert {"derivation", "design"} & set(kinds), number
-    asked = [kind for kinds in table.values() for kind in kinds]
+        assert {"proof", "player"} <= set(kinds), number
+        posed = of(build.notebook(source, "student"), "exercise")
+        assert any("(a)" in text and "(b)" in text for text in posed), number
+    asked = [each.kind for posed in table.values() for each in posed]
+    assert asked.count("project") >= len(lectures) // 3
     assert asked.count("counterexample") >= 5
     assert asked.count("derivation") >= 20
     assert asked.count("design") >= 8
     assert set(asked) == set(build.KINDS)
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_an_answer_takes_no_name_that_the_lecture_uses(source):
+    """Run All, with answers still missing, must not break a later cell."""
+    names = {each.name for each in build.exercises(source)}
+    code = "\n".join(
+        c.source for c in build.notebook(source, "student").cells if c.cell_type == "code" and not build.tags(c)
+    )
+    used = {node.id for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Name)}
+    assert not names & used
+
+
+REWRITTEN = ("00", "00a", "01", "02", "03", "04", "05", "06", "13")
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
+def test_captions_count_the_figures(source):
+    """A figure that the text speaks of has a number: that of the lecture, and its place."""
+    text = source.read_text(encoding="utf-8")
+    number = re.sub(r"^0(?=\d)", "", number_of(source))
+    found = re.findall(r"\*\*Figure (\w+)\.(\d+)\.\*\*", text)
+    assert found == [(number, str(k + 1)) for k in range(len(found))]
+    assert len(found) >= (2 if number_of(source) in REWRITTEN else 0)
+
+
+@pytest.mark.parametrize("source", [s for s in SOURCES if number_of(s) in REWRITTEN], ids=lambda path: path.stem)
+def test_a_lecture_is_more_than_a_companion_to_its_code(source):
+    texts = [c.source for c in build.notebook(source, "student").cells if c.cell_type == "markdown"]
+    taught = " ".join(texts[:1] + texts[2:-1])  # without the table of symbols and the references
+    words = len(re.findall(r"[^\W\d_]{2,}", re.sub(r"\$\$.*?\$\$|\$[^$]+\$", " x ", taught, flags=re.DOTALL)))
+    assert words >= (1000 if number_of(source) == "00" else 1500)
 
 
 @pytest.mark.parametrize("number", ["00a", "02", "03", "04", "05", "08", "09", "11", "12", "13"])
@@ -106,7 +146,7 @@ def test_lecture_09_calls_proved_what_is_proved_and_nothing_else():
     text = " ".join(cell.source for cell in build.notebook(source, "student").cells if cell.cell_type == "markdown")
     assert "Then $\\bar H$ is continuous" in text
     assert "Both are proved." in text
-    assert "velocities match *within* components, is seen in this run and not proved" in text
+    assert "velocities match *within* components is seen in this run and not proved" in " ".join(text.split())
     run = fl.simulate(fl.DeadZoneFlocking(), [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
     claims = fl.verify("dead-zone-1-corrected", run).claims
     assert {claim.name for claim in claims if claim.proof is not None} == {
@@ -130,13 +170,14 @@ def test_an_assignment_states_the_points_that_its_questions_give(source):
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_what_a_person_reads_has_a_rubric_with_as_many_parts_as_points(source):
-    asked = build.exercises(source)
-    for each, solution in zip(asked, of(build.notebook(source, "solutions"), "solution"), strict=True):
-        assert (each.kind == "words") == (each.form == "text")
-        if each.kind == "words":
-            rubric = solution.partition("# Rubric, a point each:\n")[2]
+    asked, solutions = list(build.exercises(source)), of(build.notebook(source, "solutions"), "solution")
+    assert len(asked) == len(solutions)
+    for each, solution in zip(asked, solutions, strict=True):
+        rubric = solution.partition("**Rubric, a point each:**")[2]
+        assert (each.kind in build.WRITTEN) == (each.form == "text") == bool(rubric)
+        if rubric:
             assert rubric.rstrip().endswith(".")
-            assert rubric.count(";") + 1 == each.points
+            assert rubric.count(";") + 1 == each.points, each
 
 
 @pytest.mark.parametrize("head", ["**1.** ★ (1 point) How", "**1.** ★ (1 point, riddle) How", "1. How"])
@@ -176,29 +217,44 @@ def test_a_number_that_is_not_exact_says_to_what_precision(source):
     """The tolerance is the one that the question states."""
     words = {2: "two significant", 3: "three significant", 4: "four significant"}
     solved = build.notebook(source, "solutions")
-    for text, check in zip(of(solved, "exercise"), of(solved, "check"), strict=True):
+    posed = [cell.source for cell in solved.cells if {"exercise", "check"} & set(build.tags(cell))]
+    for text, check in pairwise(posed):
+        if "grade(" not in check:
+            continue
         options = {each.arg: each.value for each in ast.parse(check).body[-1].value.keywords}
         right = ast.parse(check).body[-1].value.args[1]
         said = " ".join(text.split()).lower()
         if "digits" in options:
             assert words[options["digits"].value] in said
+        elif "within" in options:
+            assert "to within" in said
         elif isinstance(right, ast.Constant | ast.UnaryOp) and build.asked(check)[1] == "number":
             assert "exactly" in said or "whole number" in said or "nearest integer" in said
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_a_notebook_installs_flockana_where_it_is_missing_and_only_there(source, monkeypatch):
-    (cell,) = of(build.notebook(source, "student"), "install")
-    assert build.notebook(source, "student").cells[2].source == cell  # before anything is imported
+    address = "git+https://example.org/flockana"
+    book = build.notebook(source, "student", address=address)
+    (cell,) = of(book, "install")
+    assert book.cells[2].source == cell  # before anything is imported
     installed = []
-    plain = cell.replace('%pip install --quiet "flockana[course]"', 'installed.append("flockana[course]")')
+    plain = cell.replace('%pip install --quiet "flockana[course] @ {address}"', "installed.append(address)")
     assert plain != cell
     exec(plain.partition("    from pathlib")[0], {"installed": installed})
     assert installed == []
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     exec(plain.partition("    from pathlib")[0], {"installed": installed})
-    assert installed == ["flockana[course]"]
+    assert installed == [address]
     assert ("copy_companions" in cell) == (number_of(source) == "11")
+    (open_,) = of(build.notebook(source, "student"), "install")
+    with pytest.raises(RuntimeError, match="put the address"):
+        exec(
+            open_.replace("%pip", "#")
+            .replace("if missing:\n", "if missing:\n    pass\n")
+            .partition("    from pathlib")[0],
+            {},
+        )
 
 
 def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):

@@ -1,7 +1,5 @@
 """Files of the course where some are already: all of them or none."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.base.errors import FileError

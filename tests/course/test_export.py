@@ -1,7 +1,5 @@
 """Masters for graders: points, hidden tests, and where answers are read by a person."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -43,17 +41,20 @@ def test_otter_gives_all_points_to_the_hidden_test(source):
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_nbgrader_marks_every_answer_and_test(source):
     book, asked = export.master(source, "nbgrader"), list(build.exercises(source))
-    marked = [cell for cell in code(book) if "nbgrader" in cell.metadata]
+    marked = [cell for cell in book.cells if "nbgrader" in cell.metadata]
     names = [cell.metadata["nbgrader"]["grade_id"] for cell in marked]
     assert len(names) == len(set(names))
     graded = [cell for cell in marked if cell.metadata["nbgrader"]["grade"]]
     assert [cell.metadata["nbgrader"]["points"] for cell in graded] == [each.points for each in asked]
     for each, cell in zip(asked, graded, strict=True):
         by_hand = each.form == "text"
+        assert cell.cell_type == cell.metadata["nbgrader"]["cell_type"] == ("markdown" if by_hand else "code")
         assert cell.metadata["nbgrader"]["solution"] is by_hand
         assert ("### BEGIN HIDDEN TESTS" in cell.source) is not by_hand
+        assert ("### BEGIN SOLUTION" in cell.source) is by_hand
         left = re.sub(r"### BEGIN (.*?)\n.*### END \1", "", cell.source, flags=re.DOTALL)
         assert "grade(" not in left
+        assert "Rubric" not in left
     unmarked = "\n".join(cell.source for cell in code(book) if "nbgrader" not in cell.metadata)
     assert "grade(" not in unmarked  # what both programs would leave in the student's copy
 

@@ -1,7 +1,5 @@
 """Pictures behind a slider: one for each value, in order, in a page of its own."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

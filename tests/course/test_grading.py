@@ -1,7 +1,5 @@
 """Answers are graded: to the precision asked for, whatever type they come in, and never with an exception."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

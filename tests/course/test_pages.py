@@ -17,7 +17,7 @@ _GREEK = (
 )
 _NO_SYMBOL = r"\\(?:text|mathrm|operatorname|mathbf|mathbb|begin|end)(?:\{[^{}]*\}|\s*\w)"
 _INDEX = r"(?:\{[^{}]*\}|\\[a-zA-Z]+|[\w*])"
-_DUMMY = set("efgijkpqstuvwxyz")  # sums, functions and their arguments; and what has the same letter in every lecture
+_DUMMY = set("efgijkpqtuvxyz")  # sums, functions and their arguments; and what has the same letter in every lecture
 
 
 def letters(formula):
@@ -61,7 +61,7 @@ def test_a_reference_reads_as_text():
     ("old", "new", "message"),
     [
         ('[01]\nafter = ["00"]', '[01]\nafter = ["13"]', "lecture 01 builds on .*13"),
-        ("[13]\n", "[14]\n", "lectures.toml lists .*'14'"),
+        ("[13]\n", "[16]\n", "lectures.toml lists .*'16'"),
     ],
 )
 def test_a_map_that_does_not_fit_is_refused(tmp_path, old, new, message):

@@ -1,7 +1,5 @@
 """Slides: one for each heading, in order, with all that a lecture shows and nothing that it asks."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The solver's own steps between samples: bounds at all times that output times cannot weaken, in bounded memory."""
 
-from __future__ import annotations
-
 import re
 import tracemalloc
 from dataclasses import replace

@@ -17,12 +17,12 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import BetaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.delayed import Delayed
 from flockana.laws.law import Law
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm1
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
-from flockana.stability.delayed_run import simulate_delayed
 from flockana.theorems import verify
 
 R, D = 8.4, 7.0
@@ -288,20 +288,26 @@ class TestRuns:
 
 
 class TestDelayed:
-    def test_a_leap_names_the_steps_that_it_takes(self):
-        with pytest.raises(ArgumentError, match=r"steps = 1 per delay: .* expected steps >= \d+"):
-            simulate_delayed(DAMPED, *HEAD_ON, (0.0, 14.0), delay=2.0, steps=1)
+    def test_a_leap_names_the_step_that_it_takes(self):
+        with pytest.raises(ArgumentError, match=r"dt = 2: .* expected dt <= 0.\d+"):
+            simulate(Delayed(DAMPED, 2.0), *HEAD_ON, (0.0, 14.0), dt=2.0)
 
-    def test_steps_enough_see_it(self):
-        late = simulate_delayed(DAMPED, *HEAD_ON, (0.0, 14.0), delay=0.01, steps=1)
-        fine = simulate_delayed(DAMPED, *HEAD_ON, (0.0, 14.0), delay=0.01, steps=4)
+    def test_steps_short_enough_see_it(self):
+        late, fine = (simulate(Delayed(DAMPED, 0.01), *HEAD_ON, (0.0, 14.0), dt=dt) for dt in (0.01, 0.0025))
         assert np.abs(late.p[-1] - HEAD_ON[1]).max() > 1.0
         np.testing.assert_allclose(late.p[-1], fine.p[-1], atol=1e-2)
 
     def test_what_was_heard_before_the_start_counts(self):
         """They passed each other before the start, and hear of it after."""
         with pytest.raises(ArgumentError, match=r"within the step from t = -"):
-            simulate_delayed(DAMPED, [[100.0], [-100.0]], [[150.0], [-150.0]], (0.0, 0.1), delay=2.0, steps=2)
+            simulate(Delayed(DAMPED, 2.0), [[100.0], [-100.0]], [[150.0], [-150.0]], (0.0, 1.0), dt=1.0)
+
+    def test_output_times_change_nothing(self):
+        every, some = (
+            simulate(Delayed(DAMPED, 0.01), *HEAD_ON, (0.0, 1.0), dt=0.01, t_eval=times) for times in (None, [0.5, 1.0])
+        )
+        np.testing.assert_array_equal(some.q, every.q[[50, 100]])
+        np.testing.assert_array_equal(some.t, every.t[[50, 100]])
 
 
 class TestVerdicts:

@@ -1,7 +1,5 @@
 """The source's words for groups."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

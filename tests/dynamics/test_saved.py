@@ -1,7 +1,5 @@
 """Files of runs against damage: whatever happens to the bytes, the numbers are those that were saved, or none."""
 
-from __future__ import annotations
-
 import json
 import os
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Integration: orders, exact solutions, every method, and runs that end early with nothing lost."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Runs as data: derived series by hand, files there and back, and files that are not ours."""
 
-from __future__ import annotations
-
 import pickle
 import re
 

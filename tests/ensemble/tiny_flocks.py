@@ -1,7 +1,5 @@
 """Scenarios of a few milliseconds for ensembles, in a module that worker processes can import."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -1,7 +1,5 @@
 """γ-agents that are systems: motions in closed form, units, pieces that join, copies, and what is refused."""
 
-from __future__ import annotations
-
 import pickle
 from math import cos, exp, sin
 

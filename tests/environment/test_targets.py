@@ -1,7 +1,5 @@
 """γ-agents: positions by hand, rates against differences, mismatches named."""
 
-from __future__ import annotations
-
 import re
 from math import pi
 

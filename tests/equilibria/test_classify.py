@@ -1,7 +1,5 @@
 """The spectrum off the rigid motions, against an explicit basis of their complement."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

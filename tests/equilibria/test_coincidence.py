@@ -1,7 +1,5 @@
 """How many agents a flock needs to hold two at one place."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

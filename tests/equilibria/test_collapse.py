@@ -1,7 +1,5 @@
 """Collapse under the pull of the γ-agent."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.base.errors import ArgumentError, SolverError

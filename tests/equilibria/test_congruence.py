@@ -1,7 +1,5 @@
 """Flocks that are one up to motion, mirror and numbering."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Minima of large flocks: against IPOPT from the same starts, by their residuals, and where the net gives way."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.distance import pdist

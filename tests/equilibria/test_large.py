@@ -1,7 +1,5 @@
 """The few curvatures of a large flock against its whole spectrum: minima, hinges, loose parts, saddles."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Records of equilibria: verified when they are read, and refused when they are not what they say."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """States of rest of laws that need not have a potential."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse import csr_array

@@ -1,7 +1,5 @@
 """Search from many starts: what is found, and that each is found once."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Terminal states, rigid motions, curvature and the gradient flow."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np

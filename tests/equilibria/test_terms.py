@@ -1,7 +1,5 @@
 """The generated CasADi expressions against the kernels and against differences: two independent writings of one law."""
 
-from __future__ import annotations
-
 import casadi as ca
 import numpy as np
 import pytest

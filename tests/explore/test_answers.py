@@ -1,7 +1,5 @@
 """What a page is told of a case: its form, run, verdicts, poles and modes, and errors in the library's own words."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A case is what its Python makes: the same law, flock and run, to the last bit."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 

@@ -1,7 +1,5 @@
 """Numbers of a law by path: found, replaced as the classes allow, and written as Python that makes the same law."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The server: no token, no page; each tab has a process of its own; the newest case is the one that is answered."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import socket

@@ -1,7 +1,5 @@
 """A run under way: its first frames are those of the run, it can be broken off, and too large a one is refused."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A worker answers the newest question: what is under way is broken off for it, and none is lost."""
 
-from __future__ import annotations
-
 import threading
 import time
 from contextlib import suppress

@@ -1,31 +1,24 @@
 """The search breaks what is false and does not break what is true; its findings are whole, repeatable and portable."""
 
-from __future__ import annotations
-
-import json
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
-from flockana.falsify import Counterexample, falsify, replay
-from flockana.falsify.evaluate import Evaluation, Problem, units
-from flockana.falsify.grade import FAILED, grade, missing
+from flockana.falsify import falsify, replay
+from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
-from flockana.falsify.space import law_parameter, search_space
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.falsify.space import search_space
+from flockana.laws.olfati_saber import Algorithm2
 from flockana.scenarios import scenario
-from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems import Hypothesis, Theorem, Tolerances, theorem, verify
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.leads import bridge, pairs_apart, squash, strained
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.slides.energy_printed import _printed_rate
@@ -135,187 +128,6 @@ class TestDoesNotBreakWhatIsTrue:
         found = falsify("energy", coarse, claim="balance", budget=8)
         assert not found.broken
         assert "refuted" not in found.statuses["balance"]
-
-
-class TestGrades:
-    def test_refuted_before_judged_before_vacuous_before_failed(self):
-        far = [Hypothesis("a", "unmet", -1e9), Hypothesis("b", "unmet")]
-        grades = [
-            grade(Claim("i", "refuted", margin=-5.0), []),
-            grade(Claim("i", "refuted", margin=0.0), []),
-            grade(Claim("i", "inconclusive", margin=-1e9), []),
-            grade(Claim("i", "verified", margin=1e-9), []),
-            grade(Claim("i", "verified", margin=1e9), [], lead=0.5),
-            grade(Claim("i", "vacuous", margin=-1e9), [Hypothesis("a", "unmet", -1e-9)]),
-            grade(Claim("i", "vacuous"), far, lead=1.0),
-            FAILED,
-        ]
-        assert grades == sorted(grades)
-        assert len(set(grades)) == len(grades)
-
-    def test_numbers(self):
-        assert grade(Claim("i", "verified", margin=6.0), [], scale=2.0) == 0.75
-        assert grade(Claim("i", "refuted", margin=-1.0), []) == -2.5
-        assert grade(Claim("i", "refuted"), []) == -2.0
-        assert grade(Claim("i", "verified"), [], lead=1.0) == 1.001
-        assert grade(Claim("i", "inconclusive", margin=float("nan")), []) == 0.0
-        assert (squash(float("-inf")), squash(0.0)) == (-1.0, 0.0)
-        assert missing([Hypothesis("a", "assumed", -1.0), Hypothesis("b", "unmet", float("nan"))]) == 1.0
-
-    def test_how_well_a_limit_is_known_does_not_draw_the_search(self):
-        """A flock that parts for ever has the margin −1 of no certificate: it is no nearer to a strained limit."""
-        parts, settles, breaks, nothing = (
-            Claim("i", status, margin=margin, about="limit")
-            for status, margin in (("inconclusive", -1.0), ("verified", 1e-6), ("refuted", -1.0), ("vacuous", None))
-        )
-        assert grade(settles, [], lead=0.9) < grade(parts, [], lead=0.99)
-        assert grade(breaks, [], lead=1.0) == -2.5
-        assert grade(nothing, []) == 2.0
-
-    @pytest.mark.parametrize("margin", [-1e9, -1.0, -1e-12])
-    def test_numbers_that_contradict_a_proof_neither_break_it_nor_draw_the_search(self, margin):
-        claim = judged("i", Enclosure.of(margin), proof="cohesion")
-        assert (claim.status, claim.contradicts) == ("inconclusive", "cohesion")
-        assert grade(claim, []) == 0.0
-        assert not Evaluation(0.0, "i", Verdict("x", (), (claim,))).found
-
-    def test_a_surrogate_never_outweighs_a_count(self):
-        for k in range(30):
-            more, less = (Claim("i", "verified", margin=float(m)) for m in (k, k + 1))
-            assert grade(more, [], lead=1.0) < grade(less, [], lead=0.0)
-
-    def test_units_are_the_margins_at_the_start_where_they_have_a_size(self):
-        margins = {"a": -2.0, "b": 0.0, "c": None, "d": float("inf"), "e": float("nan"), "f": 1e-8}
-        claims = tuple(Claim(name, "verified", margin=margin) for name, margin in margins.items())
-        assert units(Verdict("x", (), claims)) == {"a": 2.0, "f": 1e-8}
-
-    def test_every_claim_that_has_a_surrogate_exists(self):
-        runs = {"os-3": "three-agents-1d", "E13": "three-agents-1d", "su-informed": "informed-through"}
-        led = [(name, claim, lead) for name in theorems() for claim, lead in theorem(name).leads.items()]
-        assert len(led) == 10
-        ran = cache(lambda entry: scenario(entry).run())
-        for name, claim, lead in led:
-            run = ran("five-agents" if name.startswith("alpha") else runs.get(name, "head-on-collision"))
-            one = verify(name, run).claim(claim)
-            assert 0.0 <= lead(run, one) <= 1.0
-
-    @pytest.mark.parametrize("entry", ["cucker-smale", "headings-meet", "minimal-2d-printed", "tanner-switching"])
-    def test_no_surrogate_is_asked_where_the_law_is_another(self, entry):
-        """It may have no lattice and no pair force, which surrogates measure by."""
-        begin = scenario(entry)
-        for name in theorems():
-            if theorem(name).leads:
-                found = falsify(name, begin, budget=1)
-                assert {found.worst_status(claim) for claim in found.statuses} == {"vacuous"}, name
-
-    def test_a_surrogate_is_asked_where_a_claim_alone_is_vacuous(self):
-        run, asked = HEAD_ON.run(), Problem(None, OWN, Tolerances(), surrogate=lambda run, claim: 0.5)
-        claim = Claim("slow", "vacuous")
-        met, unmet = (Verdict("slow", (Hypothesis("a", status, 0.0),), (claim,)) for status in ("met", "unmet"))
-        assert asked.graded(run, met).grade == 2.0 + 0.5e-3
-        assert asked.graded(run, unmet).grade == 2.0
-
-
-def made_up(*states):
-    q = np.array(states, dtype=float)
-    return Trajectory(np.arange(len(q), dtype=float), q, 0.0 * q, 0.0 * q, Algorithm1())
-
-
-class TestSurrogates:
-    def test_the_nearest_pair_that_has_not_met(self):
-        run = made_up([[0.0], [1.0], [9.0]], [[1.0], [0.0], [7.0]])  # agents 0 and 1 change places
-        assert pairs_apart(run, Claim("i", "verified")) == pytest.approx(squash(6.0 / 7.0), rel=1e-12)
-
-    def test_the_longest_link_that_holds_the_flock(self):
-        run = made_up([[0.0], [4.0], [8.0]], [[0.0], [4.0], [12.4]])
-        assert bridge(run, Claim("i", "verified")) == pytest.approx(0.5, rel=1e-12)  # 8.4 of r = 8.4
-        assert bridge(made_up([[0.0]], [[1.0]]), Claim("i", "verified")) == 1.0
-
-    def test_strain_over_time(self):
-        run = made_up([[0.0], [7.0]], [[0.0], [3.5]], [[0.0], [7.0]])
-        assert strained(run, Claim("i", "verified")) == pytest.approx(1.0 - 0.5 * 0.5, rel=1e-12)
-
-
-class TestSpace:
-    def test_the_box_is_the_flock_s_with_a_tenth_of_room(self):
-        case = replace(HEAD_ON, q0=np.array([[0.0, 5.0], [10.0, 5.0]]), p0=np.array([[3.0, 0.0], [-1.0, 0.0]]))
-        space = search_space(case)
-        np.testing.assert_array_equal(space.low, [-1.0, 4.0, -1.0, 4.0, -6.0, -6.0, -6.0, -6.0])
-        np.testing.assert_array_equal(space.high, [11.0, 6.0, 11.0, 6.0, 6.0, 6.0, 6.0, 6.0])
-        start = space.case(space.start)
-        np.testing.assert_allclose(start.q0, case.q0, rtol=1e-14)
-        np.testing.assert_allclose(start.p0, case.p0, atol=1e-14)
-
-    def test_a_flock_at_one_place_and_at_rest_has_room_all_the_same(self):
-        space = search_space(replace(HEAD_ON, q0=np.zeros((2, 1)), p0=np.zeros((2, 1))))
-        assert (space.low.tolist(), space.high.tolist()) == ([-1.0] * 4, [1.0] * 4)
-
-    def test_a_region_about_each_agent_or_a_box_for_all(self):
-        near = search_space(HEAD_ON, vary="q", region=0.5)
-        np.testing.assert_array_equal(near.low, [-0.5, 6.5])
-        box = search_space(HEAD_ON, vary=["q"], region=(2.0, [9.0]))
-        np.testing.assert_array_equal(box.case(np.zeros(2)).q0, [[2.0], [2.0]])
-        np.testing.assert_array_equal(box.start, [0.0, 5.0 / 7.0])  # agent 0 starts outside: the nearest point
-
-    def test_parameters_are_varied_on_a_logarithmic_scale_and_what_is_not_varied_stays(self):
-        ranges = {"gains.c1_alpha": (0.3, 3000.0), "gains.c2_gamma": (0.0, 4.0)}
-        space = search_space(HEAD_ON, vary=(), parameters=ranges)
-        assert space.dimension == 2
-        middle = space.case(np.full(2, 0.5))
-        assert law_parameter(middle.law, "gains.c1_alpha") == pytest.approx(30.0, rel=1e-12)
-        assert law_parameter(middle.law, "gains.c2_gamma") == 2.0
-        assert middle.q0 is HEAD_ON.q0
-        assert middle.law.alpha == HEAD_ON.law.alpha
-        assert space.start[0] == pytest.approx(0.5, rel=1e-12)
-        ends = [law_parameter(space.case(np.full(2, x)).law, "gains.c1_alpha") for x in (0.0, 1.0)]
-        assert ends == [0.3, 3000.0]
-
-    @pytest.mark.parametrize(
-        ("options", "message"),
-        [
-            ({"vary": "v"}, "vary = 'v': expected 'q', 'p', both"),
-            ({"vary": ("q", "q")}, "expected 'q', 'p', both"),
-            ({"vary": ()}, "nothing is varied"),
-            ({"region": -1.0}, "region = -1: expected a number > 0"),
-            ({"region": (1.0, 1.0)}, "expected low < high on every axis"),
-            ({"region": (1.0,)}, r"expected two bounds \(low, high\)"),
-            ({"region": ([0.0, 0.0], 1.0)}, "expected a number or 1 of them for each corner"),
-            ({"region": (0.0, np.inf)}, "expected finite numbers"),
-            ({"region": 1e-18}, "region = 1e-18: expected more than the rounding of positions up to 7, such as 7e-09"),
-            ({"region": 1e-300}, "region = 1e-300: expected more than the rounding"),
-            ({"region": 1e308}, "region = 1e[+]308: expected bounds whose difference is a finite number"),
-            ({"region": (-1e308, 1e308)}, r"region = \(-1e[+]308, 1e[+]308\): expected bounds whose difference"),
-            ({"speed": 1e308}, "speed = 1e[+]308: expected bounds whose difference"),
-            ({"speed": 0.0}, "speed = 0: expected a number > 0"),
-            ({"parameters": {"gains.c3": (1.0, 2.0)}}, "gains.c3: Algorithm1 has no such number"),
-            ({"parameters": {"alpha": (1.0, 2.0)}}, "alpha: Algorithm1 has no such number"),
-            ({"parameters": {"gains.c1_alpha": (2.0, 1.0)}}, r"gains.c1_alpha = \(2, 1\): expected low < high"),
-            ({"parameters": {"gains.c1_alpha": 2.0}}, r"expected two bounds \(low, high\)"),
-        ],
-    )
-    def test_bad_bounds(self, options, message):
-        with pytest.raises(ArgumentError, match=message):
-            search_space(HEAD_ON, **options)
-
-
-class TestTheProblem:
-    """Several claims at once: each margin in its own unit, and none that does not decide."""
-
-    RUN = made_up([[0.0], [7.0]], [[0.0], [7.0]])
-
-    def worst(self, *claims, scales):
-        problem = Problem(search_space(HEAD_ON), OWN, Tolerances(), scales=scales)
-        return problem.graded(self.RUN, Verdict("slow", (), claims))
-
-    def test_margins_are_compared_in_their_units(self):
-        claims = Claim("a", "verified", margin=3.0), Claim("b", "verified", margin=1e-6)
-        assert self.worst(*claims, scales={"a": 9.0, "b": 1e-8}).claim == "a"
-        assert self.worst(*claims, scales={}).claim == "b"
-
-    def test_a_negative_margin_that_does_not_decide_does_not_draw_the_search(self):
-        found = self.worst(Claim("limit", "inconclusive", margin=-9.0), Claim("b", "verified", margin=0.0), scales={})
-        assert found.grade == 0.0
-        assert self.worst(Claim("limit", "inconclusive", margin=-9.0), scales={}).grade == 0.0
 
 
 class TestSearch:
@@ -439,88 +251,6 @@ class TestBadInput:
     def test_is_named_before_the_search(self, arguments, options, message):
         with pytest.raises(ArgumentError, match=message):
             falsify(*arguments, **({"budget": 5} | options))
-
-
-class TestTheFile:
-    def test_it_breaks_again_to_the_bit(self, collision, tmp_path):
-        path = collision.save(tmp_path / "c.json")
-        again = Counterexample.load(path)
-        np.testing.assert_array_equal(again.q0, collision.q0)
-        np.testing.assert_array_equal(again.p0, collision.p0)
-        assert again.law == collision.case.law
-        assert (again.theorem, again.claim, again.margin) == ("collision-energy", "twice", collision.margin)
-        verdict = replay(path)
-        assert verdict.claim("twice").status == "refuted"
-        assert verdict.claim("twice").witness == collision.verdict.claim("twice").witness
-        assert [p.name for p in tmp_path.iterdir()] == ["c.json"]
-
-    def test_options_of_the_run_and_tolerances_are_kept(self, tmp_path):
-        case = replace(HEAD_ON, options={"rtol": 1e-6, "t_eval": np.linspace(0.0, 3.0, 200)})
-        tolerances = Tolerances(contact=1e-3)
-        found = falsify("collision-energy", case, claim="twice", budget=40, tolerances=tolerances)
-        again = Counterexample.load(found.save(tmp_path / "c.json"))
-        assert again.tolerances == tolerances
-        assert len(again.run().t) == 200
-        assert again.run().stats["rtol"] == 1e-6
-
-    def test_a_theorem_of_one_s_own_is_brought_along(self, tmp_path):
-        path = falsify(OWN, HEAD_ON, budget=40, vary="p", speed=40.0).save(tmp_path / "c.json")
-        with pytest.raises(UnknownNameError, match="unknown theorem 'slow'"):
-            replay(path)
-        assert replay(path, theorem=OWN).claim("slow").status == "refuted"
-
-    def test_there_is_none_where_nothing_broke(self, tmp_path):
-        found = falsify("collision-energy", HEAD_ON, claim="below", budget=2)
-        with pytest.raises(ArgumentError, match="collision-energy:below did not break"):
-            found.save(tmp_path / "c.json")
-
-    def test_a_folder_that_does_not_exist(self, collision, tmp_path):
-        with pytest.raises(FileError, match=r"cannot write .*choose another file"):
-            collision.save(tmp_path / "no" / "c.json")
-
-    @pytest.mark.parametrize(
-        ("change", "message"),
-        [
-            ({"format": "flockana-trajectory"}, "holds no counterexample .*'flockana-trajectory'"),
-            ({"format_version": 2}, "is of format 2, expected 1: use the flockana that wrote it"),
-            ({"q0": [[0.0], ["x"]]}, "is damaged: q"),
-            ({"q0": [[0.0]]}, "is damaged: q has shape"),
-            ({"law": {"type": "flockana.laws.olfati_saber:Algorithm9"}}, "is damaged: cannot rebuild"),
-            ({"law": [1.0]}, "is damaged: law"),
-            ({"t_span": [3.0, 0.0]}, "is damaged: t_span"),
-            ({"options": [1]}, "is damaged"),
-            ({"tolerances": {"energie": 1.0}}, "is damaged: .*energie"),
-            ({"theorem": 3}, "is damaged: 3 is no text"),
-            ({"margin": "x"}, "is damaged"),
-        ],
-    )
-    def test_damage_is_named(self, collision, tmp_path, change, message):
-        path = collision.save(tmp_path / "c.json")
-        path.write_text(json.dumps(json.loads(path.read_text()) | change))
-        with pytest.raises(FileError, match=message):
-            replay(path)
-
-    @pytest.mark.parametrize(
-        ("text", "message"), [("{", "is no JSON"), ("[1]", "format 'list'"), ("{}", "format None")]
-    )
-    def test_what_is_no_file_of_ours(self, tmp_path, text, message):
-        path = tmp_path / "c.json"
-        path.write_text(text)
-        with pytest.raises(FileError, match=message):
-            replay(path)
-        with pytest.raises(FileError, match=r"cannot read .*No such file"):
-            replay(tmp_path / "none.json")
-        path.write_bytes(bytes(range(128, 200)))
-        with pytest.raises(FileError, match="is no JSON"):
-            replay(path)
-
-    def test_a_missing_entry(self, collision, tmp_path):
-        path = collision.save(tmp_path / "c.json")
-        data = json.loads(path.read_text())
-        del data["p0"]
-        path.write_text(json.dumps(data))
-        with pytest.raises(FileError, match="is damaged: 'p0'"):
-            replay(path)
 
 
 class TestTheClaimsForTheSearch:

@@ -1,7 +1,5 @@
 """The α-interaction in other units: lengths follow, and a time is no part of it."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.base.units import rescale

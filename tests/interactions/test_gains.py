@@ -1,7 +1,5 @@
 """Per-agent gains: one gain per agent in every place that reads c1γ or c2γ."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from dataclasses import replace

@@ -3,8 +3,6 @@
 The reference sums in another order: n terms of rounding 1e-16 leave three orders of room at n = 1000.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Who may be near an agent: never one too few, in rising order; and zone flocking over them, to the last bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

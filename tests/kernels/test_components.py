@@ -1,7 +1,5 @@
 """Components by union-find are those that scipy finds, in the same order, whatever the order and parts of the links."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse import coo_array

@@ -1,7 +1,5 @@
 """The dead-zone pair law: potential by quadrature and in mpmath, extremes, slopes, sums, zones, bad input."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import mpmath as mp

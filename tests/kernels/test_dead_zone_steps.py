@@ -1,7 +1,5 @@
 """Steps of the dead-zone law: those of Python's floats to the bit, whatever is kept of them."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Embeddings that prove a graph planar: found where networkx finds one, checked by Euler, and never believed."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx

@@ -1,7 +1,5 @@
 """The neighbour search: every pair once, strictly within range, wherever the agents are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

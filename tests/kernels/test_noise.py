@@ -1,7 +1,5 @@
 """Counter-based noise against SplitMix64 in whole numbers of Python, and its first moments."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

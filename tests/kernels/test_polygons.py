@@ -1,7 +1,5 @@
 """Points and ways against polygons: by hand, and against shapely where they touch, overlap and cross."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Who comes into range between two samples: against the roots of the same polynomials, and on straight ways exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import BPoly

@@ -1,7 +1,5 @@
 """Scalar functions: exact values by hand, slopes against differences, and the ends of the number line."""
 
-from __future__ import annotations
-
 from math import cos, inf, isnan, nan, pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Who is within reach of a ball, found without a branch."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Zone-based flocking's compiled step against a transcription of the paper's Algorithm 1 in plain loops."""
 
-from __future__ import annotations
-
 from math import isclose, tanh
 
 import numpy as np

@@ -4,8 +4,6 @@ It knows the commands that the export writes, and fails on any other. All pairs 
 linearly in the squared distance, energy and force over the distance.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

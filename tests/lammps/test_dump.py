@@ -1,7 +1,5 @@
 """Dumps of LAMMPS, read: whole ones as a run of a law, damaged ones with an error that says what is wrong."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What is written is read as LAMMPS documents it, by an emulator of its own, and moves agents as the law does."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Builders: links counted by hand, ratios by brute force, Harborth's number."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

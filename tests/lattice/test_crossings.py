@@ -1,7 +1,5 @@
 """Crossings against a brute force over all pairs of links in rational arithmetic, and every degenerate case by hand."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import combinations
 

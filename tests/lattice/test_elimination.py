@@ -1,7 +1,5 @@
 """Elimination by nested dissection against dense linear algebra: signs, solutions, and the positive matrix near it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array, eye_array

@@ -1,7 +1,5 @@
 """Edge-length error, classification, coordination and defects."""
 
-from __future__ import annotations
-
 from itertools import permutations
 
 import numpy as np

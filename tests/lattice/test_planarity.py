@@ -1,7 +1,5 @@
 """Planarity with its witness, link bounds, completeness."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx

@@ -1,7 +1,5 @@
 """Rigidity of frameworks whose answer is known, densely and sparsely."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

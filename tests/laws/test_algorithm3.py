@@ -1,7 +1,5 @@
 """Algorithm 3 against a dense reference, its own energy, and the symbolic expressions; bad input."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Laws put together from terms: what each composition has by being a sum, whatever its parts."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Velocity consensus alone: its force, power, Jacobian and compiled form, of all pairs or within a range."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf
 

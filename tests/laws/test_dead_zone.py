@@ -1,7 +1,5 @@
 """The dead-zone law: forces by hand, energy balance, derivatives, located switches, sliding, the Euler scheme."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Directed nets: the ordinary laws where all see alike, forces by hand where not, and the follower's energy."""
 
-from __future__ import annotations
-
 from math import cos, pi, sin
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The analytic Jacobians against complex steps of independent formulas, and against differences of the laws."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

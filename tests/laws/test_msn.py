@@ -1,7 +1,5 @@
 """The MSN project's map against a transcription in plain loops, and what its two peculiarities do."""
 
-from __future__ import annotations
-
 from math import cos, pi, sqrt
 
 import numpy as np

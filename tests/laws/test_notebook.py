@@ -1,7 +1,5 @@
 """The notebook's push: where it acts, how strongly, and what it does to the energy balance."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Algorithms 1 and 2: facts by hand, and what the boundary refuses. Sums against the reference: tests/kernels."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Agents that follow copies: Algorithm 2 where these are alike, the energy's balance, and how flocks part with them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

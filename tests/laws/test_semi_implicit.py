@@ -1,7 +1,5 @@
 """Which laws the compiled loop may step: those whose force it computes itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The laws on nets: force against gradient, power, Jacobian, the jump at R, and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

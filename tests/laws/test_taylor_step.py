@@ -1,7 +1,5 @@
 """The plainest step: exact for constant inputs, of first order, and the notebook's own loop written out."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

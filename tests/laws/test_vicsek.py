@@ -1,7 +1,5 @@
 """Averaged headings: the rule agent by agent, the circle that counts, the cut, noise that repeats."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Who moves as the leader does at the end of a run."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

@@ -1,7 +1,5 @@
 """What is measured of any run: over time, and the number that an ensemble keeps of it."""
 
-from __future__ import annotations
-
 from math import isnan
 
 import pytest

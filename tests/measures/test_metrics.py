@@ -1,7 +1,5 @@
 """Metrics: exact facts by hand."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

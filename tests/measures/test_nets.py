@@ -1,7 +1,5 @@
 """Nets on graphs small enough to count by hand; errata E7 and E8."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Between the samples: two crossings in one interval, bounds below analytic minima, first contacts."""
 
-from __future__ import annotations
-
 from math import comb
 
 import numpy as np

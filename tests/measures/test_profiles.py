@@ -1,7 +1,5 @@
 """Quantiles of the distances of all pairs, against a sort of them in plain loops."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.distance import pdist

@@ -1,7 +1,5 @@
 """Reynolds' rules: their sum is Algorithm 1, friends by the sign of stress, exact small cases."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The measures of any flock, of one whose numbers are known by hand."""
 
-from __future__ import annotations
-
 from math import hypot, isnan, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Joint connectivity over windows, and diameters, against their definitions."""
 
-from __future__ import annotations
-
 from math import isnan
 
 import numpy as np

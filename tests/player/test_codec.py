@@ -1,7 +1,5 @@
 """Runs as bytes and back: to float32 rounding, or to the step that was asked for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Marks in a player: the instants that claims point to, in order, each once."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

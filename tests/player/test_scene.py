@@ -1,7 +1,5 @@
 """What the player is given of a run: its states to float32, its world, its series."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

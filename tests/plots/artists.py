@@ -1,7 +1,5 @@
 """Axes to draw on, and what stands on them; matplotlib keeps places in space, and films, to itself."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures are closed after each test, and none changes matplotlib's global settings."""
 
-from __future__ import annotations
-
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import pytest

@@ -1,7 +1,5 @@
 """Films: frames at equal times, a view that holds still, files that are whole or not there."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from PIL import Image

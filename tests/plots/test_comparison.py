@@ -1,7 +1,5 @@
 """One start under many laws: the same scale for all, and lines that can be told apart without colour."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pictures of control: what is given is drawn, labelled with units, and nothing else."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The force curve shows its jumps with open and closed ends; the two energies are those of the run."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Curves between steps: exact where the velocity is a cubic, close to the solution where it is not."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import flockana as fl

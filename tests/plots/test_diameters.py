@@ -1,7 +1,5 @@
 """Diameters over time, and bands of joint connectivity."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.patches import Rectangle

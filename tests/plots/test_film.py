@@ -1,7 +1,5 @@
 """A film shows itself, saves itself, and refuses what cannot be filmed before any work."""
 
-from __future__ import annotations
-
 import pytest
 from PIL import Image
 

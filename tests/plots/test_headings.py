@@ -1,7 +1,5 @@
 """Averaged headings drawn: the numbers that are averaged, and links to agents on the circle."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

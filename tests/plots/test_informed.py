@@ -1,7 +1,5 @@
 """The survey of informed agents: ensemble, shares with intervals, and its plot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Obstacles, β-agents, clearance, components and Reynolds' rules, as drawn."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection

@@ -1,7 +1,5 @@
 """Phase portraits show the motion that they are given, over the level curves that they are given."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The project's connectivity over time beside that which tells connected nets."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Scales drawn at once say what matplotlib's say, where matplotlib's do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,7 +1,5 @@
 """Laws with a world of their own: snapshots and films show it, and the links of any law that has a range."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

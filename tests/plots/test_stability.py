@@ -1,7 +1,5 @@
 """Pole maps, mode shapes and mode films: what is drawn is what was given."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection

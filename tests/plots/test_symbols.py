@@ -1,7 +1,5 @@
 """Symbols are typeset wherever a label, a legend or a colour bar shows them; words stay words."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure

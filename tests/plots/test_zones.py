@@ -1,7 +1,5 @@
 """Figures of zone-based flocking: the artists hold the run's numbers; every law gets the figures made for it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection

@@ -1,7 +1,5 @@
 """What a proof says of its steps."""
 
-from __future__ import annotations
-
 
 def failing(steps):
     """Texts of those that do not hold, or of which the machine cannot tell."""

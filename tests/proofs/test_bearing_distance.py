@@ -1,7 +1,5 @@
 """The proofs about bearing-distance flocking: slips in springs, couplings and signs make their steps fail."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A proof backs the theorems whose claims cite it, and no others: read off the sources, in both directions."""
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """Verified equilibria: what is enclosed is what flockana computes; a wrong sign or too small a box proves nothing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The proof about dead-zone flocking: another factor, damping or primitive makes a step fail."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The compiled kernels lie within rounding of enclosures that hold, to 30 digits, for every scenario."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, ctx

@@ -1,7 +1,5 @@
 """Proofs and claims name each other, and a slip in a formula makes one fail; that they hold: `python -m proofs`."""
 
-from __future__ import annotations
-
 import inspect
 from functools import partial
 from importlib import import_module

@@ -1,7 +1,5 @@
 """The frame around the proofs: what fails, hangs, dies or lacks a library is never called proved, nor false."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import multiprocessing

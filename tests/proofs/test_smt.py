@@ -1,7 +1,5 @@
 """What a step rests on is what was proved: false constants put into the proofs, one at a time, make a step fail."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import types

@@ -1,7 +1,5 @@
 """The proofs of Theorem 5: a smaller constant, a wrong weight or a false embedding makes a step fail."""
 
-from __future__ import annotations
-
 import re
 from fractions import Fraction
 from itertools import combinations

@@ -3,8 +3,6 @@
 A new law is to be named here: a test fails until it is.
 """
 
-from __future__ import annotations
-
 import inspect
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Symmetries and identities of the laws, for any configuration."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

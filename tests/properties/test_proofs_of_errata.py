@@ -1,7 +1,5 @@
 """Proofs behind errata and modes: a slip in a formula makes one fail, and numbers are those of the library."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import pi
 

@@ -1,7 +1,5 @@
 """Nets, lattices and metrics in any unit of length, as far as floating point goes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 Slow on purpose: no neighbour search, no Newton's third law, no closed form of ψ_α.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

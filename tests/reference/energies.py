@@ -4,8 +4,6 @@ Pair potentials are integrals of the printed forces by Gauss and Legendre; nothi
 the expressions that the library itself gives to CasADi. Agents are at rest: what damps says nothing.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import casadi as ca

@@ -1,7 +1,5 @@
 """The balance of energy of every run of the catalogue closes to ten times its tolerance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

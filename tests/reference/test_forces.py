@@ -1,7 +1,5 @@
 """The force of every law that has an energy is minus the derivative of that energy, by complex steps and by CasADi."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import casadi as ca

@@ -4,8 +4,6 @@ Nothing here is the library's: the law is written out once more, and integrated 
 Stoer. All pairs stay on the taper, where the law is analytic.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """Nets by scipy's tree, networkx and shapely; ψ_α within arb's enclosures; A by finite differences of the flow."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """ψ_α and ψ_β against 30-digit quadrature: 1e-13 of c*, at every kink, beside it and between."""
 
-from __future__ import annotations
-
 import mpmath as mp
 import numpy as np
 import pytest

@@ -4,8 +4,6 @@ ALPHA: 40-digit adaptive quadrature of φ_α with mpmath, done once by the speci
 package: (d, r, ε, h, a, b) -> (c, d_α, r_α, ψ_α(0), ψ_α(r_α)).
 """
 
-from __future__ import annotations
-
 ALPHA = {
     (7.0, 8.4, 0.1, 0.2, 5.0, 5.0): (
         0.0,

@@ -1,7 +1,5 @@
 """Charts: what is drawn lies where its numbers say."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The section on one start: a row for each law, pictures, and its place in the page."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

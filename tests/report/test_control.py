@@ -1,7 +1,5 @@
 """What a control engineer downloads is the linearisation, and the pictures say their numbers."""
 
-from __future__ import annotations
-
 import base64
 import json
 

@@ -1,7 +1,5 @@
 """The tables of what is held: nothing in them is wrong, and nothing is left out of them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Drawn figures are part of the page: in its colours, with ids of their own, and named."""
 
-from __future__ import annotations
-
 import re
 
 from flockana.report.image import _short, named, svg

@@ -1,7 +1,5 @@
 """Axes get what room is left; nothing that they carry is cut off, or lies on another."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

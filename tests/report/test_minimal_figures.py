@@ -1,7 +1,5 @@
 """The minimal model's runs are drawn as any flock's, and with the profiles of Fig. 10."""
 
-from __future__ import annotations
-
 from flockana.dynamics.simulate import simulate
 from flockana.report.figures import flock_pictures, pictures
 from flockana.scenarios import scenario

@@ -1,7 +1,5 @@
 """Stills: agents, links by their strain, obstacles and targets, all on one scale."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

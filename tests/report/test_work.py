@@ -1,7 +1,5 @@
 """The order in which tasks are begun: two workers compile different kernels first, and nothing is left out."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from flockana.laws.discrete import DiscreteLaw

@@ -1,7 +1,5 @@
 """The bearing-distance scenarios: starts, and what is reported of them, held against the errata's figures."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from math import dist

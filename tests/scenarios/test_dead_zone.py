@@ -1,7 +1,5 @@
 """The dead-zone scenarios: as specified, and what they show at other seeds and in other boxes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial import KDTree

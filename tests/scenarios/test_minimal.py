@@ -1,7 +1,5 @@
 """The minimal model's runs and the frozen trees: starts as printed, and trees at other seeds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

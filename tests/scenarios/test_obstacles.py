@@ -1,7 +1,5 @@
 """The entries with obstacles: parameters as printed, starts clear of obstacles, and what their reports find."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The catalogue's entries: starts and parameters as printed, seeds, options. Their statuses: `flockana verify`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import pi, sqrt
 

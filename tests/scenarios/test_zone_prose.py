@@ -1,7 +1,5 @@
 """Scenarios of what the bearing-distance paper says in prose: starts, settings, and reports that see what is wrong."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

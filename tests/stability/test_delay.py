@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sin
+from math import inf, pi
 
 import numpy as np
 import pytest
@@ -12,10 +12,11 @@ from scipy.special import lambertw
 
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
+from flockana.laws.delayed import Delayed
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import crossings
@@ -26,7 +27,6 @@ from flockana.stability.delay import (
     rightmost_roots,
     scalar_margin,
 )
-from flockana.stability.delayed_run import simulate_delayed
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)
@@ -220,60 +220,6 @@ def test_modes_that_pass_together_are_all_asked_for_their_delay():
     assert abs(rightmost_roots(system, margin.delay, count=1)[0] - 1j * margin.frequency) < 1e-8
 
 
-def test_the_integrator_is_of_fourth_order():
-    """At the margin, k = ω² cos ωτ and d = ω sin ωτ: halving the step takes the error down by sixteen."""
-    w, tau = 1.3, 0.4
-    law = lone(w * w * cos(w * tau), w * sin(w * tau))
-    errors, fine = [], simulate_delayed(law, [[1.0]], [[0.0]], (0.0, 6.0), delay=tau, steps=64)
-    for steps in (2, 4, 8):
-        run = simulate_delayed(law, [[1.0]], [[0.0]], (0.0, 6.0), delay=tau, steps=steps)
-        errors.append(abs(run.q[-1, 0, 0] - fine.q[-1, 0, 0]))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.6)
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.6)
-
-
-def test_the_method_of_steps_by_hand():
-    """x'' = −2 x(t − 1), at rest at 1 before: 1 − t², then 1 − t² + (t − 1)⁴/6."""
-    run = simulate_delayed(lone(2.0, 0.0), [[1.0]], [[0.0]], (0.0, 2.0), delay=1.0, steps=10)
-    t = run.t
-    exact = 1.0 - t**2 + np.where(t > 1.0, (t - 1.0) ** 4 / 6.0, 0.0)
-    np.testing.assert_allclose(run.q[:, 0, 0], exact, atol=2e-5)
-    fine = simulate_delayed(lone(2.0, 0.0), [[1.0]], [[0.0]], (0.0, 2.0), delay=1.0, steps=80)
-    assert abs(fine.q[-1, 0, 0] - exact[-1]) < 1e-8
-
-
-def test_a_moving_past_is_heard():
-    """Before the start the agent moved steadily: what is heard at t = 0 is where it was τ ago, and so is the target."""
-    run = simulate_delayed(
-        lone(2.0, 0.5, LinearTarget((1.0,), (3.0,))), [[0.0]], [[4.0]], (0.0, 0.1), delay=0.1, steps=50
-    )
-    u = -2.0 * ((-0.4) - (1.0 - 0.3)) - 0.5 * (4.0 - 3.0)
-    assert (run.p[1, 0, 0] - 4.0) / run.t[1] == pytest.approx(u, abs=5e-3)
-
-
-@pytest.mark.parametrize("delayed", ["all", "pairs", "neighbours"])
-def test_a_short_delay_is_none(delayed):
-    q = hexagonal_spiral(4, 7.0) + 0.2
-    p = np.random.default_rng(1).standard_normal(q.shape)
-    late = simulate_delayed(LAW, q, p, (0.0, 0.3), delay=1e-3, steps=1, delayed=delayed)
-    prompt = simulate(LAW, q, p, (0.0, 0.3), t_eval=[0.3])
-    np.testing.assert_allclose(late.q[-1], prompt.q[-1], atol=5e-3)
-
-
-def test_what_is_heard_by_hand():
-    """Two agents on a line, the first step from rest: each sees where the other was, "neighbours" itself where it is.
-
-    Drifting together at speed 2 for τ = 0.25 the one behind finds the other half a length nearer, the one ahead finds
-    it half a length farther off; both are pushed backwards, and the centre of mass with them. "pairs" has its own past.
-    """
-    law, q, p = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), [[0.0], [7.0]], [[2.0], [2.0]]
-    for delayed, seen in (("neighbours", (6.5, 7.5)), ("pairs", (7.0, 7.0))):
-        run = simulate_delayed(law, q, p, (0.0, 1e-5), delay=0.25, steps=25_000, delayed=delayed)
-        pulls = [law.acceleration(0.0, [[0.0], [x]], [[0.0], [0.0]])[0, 0] for x in seen]
-        u = (run.p[1] - run.p[0])[:, 0] / run.t[1]
-        np.testing.assert_allclose(u, [pulls[0], -pulls[1]], atol=1e-4)
-
-
 def grown(system, q, share, law, delayed="all"):
     """(slope of log amplitude of the nonlinear delayed flock, rightmost real part), started in the rightmost mode."""
     tau = share * delay_margin(system).delay
@@ -285,7 +231,7 @@ def grown(system, q, share, law, delayed="all"):
         q + size * (s * mode).real.reshape(q.shape) if k == 0 else size * (s * mode).real.reshape(q.shape)
         for k, s in enumerate((1.0, root))
     )
-    run = simulate_delayed(law, q0, p0, (0.0, span), delay=tau, steps=steps, delayed=delayed)
+    run = simulate(Delayed(law, tau, delayed), q0, p0, (0.0, span), dt=tau / steps)
     amplitude = np.linalg.norm((run.p @ np.eye(q.shape[1])).reshape(len(run.t), -1), axis=1)
     period = 2 * pi / abs(root.imag)
     centres = np.arange(0.4 * span, span - period, period)
@@ -313,7 +259,7 @@ def test_knowing_its_own_state_at_once_an_agent_bears_more_than_twice_the_delay(
 
     def gain(delay, delayed):
         """Kinetic energy in the shape at the end over that in the middle."""
-        run = simulate_delayed(LAW, q, p, (0.0, 1.6), delay=delay, steps=4, delayed=delayed)
+        run = simulate(Delayed(LAW, delay, delayed), q, p, (0.0, 1.6), dt=delay / 4)
         energy = np.sum((run.p - run.p.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2))
         half, tail = len(run.t) // 2, len(run.t) // 8
         return energy[-tail:].mean() / energy[half : half + tail].mean()
@@ -332,15 +278,8 @@ def test_knowing_its_own_state_at_once_an_agent_bears_more_than_twice_the_delay(
             "unknown set of delayed terms 'some'",
         ),
         (lambda: rightmost_roots(scalar(1.0, 1.0), 0.0), ArgumentError, "delay = 0: expected a number > 0"),
-        (
-            lambda: simulate_delayed(LAW, [[0.0]], [[0.0]], (0, 1), delay=0.1),
-            ArgumentError,
-            "the target has 2 components",
-        ),
-        (lambda: simulate_delayed(LAW, [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), delay=-1.0), ArgumentError, "delay = -1"),
         (lambda: scalar_margin("x", 1), ArgumentError, "k = 'x': expected one real number"),
         (lambda: scalar_margin(1.0, -1.0), ArgumentError, "d = -1: expected a number >= 0"),
-        (lambda: simulate_delayed(None, [[0.0]], [[0.0]], (0, 1), delay=0.1), ArgumentError, "law = None: expected"),
     ],
 )
 def test_refusals(call, error, message):

@@ -1,7 +1,5 @@
 """The design of gains: optima that are known, derivatives, and what heterogeneity buys, linear and nonlinear."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Modes and zero modes: exact ones of small flocks, their number and names, and the sparse search for slow ones."""
 
-from __future__ import annotations
-
 import itertools
 from math import cos, pi, sqrt
 

@@ -1,7 +1,5 @@
 """Norms against closed forms, python-control, and the bounds that hold for every flock."""
 
-from __future__ import annotations
-
 import sys
 from importlib.machinery import ModuleSpec
 from math import inf, sqrt

@@ -1,7 +1,5 @@
 """What rounding may have done to a rate, against matrices whose eigenvalues are known exactly."""
 
-from __future__ import annotations
-
 from math import inf, pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Root loci and sweeps against roots in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import control

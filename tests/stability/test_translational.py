@@ -1,7 +1,5 @@
 """The centre of mass as a linear system: exact facts, python-control's answers, sympy's, and runs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import pi, sqrt
 

@@ -1,7 +1,5 @@
 """The energy balance of compositions in sympy, and the kernels' against it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

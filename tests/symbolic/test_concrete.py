@@ -1,7 +1,5 @@
 """Flocks written out, and the reference values computed from them, against plain numpy."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import cache

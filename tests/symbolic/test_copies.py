@@ -1,7 +1,5 @@
 """The balance of an agent and its copy, and how copies part, against the kernels."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

@@ -1,7 +1,5 @@
 """The dead-zone law's algebra: primitives, jumps, the energy identity; and the kernels against it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

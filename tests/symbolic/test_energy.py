@@ -1,7 +1,5 @@
 """The energy identities as theorems of the algebra, the split, erratum E1, and mutants that must not pass."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

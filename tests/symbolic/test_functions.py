@@ -1,7 +1,5 @@
 """Exact facts about the scalar functions."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """The derived Jacobian blocks: residuals, and the numbers they give against the kernels'."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """Theorem 6 as a theorem of the algebra: envelope, signs, identity, E2, and mutants that must not pass."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

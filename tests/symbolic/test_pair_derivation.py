@@ -1,7 +1,5 @@
 """The derivation of a pair law that a user writes: its weight is 2 dψ/d(s²), in either distance."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.symbolic.pair_derivation import pair_derivation

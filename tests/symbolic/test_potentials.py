@@ -1,7 +1,5 @@
 """psi_alpha and psi_beta: derivations, both cases, reference values, direct quadrature."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 import sympy as sp

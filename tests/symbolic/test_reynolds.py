@@ -1,7 +1,5 @@
 """The friends' form of the gradient part: true, as printed, written out for few friends, and mutants."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

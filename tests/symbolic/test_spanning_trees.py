@@ -1,7 +1,5 @@
 """Matrices of directed trees in sympy: identities, and each held against the compiled law."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

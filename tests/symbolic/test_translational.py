@@ -1,7 +1,5 @@
 """Transfer functions of the centre of mass, against the state-space form and erratum E12."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

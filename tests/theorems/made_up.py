@@ -1,7 +1,5 @@
 """Runs that no integrator made, judged by a theorem's own check: `verify` refuses them, as other tests hold."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.units import rescale

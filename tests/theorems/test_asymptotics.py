@@ -1,7 +1,5 @@
 """Claims about limits that theorems share: matched velocities and lattices, by basins and never by a look."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

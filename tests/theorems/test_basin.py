@@ -1,7 +1,5 @@
 """The basin of a minimum: curvature, barrier, Lipschitz constant, certificate, against closed forms."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The order of the catalogue, and what each kind of theorem is checked on."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

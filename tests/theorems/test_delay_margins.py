@@ -1,7 +1,5 @@
 """Delay margins: of a pair in closed form, of a sweep that is off, and to which side roots are looked at."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atan2, sqrt
 

@@ -1,7 +1,5 @@
 """Samples that are not of the law of a run are found: by their inputs, and by where the law leads from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Gains for each agent: what is asked for, and what a search that finds so much is said to show."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

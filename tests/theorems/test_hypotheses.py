@@ -1,7 +1,5 @@
 """The shared parts of verdicts: which law it is, what lies below what, and how far rounding can move either."""
 
-from __future__ import annotations
-
 from decimal import Decimal, getcontext
 from itertools import combinations
 

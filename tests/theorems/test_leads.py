@@ -1,7 +1,5 @@
 """Leads of a search, on motions by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A run of a map that was edited anywhere is refused; one that was not is judged, whatever machine computed it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What energy a meeting takes, of pair potentials whose least is known by hand."""
 
-from __future__ import annotations
-
 from math import inf
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is known of a run: enclosures hold the exact motion where that is known, however the run was integrated."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Bounds of rounding, held against numbers of fifty digits."""
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 import pytest

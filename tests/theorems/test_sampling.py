@@ -1,7 +1,5 @@
 """Bounds on a flock between samples, against the same run looked at a thousand times as often."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

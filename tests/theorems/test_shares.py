@@ -1,7 +1,5 @@
 """Shares of random starts: exact intervals, and what a sample can and cannot decide."""
 
-from __future__ import annotations
-
 import pytest
 from scipy.stats import beta
 

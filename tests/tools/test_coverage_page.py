@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -25,20 +23,22 @@ def test_a_table_of_rows_of_each_standing():
     rows = (
         Row("Theorem 1", "C* of q_i", "held", held),
         Row("end", "thanks", "prose", (), "no claim"),
+        Row("Theorem 2", "more", "absent", (), "left out"),
         Row("Fig. 2", "a run", "weaker", (Reference("scenario", "collapse"),), "R is not judged"),
     )
     text = coverage_page.page((Source("jond-2025", "A paper", rows),))
     room = "../flockana/theorems/olfati_saber"
-    assert "| A paper | 3 | 1 | 1 | 1 |" in text
-    assert "| A paper | Fig. 2 | a run | R is not judged |" in text
+    assert "| A paper | 4 | 1 | 1 | 1 | 1 |" in text
+    assert "| A paper | Fig. 2 | a run | *in part* | R is not judged |" in text
     assert (
         f"| Theorem 1 | C\\* of q\\_i | theorem [`os-1`]({room}/os_1.py), [`os-3`]({room}/os_3.py); "
         "notebook [`07`](../notebooks/07_what_the_theorems_say.py) |  |"
     ) in text
     assert "| end | thanks | *prose* | no claim |" in text
+    assert "| Theorem 2 | more | *absent* | left out |" in text
     assert "| Fig. 2 | a run | *in part*: scenario [`collapse`](" in text
     lines = [line for line in text.splitlines() if line.startswith("|")]
-    assert {line.count("|") for line in lines} == {5, 6}
+    assert {line.count("|") for line in lines} == {5, 6, 7}
 
 
 @pytest.mark.parametrize("written", [None, "another page\n"])

@@ -1,7 +1,5 @@
 """The lower bounds of the dependencies, as pip is told them."""
 
-from __future__ import annotations
-
 import pytest
 
 from tools import dependencies

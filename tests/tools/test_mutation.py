@@ -1,7 +1,5 @@
 """Mutation testing: which mutants there are, which tests are asked first, and what is made of what they say."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 
@@ -12,8 +10,6 @@ pytest.importorskip("cosmic_ray", exc_type=ImportError)
 from tools import mutation
 
 SOURCE = '''"""A module, 1 + 1 = 2."""
-
-from __future__ import annotations
 
 __all__ = ["area"] + ["b"]
 

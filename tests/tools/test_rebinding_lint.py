@@ -1,7 +1,5 @@
 """Names that stand for two things in a compiled function are found; those that only change their value are not."""
 
-from __future__ import annotations
-
 from textwrap import dedent, indent
 
 import pytest

@@ -1,7 +1,5 @@
 """What the site promises of its pages: nothing public is missing, and no link leads nowhere."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import json

@@ -12,7 +12,7 @@ from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.references import bibliography
 from flockana.report.coverage.references import Reference, locate
 
-Standing = Literal["held", "weaker", "prose"]
+Standing = Literal["held", "weaker", "absent", "prose"]
 
 OURS = "flockana"  # the key of what is in no source
 _COLUMNS = ("place", "what", "standing", "held by", "remark")
@@ -21,7 +21,7 @@ _MARK = "|"  # between columns; texts write a norm as ‖
 
 @dataclass(frozen=True)
 class Row:
-    """An item of a source and what holds it.
+    """Item of a source with the references behind it.
 
     Examples
     --------
@@ -33,7 +33,7 @@ class Row:
     what: str  # what it is, in our words
     standing: Standing  # whether it is held, held in part or not at all, or a text that says nothing which could be
     held_by: tuple[Reference, ...] = ()  # what holds it; of prose, what has to do with it
-    remark: str = ""  # of what is weaker or prose, why; else empty, or what a reader should know
+    remark: str = ""  # of what is weaker, absent or prose, why; else empty, or what a reader should know
 
     def __post_init__(self) -> None:
         if not self.place or not self.what:
@@ -41,6 +41,8 @@ class Row:
         if self.standing not in get_args(Standing):
             known = ", ".join(get_args(Standing))
             raise ArgumentError(f"{self.place}: {self.what}: standing = {self.standing!r}, expected one of {known}")
+        if self.standing == "absent" and self.held_by:
+            raise ArgumentError(f"{self.place}: {self.what}: absent, and held by {self.held_by[0]}; call it weaker")
         if self.standing == "held" and not self.held_by:
             raise ArgumentError(f"{self.place}: {self.what}: held by nothing; name what holds it, or call it weaker")
         if self.standing != "held" and not self.remark:

@@ -139,7 +139,7 @@ class Guarantee:
     Parameters
     ----------
     seen : Observed
-        A run of `CuckerSmale`.
+        A run of `CuckerSmale`, or of steps of it.
     stretch : float
         c of φ.
     """
@@ -150,7 +150,7 @@ class Guarantee:
     @cached_property
     def phi(self) -> Decline:
         """φ, with λ = K where sums are divided by n and λ = nK where they are not."""
-        law = self.seen.law
+        law = self.seen.law.continuous
         return Decline(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
 
     @cached_property
@@ -167,7 +167,9 @@ class Guarantee:
         """‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
         v0 = self.seen.velocity_spread[0]
         if self.room.lo == inf:
-            return Hypothesis(name, "met", 1.0, f"β = {self.seen.law.weight.decay:g}: the integral is infinite")
+            return Hypothesis(
+                name, "met", 1.0, f"β = {self.seen.law.continuous.weight.decay:g}: the integral is infinite"
+            )
         detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.room.mid:.6g}"
         return positive_room(name, self.room - v0, detail)
 

@@ -168,7 +168,7 @@ THEOREM = erratum(
         "frequency λ_n. Held against the delay margin that the library finds for any flock, on nets whose spectrum is "
         "known, and by the root itself just below and just above."
     ),
-    source="Olfati-Saber and Murray, Theorem 10",
+    source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
     check=_check,
     references=("olfati-saber-murray-2004",),
     expected=dict.fromkeys(("margin", "below", "above", "root-below", "root-above", "average"), "verified"),

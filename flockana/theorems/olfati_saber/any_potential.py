@@ -6,6 +6,7 @@ said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, sqrt
 
 import numpy as np
@@ -46,6 +47,11 @@ _PARTS = 4  # of the range, on which slopes are bounded
 def is_paper(seen: Observed) -> bool:
     """Return whether the pair law is that of the paper, of which everything is proved."""
     return isinstance(seen.law.alpha, AlphaInteraction)
+
+
+def said_by(seen: Observed, claims: list[Claim]) -> list[Claim]:
+    """Return claims of the paper's theorems; of another pair law than the paper's they are extensions of ours."""
+    return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
 
 def potential_needs(seen: Observed) -> list[Hypothesis]:
@@ -148,7 +154,7 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
         proof=proof,
-        detail=f"cohesive: R <= {largest:.4g}, and {'r' if text.endswith('r') else 'H_λ(0)'} allows {bound.mid:.4g}",
+        detail=f"cohesive: R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
 
@@ -211,4 +217,5 @@ THEOREM = Theorem(
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
     references=("olfati-saber-2006", "flockana"),
+    author="flockana",
 )

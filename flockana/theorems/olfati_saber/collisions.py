@@ -113,14 +113,16 @@ def energy_at_start(seen: Observed) -> Enclosure:
     """Return the energy of the start in the moving frame: exact but for rounding."""
     run = seen.run
     energy = run.law.structural_energy(run.q[0], run.p[0])
-    return Enclosure.around(energy, energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0])
+    allowed = seen.sensitivity(lambda other: run.law.structural_energy(other.q[0], other.p[0]))
+    return Enclosure.around(energy, energy_error(run.law, run.q[:1], run.p[:1], np.array([energy]))[0] + allowed)
 
 
 def energy_at_end(seen: Observed) -> Enclosure:
     """Return the energy of the last state in the moving frame, as far as both runs agree on it."""
     best, other = (run.law.structural_energy(run.q[-1], run.p[-1]) for run in (seen.run, seen.other))
     rounding = energy_error(seen.law, seen.run.q[-1:], seen.run.p[-1:], np.array([best]))[0]
-    known = DOUBT * abs(best - other) + seen.floors.work + rounding
+    allowed = seen.sensitivity(lambda run: run.law.structural_energy(run.q[-1], run.p[-1]))
+    known = DOUBT * abs(best - other) + seen.floors.work + rounding + allowed
     return Enclosure.around(best, np.inf if seen.doubt else known)
 
 
@@ -175,7 +177,7 @@ def no_collision(
         margin,
         needs,
         computed=float(least.mid),
-        stated="distance > 0 between any two agents, always",
+        stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
         proof=proof,
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -225,7 +226,8 @@ def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
     name = "no term adds energy"
     falls = Hypothesis(name, status, -most, f"at the samples a term adds {max(most, 0.0):.3g} per time at most")
     claims = [] if status == "unmet" else [never_rises(seen, [falls], cancels=_sizes)]
-    return [falls], [*claims, balance(seen, smooth_where_needed(seen), tolerances)]
+    claims += [balance(seen, smooth_where_needed(seen), tolerances)]
+    return [falls], [replace(claim, by="flockana") for claim in claims]
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:

@@ -17,6 +17,7 @@ from flockana.theorems.olfati_saber.any_potential import (
     is_paper,
     never_meets,
     potential_needs,
+    said_by,
     stays_together,
     weight_inside,
 )
@@ -33,7 +34,7 @@ def _barrier(seen: Observed) -> str | None:
 
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
-    """Claim (ii): by the proof where the hypothesis on all solutions is met, else by a basin, whose flock stays one."""
+    """Return claim (ii), velocities match: by the proof if all its hypotheses are met, else by a basin."""
     caught = [final_basin(seen).certificate]
     if needs[-1].status == "assumed" and caught[0].certain:
         return velocities_match(seen, needs[:-1], name="ii", caught=caught)
@@ -51,12 +52,13 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         below_the_barrier(seen, energy_at_start(seen)),
     )
     bounded, excluded = bounded_at_contact(seen, low), proved(seen, "collisions") if is_paper(seen) else PROOF
-    return [*needs, *bounded, low, barrier], [
+    claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]
+    return [*needs, *bounded, low, barrier], said_by(seen, claims)
 
 
 THEOREM = Theorem(

@@ -20,6 +20,7 @@ from flockana.theorems.olfati_saber.any_potential import (
     is_paper,
     never_meets,
     potential_needs,
+    said_by,
 )
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import (
@@ -78,16 +79,16 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
     given = [*needs, *bounded, consistent(seen.run), repels]
     if unmet([repels]):
-        return given, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)]
+        return given, said_by(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
     barrier = below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
     few = [repels, *potential]
-    return [*given, none, barrier], [  # (iv) needs gains >= 0 only, which every run has
-        *claims,
+    claims += [  # (iv) needs gains >= 0 only, which every run has
         distinct_pairs(seen, few, tolerances, name="iv-printed"),
         pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof="collisions" if paper else PROOF),
         no_collision(seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else PROOF),
         no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
+    return [*given, none, barrier], said_by(seen, claims)
 
 
 THEOREM = Theorem(
@@ -108,6 +109,6 @@ THEOREM = Theorem(
     enclosed=enclosed_by("os_3"),
     claims=("i", "ii", "ii-converges", "ii-semidefinite", "iii", *_COLLISIONS),
     leads={"iv-printed": pairs_apart, "iv-instant": pairs_apart},
-    corrected=("iv-instant",),
+    corrected=("ii-semidefinite", "iv-instant"),
     ours=("iv-barrier",),
 )

@@ -5,6 +5,7 @@ Checked on a configuration (``"os-5"``) or on the last state of a run (``"os-5-t
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 from math import sqrt
@@ -44,12 +45,15 @@ _CERTAIN = 64.0 * EPS  # relative difference of two squared lengths that floatin
 
 
 class Net:
-    """A configuration with its links, their lengths and their crossings."""
+    """A configuration with its links, their lengths and their crossings.
 
-    def __init__(self, q: FloatArray, d: float, r: float) -> None:
-        self.q, self.d, self.r = q, d, r
+    Positions may be off by `off`: then pairs that may be linked count as links, and no crossing is certain.
+    """
+
+    def __init__(self, q: FloatArray, d: float, r: float, off: float = 0.0) -> None:
+        self.q, self.d, self.r, self.off = q, d, r, off
         self.n, self.m = q.shape
-        self.rounding = 8.0 * EPS * float(np.abs(q).max()) + _ROUNDING * r  # of a distance
+        self.rounding = 8.0 * EPS * float(np.abs(q).max()) + _ROUNDING * r + 2.0 * off  # of a distance
         self.links: LinkArray = links(q, r, guard=min(0.5, max(GUARD, self.rounding / r)))
         self.lengths = link_lengths(q, self.links)
         self.strain = float(np.abs(self.lengths - d).max() / d) if len(self.links) else float("nan")
@@ -79,7 +83,12 @@ def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
     return [
         condition("distinct positions", apart > 0.0, apart, f"shortest {net.closest:.6g}"),
         condition("κ = r/d > 1", kappa > 1.0, kappa - 1.0, f"κ = {kappa:.6g}"),
-        condition("q is an α-lattice", kind == "α-lattice", tolerances.lattice - net.strain, text),
+        condition(
+            "q is an α-lattice",
+            kind == "α-lattice" and not net.strain + 2.0 * net.off / net.d > tolerances.lattice,
+            tolerances.lattice - net.strain,
+            text,
+        ),
     ]
 
 
@@ -223,9 +232,16 @@ def holds_exactly(net: Net, two: LinkArray) -> bool:
     return 2 * min(squared(i, j) for i, j in combinations(sorted(set(two.ravel().tolist())), 2)) <= longest
 
 
-def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
-    """Hypotheses and claims of Theorem 5, and of its extension, for one configuration."""
-    net = Net(q, d, r)
+def _unless_open(net: Net, claim: Claim) -> Claim:
+    """The claim, inconclusive if it is refuted for positions that may be off: of the links counted some may be none."""
+    if not net.off or claim.status != "refuted":
+        return claim
+    return replace(claim, status="inconclusive", detail=f"{claim.detail}; positions are known to {net.off:.3g}")
+
+
+def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: float = 0.0) -> Checked:
+    """Hypotheses and claims of Theorem 5, and of its extension, for one configuration, known to `off`."""
+    net = Net(q, d, r, off)
     lattice = _lattice_hypotheses(net, tolerances)
     wide = _dimension("m = 2 or 3", net.m > 1, net)
     plane, many = _dimension("m = 2", net.m == 2, net), _dimension("n >= 3", net.n >= 3, net)
@@ -233,7 +249,7 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
     longest = float(net.lengths.max(initial=0.0))
     loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed = 3 * net.n - 6
-    return [*lattice, wide, plane, many, more, far, loose], [
+    claims = [
         uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
@@ -244,13 +260,14 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances) -> Checked:
         _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
         _quantitative(net),
     ]
+    return [*lattice, wide, plane, many, more, far, loose], [_unless_open(net, claim) for claim in claims]
 
 
 def _check_terminal(seen: Observed, tolerances: Tolerances) -> Checked:
     if seen.law.lattice is None:
         return [has_lattice(seen)], []
     d, r = seen.law.lattice
-    return check(np.asarray(seen.given.q[-1]), d, r, tolerances)
+    return check(np.asarray(seen.given.q[-1]), d, r, tolerances, off=seen.accuracy_of_end)
 
 
 _STATEMENT = (

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from flockana.report.coverage.anchors import anchors
 from flockana.report.pages import Finding, FixedPage, ScenarioPage
 from flockana.theorems import Claim, Verdict

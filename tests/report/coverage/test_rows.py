@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -37,7 +35,7 @@ def test_a_table_is_read_in_its_order(tmp_path):
         (f"\n{GOOD}", "1 columns, expected 5"),
         ("| a run | held | theorem:os-3 |", "a row says '', 'a run': expected a place and what stands there"),
         ("Fig. 1 | | held | theorem:os-3 |", "a row says 'Fig. 1', ''"),
-        ("Fig. 1 | a run | done | theorem:os-3 |", "standing = 'done', expected one of held, weaker, prose"),
+        ("Fig. 1 | a run | done | theorem:os-3 |", "standing = 'done', expected one of held, weaker, absent, prose"),
         ("Fig. 1 | a run | held | |", "held by nothing; name what holds it, or call it weaker"),
         ("Fig. 1 | a run | weaker | theorem:os-3 |", "weaker, without a remark that says why"),
         ("Fig. 1 | a run | prose | |", "prose, without a remark"),
@@ -62,6 +60,13 @@ def test_a_table_begins_with_its_title_and_the_names_of_its_columns(tmp_path, he
 def test_a_table_is_named_for_an_entry_of_the_bibliography(tmp_path):
     with pytest.raises(ArgumentError, match=r"nobody-1999.csv: expected a key of the bibliography"):
         read_table(table(tmp_path, GOOD, name="nobody-1999.csv"))
+
+
+def test_what_is_absent_is_held_by_nothing():
+    with pytest.raises(ArgumentError, match=r"Fig\. 1: a run: absent, and held by theorem:os-3; call it weaker"):
+        Row("Fig. 1", "a run", "absent", (Reference("theorem", "os-3"),), "not there")
+    with pytest.raises(ArgumentError, match=r"Fig\. 1: a run: absent, without a remark that says why"):
+        Row("Fig. 1", "a run", "absent")
 
 
 def test_a_wrong_name_is_told_with_its_source_and_place():

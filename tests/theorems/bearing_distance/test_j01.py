@@ -1,7 +1,5 @@
 """Erratum J1: every random tree goes to its desired lengths, and the forest is made of trees."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Erratum J2: the eigenvalues known beforehand."""
 
-from __future__ import annotations
-
 import pytest
 
 

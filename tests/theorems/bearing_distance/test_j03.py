@@ -1,7 +1,5 @@
 """Erratum J3: the matrices of the path of four, by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

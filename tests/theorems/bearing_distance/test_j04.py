@@ -1,7 +1,5 @@
 """Erratum J4: the loop with either incidence, edge by edge, and a law that is off."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

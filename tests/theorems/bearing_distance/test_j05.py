@@ -1,7 +1,5 @@
 """Erratum J5: the path of three that accelerates for ever."""
 
-from __future__ import annotations
-
 import pytest
 
 

@@ -1,7 +1,5 @@
 """Erratum J6: which trees are run, and that one claim stands for all of the corrected theorem."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum J7: the largest speed that the printed bound lets a flock keep."""
 
-from __future__ import annotations
-
 from math import tanh
 
 import numpy as np

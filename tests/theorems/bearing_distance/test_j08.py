@@ -1,7 +1,5 @@
 """Erratum J8: with the estimated velocity the flock disperses."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

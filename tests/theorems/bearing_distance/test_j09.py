@@ -1,7 +1,5 @@
 """Erratum J9: an agent runs through an alien as printed, and stops before it as corrected."""
 
-from __future__ import annotations
-
 import pytest
 
 

@@ -1,7 +1,5 @@
 """Erratum J10: how many random starts violate the least distance at once."""
 
-from __future__ import annotations
-
 import pytest
 
 

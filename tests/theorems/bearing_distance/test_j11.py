@@ -1,7 +1,5 @@
 """Erratum J11: the random start of the minimal model."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.theorems.bearing_distance.j11 import minimal_start

@@ -1,7 +1,5 @@
 """Erratum J12: the distance at which agents stop before walls and each other."""
 
-from __future__ import annotations
-
 import pytest
 
 

@@ -1,7 +1,5 @@
 """Erratum J13: an altitude that grows with speed, where its force begins and where an agent stops."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Erratum J14: the speeds that a pair and a flock agree on."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Erratum J17: the delay is the way between the two radii."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Erratum J18: large flocks from all directions, and neighbours of an agent."""
 
-from __future__ import annotations
-
 
 def test_a_large_flock_from_all_directions_falls_into_many(verdict_of):
     claim = verdict_of("J18").claim("any-direction")

@@ -1,7 +1,5 @@
 """Random starts of section 5.1: where agents begin, how far apart and how fast, and the runs from them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.simulate import simulate

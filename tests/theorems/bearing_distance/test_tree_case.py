@@ -1,7 +1,5 @@
 """The corrected bearing-distance Theorem 1 by `linearise`: spectrum edge by edge, (n − 1)(m − 1) zero modes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Claims about energies on a frozen tree, on made-up runs of one edge: how near the bound it comes, and its error."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import sqrt
 

@@ -3,8 +3,6 @@
 What is true or false of a start is known by algebra here; sizes go from far above to far below the numerical error.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Spectra of trees whose eigenvalues are known: one directed edge, undirected paths and stars."""
 
-from __future__ import annotations
-
 from math import cos, pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The bearing-distance Theorem 1 as printed and as corrected, on runs that meet its hypotheses and runs that do not."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The printed Theorem 1 on one and on two edges at rest: how short they may become, and where A_cl is Hurwitz."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

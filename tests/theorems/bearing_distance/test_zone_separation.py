@@ -1,7 +1,5 @@
 """Swings of the minimal model by their closed forms: a pair, a path, a driven chain, and two that pass each other."""
 
-from __future__ import annotations
-
 from math import cos, exp, pi, sin, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Certificates of averaged headings: what they say lasts, and they say nothing where it does not."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Two agents of the Cucker-Smale law on a line, against closed forms: with β = 1, ∫λψ is λ times an arc tangent."""
 
-from __future__ import annotations
-
 from math import atan, inf, pi, tan
 
 import numpy as np

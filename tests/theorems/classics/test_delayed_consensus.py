@@ -1,7 +1,5 @@
 """Delays that a consensus bears: known nets, roots by mpmath, and what is said of margins and sums that are off."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import pi

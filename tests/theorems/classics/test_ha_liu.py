@@ -1,7 +1,5 @@
 """Both forms of the theorem of Ha and Liu against their integrals in closed form, on motions by hand."""
 
-from __future__ import annotations
-
 from math import atan, pi, sqrt, tan
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The theorem of Jadbabaie, Lin and Morse on headings written by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Runs as their leader sees them, and what of them dies out, on motions by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The centre of mass against its closed form, on motions by hand."""
 
-from __future__ import annotations
-
 from math import exp
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What Tanner's law keeps apart: near the minimum of V, where rounding moves the bound, and between samples."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A fixed net: connected or not, and which pairs may not meet, on agents by hand."""
 
-from __future__ import annotations
-
 from math import exp
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether a net of proximity stays connected: by the energy of its start, on agents at rest."""
 
-from __future__ import annotations
-
 from math import log
 
 import numpy as np

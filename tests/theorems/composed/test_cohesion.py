@@ -1,7 +1,5 @@
 """The general theorems on compositions: energy, cohesion, collisions, and where each says nothing."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What both dead-zone theorems say of distances and of velocities, on motions by hand."""
 
-from __future__ import annotations
-
 from math import inf, log
 
 import numpy as np

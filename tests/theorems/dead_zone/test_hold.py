@@ -1,7 +1,5 @@
 """The basin of two agents at their contact, against the force between them and its slope."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum L1: forces on three agents, pair by pair, before and after the axes are turned."""
 
-from __future__ import annotations
-
 from math import hypot, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum L2: the force on two agents 3 apart, and how long they would fall, by hand."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import mpmath

@@ -1,7 +1,5 @@
 """Erratum L3: how the force and its potential grow where two agents meet, by algebra."""
 
-from __future__ import annotations
-
 
 def test_a_force_that_is_unbounded_has_a_potential_of_a_logarithm(verdict_of):
     printed, corrected = (verdict_of("L3").claim(name) for name in ("printed", "corrected"))

@@ -1,7 +1,5 @@
 """Erratum L4: the number of flocks that end connected falls with the box that they start in."""
 
-from __future__ import annotations
-
 from flockana.theorems.dead_zone.l04 import connected_count
 
 

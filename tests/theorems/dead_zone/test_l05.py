@@ -1,7 +1,5 @@
 """Erratum L5: the energy of neighbours jumps by the potential at the range."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.interactions import DeadZoneInteraction

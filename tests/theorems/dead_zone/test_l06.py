@@ -1,7 +1,5 @@
 """Erratum L6: how near two agents come that run head on at three speeds."""
 
-from __future__ import annotations
-
 import pytest
 
 

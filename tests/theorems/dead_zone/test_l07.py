@@ -1,7 +1,5 @@
 """Erratum L7: the mean of √K̃ of a chattering flock, which falls with the step."""
 
-from __future__ import annotations
-
 
 def test_the_chatter_falls_with_the_step(verdict_of):
     chatter = verdict_of("L7").claim("chatter").computed

@@ -1,7 +1,5 @@
 """Erratum L8: the distance at which two agents rest."""
 
-from __future__ import annotations
-
 import pytest
 
 

@@ -1,7 +1,5 @@
 """Erratum L9: pinned agents and leaders, against what is known of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Erratum L10: a condition that suffices, and that is not necessary."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

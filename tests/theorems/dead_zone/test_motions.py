@@ -1,7 +1,5 @@
 """Motions of the errata: where they start, and steps in blocks of 500 as steps at once."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The components of a dead-zone flock: which are certain to part, and which are bound by their energy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

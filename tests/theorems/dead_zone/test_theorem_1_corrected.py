@@ -1,7 +1,5 @@
 """The dead-zone theorem, printed and corrected, on runs that decide each claim."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

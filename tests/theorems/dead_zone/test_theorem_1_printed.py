@@ -1,7 +1,5 @@
 """The printed Theorem 1 on states by hand: how far from their centre, and when the energy of neighbours jumps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Definition 5 on runs whose answer is known: each condition, the window, what lies between samples, and at r."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -74,6 +74,7 @@ def test_a_flock_that_cannot_part_matches_under_theorem_1():
     for speed, said in ((0.1, "met"), (1.74, "assumed"), (2.5, "unmet")):
         verdict = verify("any-potential", law=law, q0=start, p0=speed * (P - P.mean(axis=0)) / 0.3, t_span=(0, 0.01))
         assert hypothesis(verdict, "Ω_c").status == said
+        assert said == "unmet" or verdict.claim("cohesion").stated == "R <= ½ (n - 1) r = 2"
         assert statuses(verdict)["velocities"] == {"met": "verified", "assumed": "inconclusive"}.get(said, "vacuous")
     assert "a disconnected state has (n-1) c1α (ψ(r) - L) = " + f"{4.0 * -least:.5g}" in str(
         verify("os-1", law=law, q0=start, p0=0.0 * P, t_span=(0.0, 0.2))

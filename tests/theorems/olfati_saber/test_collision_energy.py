@@ -1,7 +1,5 @@
 """What is left to a meeting, of agents at rest whose energy is known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

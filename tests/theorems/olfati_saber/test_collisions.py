@@ -1,7 +1,5 @@
 """Collisions: who certainly meets, who may, and how many the energy allows; erratum E13."""
 
-from __future__ import annotations
-
 from math import sqrt
 from types import SimpleNamespace
 

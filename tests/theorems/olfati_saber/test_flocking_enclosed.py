@@ -1,7 +1,5 @@
 """Definition 5 from a tube: what it says of its window is what a run of the same start does there, step by step."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What the γ-agent does, by its positions: every shipped path, paths that lie, jump, or move between samples only."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

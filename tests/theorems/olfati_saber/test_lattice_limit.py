@@ -1,7 +1,5 @@
 """The summaries' lattice: runs by hand at rest on one, on none, and of laws without the gain."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

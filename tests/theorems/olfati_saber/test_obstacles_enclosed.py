@@ -1,7 +1,5 @@
 """Theorem 6 from a tube past a sphere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

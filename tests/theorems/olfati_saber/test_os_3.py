@@ -1,7 +1,5 @@
 """Theorem 3, on runs whose answer is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

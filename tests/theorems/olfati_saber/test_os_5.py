@@ -1,7 +1,5 @@
 """Theorem 5 on lattices, on nets that are none, and on the ends of runs."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Theorem 6 on runs: verified, t0 found, vacuous where a hypothesis fails, refuted where a law is wrong."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What it takes to refute a printed energy by a run."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

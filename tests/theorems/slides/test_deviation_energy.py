@@ -1,7 +1,5 @@
 """The deviation energy's jump and corner by hand, and the potential's lack of both."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana import plots

@@ -1,7 +1,5 @@
 """Erratum E1: the printed energy climbs by the kinetic energy; the corrected identity is algebra."""
 
-from __future__ import annotations
-
 from flockana.laws.olfati_saber import Algorithm1
 
 

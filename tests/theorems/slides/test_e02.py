@@ -1,7 +1,5 @@
 """Erratum E2: refuted as printed, in three ways; exact as corrected."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana.theorems import theorem

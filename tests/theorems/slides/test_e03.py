@@ -1,7 +1,5 @@
 """Erratum E3: minima that are no lattices, and the share of random starts that end in one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import beta

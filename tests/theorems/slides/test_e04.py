@@ -32,6 +32,8 @@ def test_the_figures_of_the_erratum(verdict_of):
     verdict = verdict_of("E4")
     assert verdict.status == "verified"
     assert (verdict.claim("found").computed, verdict.claim("vacuous").computed) == (14, 23)
+    assert verdict.claim("together").computed == {1: [3, 5], 2: [5, 8], 3: [6, 11]}
+    assert verdict.claim("together").margin == pytest.approx(ALPHA.far_potential, rel=1e-11)
     barrier = verdict.claim("barrier").computed
     assert barrier[3]["together"] - barrier[3]["ground"] == pytest.approx(52.384, abs=5e-4)
     assert barrier[7]["together"] - barrier[7]["ground"] == pytest.approx(50.176, abs=5e-4)

@@ -1,7 +1,5 @@
 """Erratum E5: nets of lattices in space that are not planar graphs."""
 
-from __future__ import annotations
-
 import sys
 
 import networkx

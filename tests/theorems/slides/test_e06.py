@@ -1,7 +1,5 @@
 """Erratum E6: the condition n >= 3 of the bound on links, and the sharp bound."""
 
-from __future__ import annotations
-
 from flockana.lattice import harborth
 from flockana.theorems.slides import e06
 from flockana.theorems.slides.e06 import link_counts

@@ -1,7 +1,5 @@
 """Erratum E8: connectivity is the rank of the Laplacian: the figures, as printed and as corrected."""
 
-from __future__ import annotations
-
 import pytest
 
 

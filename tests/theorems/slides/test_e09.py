@@ -1,7 +1,5 @@
 """Erratum E9: the excess of the printed step."""
 
-from __future__ import annotations
-
 from flockana.theorems import verify
 
 

@@ -1,7 +1,5 @@
 """E11: brackets whose ends were tried, limits that are certified, and laws at the edge of what it speaks of."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

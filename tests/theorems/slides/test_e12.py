@@ -1,7 +1,5 @@
 """Erratum E12: the gain of the centre of mass that follows a γ-agent."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import pi
 

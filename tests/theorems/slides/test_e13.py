@@ -1,7 +1,5 @@
 """Erratum E13: which runs the proof by interval arithmetic encloses, and what it counts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum E14: the force on the middle of three agents, by hand, and what moving the origin does to it."""
 
-from __future__ import annotations
-
 import pytest
 
 from flockana import AlphaInteraction

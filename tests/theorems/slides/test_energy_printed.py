@@ -1,7 +1,5 @@
 """The rate of the printed energy of Algorithm 3 on states by hand: dissipation, and the pair forces' power too much."""
 
-from __future__ import annotations
-
 from math import cos, pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pairs and a drag: a law of one file, with a term, a measure and a reference of its own."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

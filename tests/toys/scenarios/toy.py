@@ -1,7 +1,5 @@
 """Seven agents of the toy law, from a random start."""
 
-from __future__ import annotations
-
 import numpy as np
 from flockana.interactions.toy_morse import ToyMorse
 from flockana.laws.toy_swarm import ToySwarm

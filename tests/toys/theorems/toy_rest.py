@@ -1,7 +1,5 @@
 """All speeds end below a tenth of the largest at the start: a theorem of one file, with a lead of its own."""
 
-from __future__ import annotations
-
 from flockana.laws.toy_swarm import ToySwarm
 
 from flockana.theorems.claims import judged

@@ -1,0 +1,51 @@
+"""A push on the agents, constant and sinusoidal, for integrators that are compiled too.
+
+`numbers` are: whether the energy is that in the moving frame, ω, the number of rows (1, or one per agent), and then
+the rows of the constant part, of the amplitudes of cos ωt and of those of sin ωt.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+
+from flockana.kernels.listed import CompiledFunction, term_functions
+
+_MOVING, _OMEGA, _ROWS, _FIRST = range(4)
+
+
+def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -> Any:
+    """Return the numbers of a push."""
+    head = [float(moving), omega, float(len(constant))]
+    return np.concatenate([head, np.ravel(constant), np.ravel(cosine), np.ravel(sine)])
+
+
+def _act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
+    (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0
+    co, si, part = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
+    for k in range(m):
+        centre = 0.0
+        if numbers[_MOVING] != 0.0:
+            for i in range(n):
+                centre += v[i, k] / n
+        else:
+            centre = -frame[1, k]
+        for i in range(n):
+            at = _FIRST + (np.int64(order[i]) if rows > 1 else 0) * m + k
+            push = numbers[at] + co * numbers[at + part] + si * numbers[at + 2 * part]
+            u[i, k] += push
+            power += push * (v[i, k] - centre)
+    return power
+
+
+def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
+    return 0.0
+
+
+@cache
+def compiled() -> tuple[CompiledFunction, CompiledFunction]:
+    """Force of the push and no energy, compiled when first asked for."""
+    return term_functions(_act, _no_energy, allocates=False)

@@ -1,0 +1,63 @@
+"""A law whose messages between agents are lost at random."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_nonnegative
+from flockana.base.errors import ArgumentError
+from flockana.laws.law import Law
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_seed, ensure_wrappable, input_of
+
+_LOST = 3  # channel of random numbers
+
+
+@dataclass(frozen=True)
+class Lossy(Wrapper):
+    """Each message from agent j to agent i is lost with a probability; then i acts as if j were out of range.
+
+    Messages are sent at each step, or at each sample within `Sampled`; losses are independent.
+
+    Parameters
+    ----------
+    law : Law
+        A law with a pair term.
+    loss : float
+        Probability, 0 <= loss <= 1.
+    seed : int
+        Of the losses.
+
+    Raises
+    ------
+    ArgumentError
+        If the loss is no probability, or the law has no pair term.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> Lossy(Algorithm1(), 0.2).loss
+    0.2
+    """
+
+    law: Law
+    loss: float
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        ensure_wrappable(self.law)
+        ensure_hears(self.law)
+        loss = ensure_nonnegative("loss", self.loss)
+        if loss > 1.0:
+            raise ArgumentError(f"loss = {loss:g}: expected a probability, at most 1")
+        object.__setattr__(self, "loss", loss)
+        object.__setattr__(self, "seed", ensure_seed(self.seed))
+
+    def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
+        from scipy.special import ndtri
+
+        n = len(view.q)
+        arrives = step.normal(self.seed, _LOST, (n, n)) >= ndtri(self.loss)
+        linked = arrives if view.linked is None else arrives & view.linked
+        return input_of(self.law, step, view._replace(linked=np.asarray(linked)))

@@ -1,0 +1,91 @@
+"""A law whose actuators have a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
+from flockana.laws.law import Law
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_wrappable, input_of
+from flockana.measures.frame import moving_frame
+
+BY = ("length", "component")
+
+
+@dataclass(frozen=True)
+class Saturated(Wrapper):
+    """u bounded by what an actuator gives: shortened to `limit`, or each of its components clipped.
+
+    The law stays a continuous one. Forces between agents no longer cancel where a limit acts: the centre of mass is
+    pushed, and energy may rise.
+
+    Parameters
+    ----------
+    law : Law
+        The law whose input is bounded.
+    limit : float
+        Largest acceleration, in length over time².
+    by : {"length", "component"}
+        Whether the length of u_i is bounded, or each component.
+
+    Raises
+    ------
+    ArgumentError
+        If the limit is not positive, or `by` is unknown.
+
+    Examples
+    --------
+    >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.laws.olfati_saber import Algorithm2
+    >>> law = Saturated(Algorithm2(target=StaticTarget((30.0, 40.0))), limit=5.0)
+    >>> law.acceleration(0.0, [[0.0, 0.0]], [[0.0, 0.0]]).round(12).tolist()
+    [[3.0, 4.0]]
+    """
+
+    law: Law
+    limit: float
+    by: str = "length"
+
+    units: ClassVar[Mapping[str, Powers]] = {"limit": (1, -2)}
+
+    def __post_init__(self) -> None:
+        ensure_wrappable(self.law)
+        object.__setattr__(self, "limit", ensure_positive("limit", self.limit))
+        if self.by not in BY:
+            raise ArgumentError(f"by = {self.by!r}: expected one of {', '.join(BY)}")
+
+    stepped = False
+
+    def bounded(self, u: FloatArray) -> FloatArray:
+        """Return an input within the limit.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n, m)
+            Input that is asked for.
+        """
+        if self.by == "component":
+            return np.clip(u, -self.limit, self.limit)
+        size = np.linalg.norm(u, axis=1, keepdims=True)
+        within: FloatArray = u * np.minimum(1.0, self.limit / np.maximum(size, 1e-300))
+        return within
+
+    def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
+        return self.bounded(input_of(self.law, step, view))
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
+        u, rate = self.law.flow(t, q, p)
+        given = self.bounded(u)
+        velocity = moving_frame(p) if self.moving else p
+        return given, rate + float(np.sum((given - u) * velocity))
+
+    @property
+    def moving(self) -> bool:
+        """Whether the law's energy is that in the frame of the centre of mass."""
+        return bool(getattr(self.law, "moving", False))

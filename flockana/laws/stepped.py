@@ -1,0 +1,235 @@
+"""Steps of a wrapped law: Euler-Maruyama, a weak scheme of order 2, and Runge-Kutta of order 4 over the past."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, isclose
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_fits, ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
+from flockana.laws.discrete import DiscreteLaw, IndexArray
+from flockana.laws.law import Law
+from flockana.laws.wrapped import Step, View, Wrapper, input_of
+
+ORDERS = (1, 2, 4)
+_WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
+_Past = deque[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]  # q, p, u that arrives, u that departs
+
+
+@dataclass(frozen=True)
+class Stepped(DiscreteLaw):
+    """A wrapped law in fixed steps, as `simulate(law, ..., dt=)` runs it.
+
+    Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. Order 2 is
+    Heun's scheme, with noise that is added a weak one of order 2. Order 4 is the classical Runge-Kutta scheme, of laws
+    without noise; the past between steps is a Hermite cubic. Steps must divide delays and sampling periods.
+
+    Parameters
+    ----------
+    law : Wrapper
+        The law that is stepped.
+    dt : float
+        Step.
+    order : {1, 2, 4}
+        Scheme.
+
+    Raises
+    ------
+    ArgumentError
+        On a step that does not divide a delay or a period, or order 4 with noise.
+
+    Examples
+    --------
+    A lone agent sees the target where it was: at first it falls with constant acceleration.
+
+    >>> from flockana.environment.targets import StaticTarget
+    >>> from flockana.interactions import Gains
+    >>> from flockana.laws.delayed import Delayed
+    >>> from flockana.laws.olfati_saber import Algorithm2
+    >>> law = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
+    >>> late, q, p = Stepped(Delayed(law, 0.5), 0.5, 4), np.array([[1.0]]), np.array([[0.0]])
+    >>> float(late.step(0.0, q, p, late.start(q, p))[0][0, 0])
+    0.75
+    """
+
+    law: Law
+    dt: float = 0.01
+    order: int = 2
+
+    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
+
+    approximates = True
+    steps_at_once = 512
+    private = ("step", "past", "held")
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.law, Wrapper):
+            raise ArgumentError(f"law = {self.law!r}: expected a law that wraps one, such as Disturbed(law, ...)")
+        dt = ensure_positive("dt", self.dt)
+        object.__setattr__(self, "dt", dt)
+        if self.order not in ORDERS:
+            raise ArgumentError(f"order = {self.order!r}: expected one of 1, 2, 4")
+        for clock in (clock for one in self.law.wrappers for clock in one.clocks):
+            if clock / dt < 1.0 - _WHOLE or not isclose(clock / dt, round(clock / dt), rel_tol=_WHOLE):
+                raise ArgumentError(
+                    f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
+                    f"{clock / max(1, ceil(clock / dt)):.12g}"
+                )
+        if self.order == 4 and self.noisy:
+            raise ArgumentError("order = 4: noise is stepped with order 1 or 2; expected one of them")
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
+        """Keys of the law's bibliography."""
+        return self.law.references
+
+    @property
+    def noisy(self) -> bool:
+        """Whether chance has a part in it."""
+        return any(one.noisy for one in self._wrappers)
+
+    @cached_property
+    def _wrappers(self) -> tuple[Wrapper, ...]:
+        return tuple(self.law.wrappers) if isinstance(self.law, Wrapper) else ()
+
+    @cached_property
+    def past_steps(self) -> int:
+        """Steps of the past that are kept, the present one among them."""
+        longest = sum(one.memory for one in self._wrappers)
+        return 2 + ceil(longest / self.dt - _WHOLE) if longest > 0.0 else 0
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        return self.law.hamiltonian(t, q, p)
+
+    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+        """The past: before the start the flock moved with its initial velocities.
+
+        Parameters
+        ----------
+        q, p : ndarray, shape (n, m)
+            Initial positions and velocities.
+        """
+        rows = (self.past_steps, *q.shape)
+        ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
+        back, still = self.dt * np.arange(1 - self.past_steps, 1)[:, None, None], np.zeros(rows)
+        past = np.stack([q + back * p, still + p, still, still], axis=1)
+        return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
+
+    def step(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        q, p, u, after = self.iterate(t, q, p, memory, 1)
+        return q[0], p[0], u[0], {name: values[-1] for name, values in after.items()}
+
+    def iterate(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        return self.visit(t, q, p, memory, np.arange(1, steps + 1))
+
+    def visit(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        shape, advance = q.shape, {1: self._euler, 2: self._heun, 4: self._runge_kutta}[self.order]
+        past: _Past = deque([tuple(row) for row in memory["past"]], maxlen=self.past_steps or 1)
+        first = int(memory["step"])
+        held = {k: one for k, one in enumerate(memory["held"], start=1) if np.isfinite(one).all()}
+        now = Step(first, self.dt, lambda _: (q, p), held)
+        kicking = [one for one in self._wrappers if type(one).kick is not Wrapper.kick]
+        marks, kept, row = set(wanted.tolist()), np.empty((3, len(wanted), *shape)), 0
+        for k in range(int(wanted[-1])):
+            now.number, now.begins, at = first + k, True, t + k * self.dt
+            if past and self.past_steps:
+                now.past = _Recall(past, at, self.dt)
+            q, p, u, departs = advance(now, at, q, p, kicking, past)
+            if self.past_steps:
+                past.append((q, p, departs, departs))
+            if k + 1 in marks:
+                kept[:, row] = q, p, u
+                row += 1
+        depth = len(self._wrappers)
+        stored = np.full((depth, *shape), np.nan)
+        for key, value in now.held.items():
+            stored[key - 1] = value
+        after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
+        after["past"] = np.array(past) if self.past_steps else np.empty((0, 4, *shape))
+        return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
+
+    def _ask(self, now: Step, t: float, q: FloatArray, p: FloatArray) -> FloatArray:
+        return input_of(self.law, now, View(t, q, p))
+
+    def _departs(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
+        """Input at the beginning of the step, which the past then holds."""
+        u = self._ask(now, t, q, p)
+        now.begins = False
+        if self.past_steps:
+            last = past.pop()
+            past.append((last[0], last[1], u if now.number else last[2], u))  # it jumps at the start
+        return u
+
+    def _euler(
+        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        u, h = self._departs(now, t, q, p, past), self.dt
+        after = p + h * u
+        return q + (0.5 * h) * (p + after), _kicked(after, now, kicking), u, u
+
+    def _heun(
+        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        first, h = self._departs(now, t, q, p, past), self.dt
+        guess = _kicked(p + h * first, now, kicking)
+        second = self._ask(now, t + h, q + h * p, guess)
+        u = 0.5 * (first + second)
+        return q + (0.5 * h) * (p + guess), p + h * u + (guess - p - h * first), u, second
+
+    def _runge_kutta(
+        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        k1, h = self._departs(now, t, q, p, past), self.dt
+        k2 = self._ask(now, t + h / 2, q + h / 2 * p, p + h / 2 * k1)
+        k3 = self._ask(now, t + h / 2, q + h / 2 * (p + h / 2 * k1), p + h / 2 * k2)
+        k4 = self._ask(now, t + h, q + h * (p + h / 2 * k2), p + h * k3)
+        u = (k1 + 2.0 * (k2 + k3) + k4) / 6.0
+        return q + h * p + h * h / 6.0 * (k1 + k2 + k3), p + h * u, u, k4
+
+
+def _kicked(p: FloatArray, now: Step, kicking: list[Wrapper]) -> FloatArray:
+    """Velocities after the white noise of a step."""
+    for one in kicking:
+        kick = one.kick(now, p.shape)
+        p = p if kick is None else p + kick
+    return p
+
+
+class _Recall:
+    """State at an earlier time: steps that were made, and between two a Hermite cubic."""
+
+    def __init__(self, past: _Past, t: float, h: float) -> None:
+        self.past, self.t, self.h = past, t, h
+
+    def __call__(self, s: float) -> tuple[FloatArray, FloatArray]:
+        back = (self.t - s) / self.h
+        last = len(self.past) - 1
+        k = min(last, max(0, ceil(back - _WHOLE)))
+        share = k - back  # of the interval that begins k steps ago
+        q0, p0, _, u0 = self.past[last - k]
+        if abs(share) <= _WHOLE or k == 0:
+            return q0, p0
+        q1, p1, u1, _ = self.past[last - k + 1]
+        return _hermite(q0, p0, q1, p1, share, self.h), _hermite(p0, u0, p1, u1, share, self.h)
+
+
+def _hermite(x0: Any, v0: Any, x1: Any, v1: Any, share: float, h: float) -> FloatArray:
+    a, b = share * share * (3.0 - 2.0 * share), share * (1.0 - share)
+    value: FloatArray = x0 + a * (x1 - x0) + h * b * ((1.0 - share) * v0 - share * v1)
+    return value

@@ -1,0 +1,346 @@
+"""Laws that wrap a law: what they have in common, and what a step tells them."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_count
+from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
+from flockana.laws.law import Law
+from flockana.laws.terms.pairs import PairTerm
+
+if TYPE_CHECKING:
+    from flockana.environment.beta import ObstacleField
+    from flockana.environment.obstacles import Obstacle
+    from flockana.environment.target import Target
+
+_BLOCK = 256  # steps whose random numbers are drawn at once
+_CHANNELS = 8  # kinds of random numbers
+
+
+class View(NamedTuple):
+    """What agents know when they compute their inputs.
+
+    Attributes
+    ----------
+    t : float
+        Time that they take it to be.
+    q, p : ndarray, shape (n, m)
+        Their own positions and velocities.
+    heard : (ndarray, ndarray), optional
+        Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or
+        (1, n, m) if all hear the same. By default `q` and `p`.
+    linked : ndarray of bool, shape (n, n), optional
+        Whether a listener hears a speaker; all by default.
+    both : bool
+        In the terms between agents their own state is that which is heard too.
+    """
+
+    t: float
+    q: FloatArray
+    p: FloatArray
+    heard: tuple[FloatArray, FloatArray] | None = None
+    linked: Any = None
+    both: bool = False
+
+
+class Step:
+    """The step that a wrapped law is asked in: its number and length, the past, random numbers, inputs held.
+
+    Parameters
+    ----------
+    number : int
+        Of the step, from 0 at the start of the run.
+    h : float
+        Length.
+    past : callable
+        (q, p) at an earlier time.
+    held : dict
+        Inputs held, by the wrapper that holds them.
+
+    Attributes
+    ----------
+    begins : bool
+        Whether it is at its beginning: then held inputs are renewed.
+    interval : float
+        Time from one reading of the sensors to the next.
+    """
+
+    __slots__ = ("_drawn", "begins", "h", "held", "interval", "number", "past")
+
+    def __init__(
+        self,
+        number: int,
+        h: float,
+        past: Callable[[float], tuple[FloatArray, FloatArray]],
+        held: dict[int, FloatArray] | None = None,
+    ) -> None:
+        self.number, self.h, self.past = number, h, past
+        self.held: dict[int, FloatArray] = {} if held is None else held
+        self.begins, self.interval = True, h
+        self._drawn: dict[tuple[int, int], tuple[int, FloatArray]] = {}
+
+    def normal(self, seed: int, channel: int, shape: tuple[int, ...]) -> FloatArray:
+        """Return independent standard normal numbers of this step: a function of seed, channel and step alone.
+
+        Parameters
+        ----------
+        seed : int
+            Of the wrapper.
+        channel : int
+            Kind of number.
+        shape : tuple of int
+            Of the array.
+        """
+        block, row = divmod(self.number, _BLOCK)
+        found = self._drawn.get((seed, channel))
+        if found is None or found[0] != block:
+            generator = np.random.Generator(np.random.Philox(key=seed * _CHANNELS + channel, counter=[0, 0, 0, block]))
+            found = self._drawn[(seed, channel)] = block, generator.standard_normal((_BLOCK, *shape))
+        numbers: FloatArray = found[1][row]
+        return numbers
+
+
+class Wrapper(Law):
+    """A law with one imperfection of the loop around it; wraps any law, another wrapper too.
+
+    A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says
+    whether it can be integrated by fixed steps only, because it has a past, a clock or chance.
+    """
+
+    law: Law
+    stepped: ClassVar[bool] = True
+
+    @abstractmethod
+    def input(self, step: Step, view: View) -> FloatArray:
+        """Accelerations that the agents come to from what they know, shape (n, m), unchecked.
+
+        Parameters
+        ----------
+        step : Step
+            In which it is asked.
+        view : View
+            What agents know.
+        """
+
+    def kick(self, step: Step, shape: tuple[int, ...]) -> FloatArray | None:
+        """Change of the velocities by white noise in this step; None without noise.
+
+        Parameters
+        ----------
+        step : Step
+            The step.
+        shape : (int, int)
+            (n, m).
+        """
+        return None
+
+    @property
+    def noisy(self) -> bool:
+        """Whether it has random numbers, anew at each step."""
+        return hasattr(self, "seed") and self.stepped
+
+    @property
+    def memory(self) -> float:
+        """Longest time that it looks back."""
+        return 0.0
+
+    @property
+    def clocks(self) -> tuple[float, ...]:
+        """Times that a step must divide."""
+        return ()
+
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """Refused: what the agents do depends on more than their state.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        q, p : ndarray, shape (n, m)
+            Positions and velocities.
+        """
+        raise ArgumentError(
+            f"{type(self).__name__} has no input at an instant: expected a run in fixed steps, simulate(law, ..., "
+            "dt=0.01), or the law that it wraps"
+        )
+
+    @property
+    def wrappers(self) -> Iterator[Wrapper]:
+        """Itself and the wrappers within, the outermost first."""
+        yield self
+        if isinstance(self.law, Wrapper):
+            yield from self.law.wrappers
+
+    @property
+    def core(self) -> Law:
+        """The law within all wrappers."""
+        return self.law.core if isinstance(self.law, Wrapper) else self.law
+
+    @property
+    def target(self) -> Target | None:  # type: ignore[override]
+        """The γ-agent of the law."""
+        return self.law.target
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
+        """What the law's agents keep off."""
+        return self.law.obstacles
+
+    @property
+    def obstacle_field(self) -> ObstacleField | None:
+        """How they do."""
+        return self.law.obstacle_field
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
+        """Keys of the law's bibliography."""
+        return self.law.references
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
+        return self.law.surfaces
+
+    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
+        return self.law.hamiltonian(t, q, p)  # of the law; its balance is not kept
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.law.check_dimension(m)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        self.law.check_start(q, p)
+
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Any:  # noqa: D102
+        return self.law.measures(t, q, p, extra)
+
+
+def ensure_wrappable(law: Any) -> None:
+    """Raise unless something can be wrapped.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> ensure_wrappable(Algorithm1())
+    """
+    if not isinstance(law, Law):
+        raise ArgumentError(f"law = {law!r}: expected a continuous law such as Algorithm1(), or one that wraps a law")
+
+
+def ensure_seed(seed: Any) -> int:
+    """Return a seed, a whole number from 0 to 2⁶² − 1."""
+    if seed == 0 and not isinstance(seed, bool):
+        return 0
+    return ensure_count("seed", seed)
+
+
+def needs_steps(law: Any) -> bool:
+    """Return whether a law can be run by fixed steps only.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> needs_steps(Algorithm1())
+    False
+    """
+    return isinstance(law, Wrapper) and any(one.stepped for one in law.wrappers)
+
+
+def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
+    """Wrappers of a law, or of the law that a map steps; empty without any.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> wrappers_of(Algorithm1())
+    ()
+    """
+    within = law.continuous
+    return tuple(within.wrappers) if isinstance(within, Wrapper) else ()
+
+
+def input_of(law: Law, step: Step, view: View) -> FloatArray:
+    """Return the accelerations of a law, wrapped or not, from what the agents know.
+
+    Parameters
+    ----------
+    law : Law
+        The law.
+    step : Step
+        In which it is asked.
+    view : View
+        What agents know.
+    """
+    if isinstance(law, Wrapper):
+        return law.input(step, view)
+    if view.heard is None and view.linked is None:
+        return law.flow(view.t, view.q, view.p)[0]
+    return _heard_input(law, view)
+
+
+def _heard_input(law: Law, view: View) -> FloatArray:
+    """Input of a sum of terms whose terms between agents go by what each agent hears."""
+    u, n = np.zeros_like(view.q), len(view.q)
+    heard = (view.q[None], view.p[None]) if view.heard is None else view.heard
+    for term in law.terms:
+        if not isinstance(term, PairTerm):
+            term.act(view.t, view.q, view.p, u)
+        elif view.both and view.linked is None and len(heard[0]) == 1:
+            term.act(view.t, np.ascontiguousarray(heard[0][0]), np.ascontiguousarray(heard[1][0]), u)
+        else:
+            own = _own(view, heard)
+            away = heard[0] - own[0][:, None]
+            near = np.einsum("ijk,ijk->ij", away, away) < term.pair.range**2
+            near &= ~np.eye(n, dtype=bool)
+            i, j = np.nonzero(near if view.linked is None else near & view.linked)
+            if not i.size:
+                continue
+            slip = np.broadcast_to(heard[1] - own[1][:, None], (n, n, u.shape[1]))[i, j]
+            weight, adjacency = _pair_weights(term, own[0][i], away[i, j])
+            force = term.stiffness * weight[:, None] * away[i, j] + term.damping * adjacency[:, None] * slip
+            np.add.at(u, i, force)
+    return u
+
+
+def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """The listeners' own state in the terms between agents."""
+    if not view.both:
+        return view.q, view.p
+    n = len(view.q)
+    own = np.arange(n)
+    return tuple(np.broadcast_to(part, (n, *part.shape[1:]))[own, own] for part in heard)  # type: ignore[return-value]
+
+
+def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """φ n per difference and a_ij of pairs at these differences."""
+    own = np.arange(len(here))
+    weight, adjacency, _ = term.pair.kernels.terms(np.vstack([here, here + away]), own, len(own) + own, term.pair.par)
+    return weight, adjacency
+
+
+def ensure_hears(law: Law) -> None:
+    """Raise unless what agents hear of each other can be told from what they know of themselves.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> ensure_hears(Algorithm1())
+    """
+    core = law.core if isinstance(law, Wrapper) else law
+    if not any(isinstance(term, PairTerm) for term in core.terms):
+        raise ArgumentError(
+            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which what is heard "
+            'of others is known apart from an agent\'s own state; delayed="all" takes any law'
+        )

@@ -1,0 +1,160 @@
+"""A recorded flock held against a law: what the law explains, what each part contributes, and what is found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.base.vectors import lengths
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.recorded.accelerations import accelerations
+from flockana.recorded.findings import Share, explained
+from flockana.recorded.recording import Recording
+from flockana.recorded.schemes import scheme_by_law
+
+_WORST = 5  # places that are named
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A recording held against a law.
+
+    Attributes
+    ----------
+    law : Law
+        The law.
+    basis : {"accelerations", "steps", "splines"}
+        What is compared: recorded accelerations, mean accelerations from sample to sample, or those of splines.
+    t : ndarray, shape (K,)
+        Times.
+    recorded, residual : ndarray, shape (K, n, m)
+        Recorded accelerations, and these less the law's.
+    explained : float
+        1 - Σ‖residual‖²/Σ‖recorded‖², each weighted by its accuracy.
+    explained_refitted : float
+        The same with the law's gains as the recording has them.
+    shares : tuple of Share
+        The parts of the law.
+    findings : tuple of str
+        What differs, in words.
+    noise : float
+        Typical error of an acceleration, from the accuracy of the samples; 0 if none is stated.
+    """
+
+    law: Any
+    basis: str
+    t: FloatArray
+    recorded: FloatArray
+    residual: FloatArray
+    explained: float
+    explained_refitted: float
+    shares: tuple[Share, ...]
+    findings: tuple[str, ...] = ()
+    noise: float = 0.0
+    ids: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def by_agent(self) -> FloatArray:
+        """Root mean square of each agent's residual, shape (n,)."""
+        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
+        return size
+
+    @property
+    def by_time(self) -> FloatArray:
+        """Root mean square of the residual at each time, shape (K,)."""
+        size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=1))
+        return size
+
+    @property
+    def worst(self) -> tuple[tuple[float, str, float], ...]:
+        """Places where the law is off most: time, agent, size."""
+        size = np.nan_to_num(lengths(self.residual))
+        order = np.argsort(-size, axis=None)[:_WORST]
+        at = [np.unravel_index(k, size.shape) for k in order]
+        return tuple((float(self.t[k]), self.ids[i], float(size[k, i])) for k, i in at)
+
+    def __str__(self) -> str:
+        name = type(self.law).__name__
+        lines = [f"{name} explains {self.explained:.4%} of the recorded accelerations (from {self.basis})"]
+        for one in self.shares:
+            known = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
+            lines.append(
+                f"  {one.share:8.2%}  {one.text}: {one.symbol} = {one.found:.5g}{known}, {one.stated:.5g} in the law"
+            )
+        lines += [f"  finding: {text}" for text in self.findings]
+        t, agent, size = self.worst[0]
+        lines.append(f"  off most by {size:.3g}, agent {agent} at t = {t:.4g}")
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {
+            "law": type(self.law).__name__,
+            "basis": self.basis,
+            "explained": self.explained,
+            "explained_refitted": self.explained_refitted,
+            "shares": [one._asdict() for one in self.shares],
+            "findings": list(self.findings),
+            "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
+        }
+
+
+def compare(rec: Recording, law: Any) -> Comparison:
+    """Return a comparison of a recording with a law.
+
+    Recorded accelerations are compared if there are any; else the mean ones from sample to sample, if velocities were
+    recorded, or those of a scheme that positions and velocities tell; else those of smoothing splines.
+
+    Parameters
+    ----------
+    rec : Recording
+        The recording; the accuracy that it states gives the weights.
+    law : Law or Scheme
+        The law; of a scheme, the law that it steps.
+
+    Raises
+    ------
+    ArgumentError
+        If the recording has gaps (except where splines carry them), or the law is not for such a flock.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.recorded.recording import recording_of
+    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> compare(recording_of(run), Algorithm1()).explained > 0.999999
+    True
+    """
+    own = ensure_law(law)
+    continuous = own.continuous if isinstance(own, DiscreteLaw) else own
+    if continuous is None:
+        raise ArgumentError(
+            f"{type(law).__name__} steps no continuous law: expected a law, or a scheme such as TaylorStep"
+        )
+    continuous.check_dimension(rec.m)
+    continuous.check_agents(rec.n)
+    data = accelerations(rec)
+    found = explained(data, continuous)
+    scheme = data.scheme
+    if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
+        scheme = scheme_by_law(rec, continuous)
+    steps = () if scheme is None else (f"steps are {scheme.name} of {scheme.dt:.6g}",)
+    total = found.total or 1.0
+    return Comparison(
+        law,
+        data.basis,
+        data.t,
+        data.u,
+        found.residual,
+        1.0 - found.left / total,
+        1.0 - found.left_refitted / total,
+        found.shares,
+        (*steps, *found.findings),
+        float(np.nanmedian(data.error)),
+        tuple(rec.ids),
+    )

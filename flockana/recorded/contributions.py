@@ -1,0 +1,114 @@
+"""Parts of a law that are proportional to one number each: what each of them contributes to an acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.interactions import Gains
+
+Part = Callable[[float, FloatArray, FloatArray], FloatArray]
+
+SYMBOLS = {
+    "c1_alpha": ("c1α", "pair force"),
+    "c2_alpha": ("c2α", "velocity consensus"),
+    "c1_beta": ("c1β", "repulsion of obstacles"),
+    "c2_beta": ("c2β", "damping at obstacles"),
+    "c1_gamma": ("c1γ", "pull to the γ-agent"),
+    "c2_gamma": ("c2γ", "velocity feedback to the γ-agent"),
+}
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """Part of a law: its gain, name, value, and its acceleration for a gain of 1."""
+
+    name: str
+    symbol: str
+    text: str
+    stated: float
+    acts: Part
+
+
+def contributions(law: Any) -> tuple[Contribution, ...]:
+    """Return the parts of a law: one for each gain, or the law as a whole.
+
+    Parameters
+    ----------
+    law : Law
+        A continuous law.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> [part.symbol for part in contributions(Algorithm1())]
+    ['c1α', 'c2α']
+    """
+    gains = getattr(law, "gains", None)
+    if not isinstance(gains, Gains):
+        return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
+    parts = []
+    for name in _used(law):
+        symbol, text = SYMBOLS[name]
+        own = getattr(gains, name)
+        if isinstance(own, tuple):
+            single = replace(law, gains=_only(name, own))
+            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single)))
+        else:
+            single = replace(law, gains=_only(name, 1.0))
+            parts.append(Contribution(name, symbol, text, float(own), _acts(single)))
+    return tuple(parts)
+
+
+def remainder(law: Any) -> Part | None:
+    """Return the acceleration of a law with all gains 0, such as drag; None if it is 0."""
+    if not isinstance(getattr(law, "gains", None), Gains) or not any(
+        getattr(law, name, 0.0) for name in ("thrust", "brake", "told")
+    ):
+        return None
+    return _acts(replace(law, gains=_only("", 0.0)))
+
+
+def _used(law: Any) -> list[str]:
+    """Gains that a law uses."""
+    used = []
+    if law.pair is not None:
+        used.append("c1_alpha")
+    if law.pair is not None or getattr(law, "net", None) is not None:
+        used.append("c2_alpha")
+    if law.obstacles:
+        used += ["c1_beta", "c2_beta"]
+    if law.target is not None:
+        used += ["c1_gamma", "c2_gamma"]
+    return used
+
+
+def _only(name: str, value: Any) -> Gains:
+    return Gains(**{each: value if each == name else 0.0 for each in SYMBOLS})
+
+
+def _acts(law: Any) -> Part:
+    def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
+        u: FloatArray = law.flow(t, q, p)[0]
+        return u
+
+    return acts
+
+
+def over_samples(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the acceleration of a part at each sample, shape (T, n, m)."""
+    return np.array([part(float(t[k]), q[k], p[k]) for k in range(len(t))]).reshape(q.shape)
+
+
+def over_steps(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the mean acceleration of a part from each sample to the next by Simpson's rule, shape (T - 1, n, m)."""
+    h = np.diff(t)[:, None, None]
+    middle_q = 0.5 * (q[:-1] + q[1:]) + h / 8.0 * (p[:-1] - p[1:])  # cubic through both ends
+    middle_p = 1.5 / h * (q[1:] - q[:-1]) - 0.25 * (p[:-1] + p[1:])
+    ends, middle = over_samples(part, t, q, p), over_samples(part, 0.5 * (t[:-1] + t[1:]), middle_q, middle_p)
+    mean: FloatArray = (ends[:-1] + 4.0 * middle + ends[1:]) / 6.0
+    return mean

@@ -1,0 +1,134 @@
+"""Four implementations of Algorithm 2, each with one error that public code has: an exercise in `compare`.
+
+The functions are written as a student writes them, all pairs at once, and are no part of the library's laws. Their
+recordings start alike and have 12 agents.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import pi, sqrt
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_known
+from flockana.environment.targets import StaticTarget
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.recorded.recording import Recording
+
+D, R, EPS, H, A, B = 7.0, 8.4, 0.1, 0.2, 5.0, 5.0  # d, r, ε, h, a, b of the pair law
+C1A, C2A, C1G, C2G = 30.0, 2.0 * sqrt(30.0), 1.1, 2.0 * sqrt(1.1)
+GOAL = (10.0, 10.0)
+_AGENTS, _END, _SAMPLES, _STEP = 12, 4.0, 201, 0.02
+
+Acceleration = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def intended_law() -> Algorithm2:
+    """Return the law that all four implement, or mean to.
+
+    Examples
+    --------
+    >>> intended_law().alpha.d
+    7.0
+    """
+    return Algorithm2(target=StaticTarget(GOAL))
+
+
+def _sigma_norm(s: FloatArray) -> FloatArray:
+    norm: FloatArray = (np.sqrt(1.0 + EPS * s**2) - 1.0) / EPS
+    return norm
+
+
+def _phi(z: FloatArray) -> FloatArray:
+    bent: FloatArray = 0.5 * ((A + B) * z / np.sqrt(1.0 + z**2) + (A - B))
+    return bent
+
+
+def _bump(z: FloatArray) -> FloatArray:
+    falling = 0.5 * (1.0 + np.cos(pi * (z - H) / (1.0 - H)))
+    return np.where(z < H, 1.0, np.where(z < 1.0, falling, 0.0))
+
+
+def _pairs(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """q_j - q_i, its length, the weight a_ij and the action φ_α, 0 of an agent on itself."""
+    x = q[None] - q[:, None]
+    s = np.sqrt((x**2).sum(axis=2))
+    r_alpha, d_alpha = _sigma_norm(np.array([R, D]))
+    weight = _bump(_sigma_norm(s) / r_alpha)
+    np.fill_diagonal(weight, 0.0)
+    return x, s, weight, weight * _phi(_sigma_norm(s) - d_alpha)
+
+
+def _summed(action: FloatArray, n: FloatArray, weight: FloatArray, p: FloatArray, c2: float) -> FloatArray:
+    total: FloatArray = C1A * (action[:, :, None] * n).sum(axis=1)
+    return total + c2 * (weight[:, :, None] * (p[None] - p[:, None])).sum(axis=1)
+
+
+def code_a(q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the accelerations of implementation A."""
+    x, s, weight, action = _pairs(q)
+    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
+    e = q - np.array(GOAL)
+    return _summed(action, n, weight, p, C2A) - C1G * e / np.sqrt(1.0 + e**2) - C2G * p
+
+
+def code_b(q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the accelerations of implementation B."""
+    x, s, weight, action = _pairs(q)
+    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
+    return _summed(action, n, weight, p, C1A) - C1G * (q - np.array(GOAL)) - C2G * p
+
+
+def code_c(q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the accelerations of implementation C."""
+    x, _, weight, action = _pairs(q)
+    n = x / np.sqrt(1.0 + EPS * x**2)
+    return _summed(action, n, weight, p, C2A) - C1G * (q - np.array(GOAL)) - C2G * p
+
+
+def code_d(q: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the accelerations of implementation D."""
+    x, s, weight, action = _pairs(q)
+    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
+    return _summed(action, n, weight, p, C2A) - C1G * (q - np.array(GOAL)) - C2G * p
+
+
+CODES: Mapping[str, Acceleration] = {"A": code_a, "B": code_b, "C": code_c, "D": code_d}
+
+
+def faulty_recording(name: str) -> Recording:
+    """Return the recording of a faulty implementation, "A" to "D": positions and velocities every 0.02 time units.
+
+    Parameters
+    ----------
+    name : str
+        The implementation.
+
+    Examples
+    --------
+    >>> from flockana.recorded.compare import compare
+    >>> compare(faulty_recording("D"), intended_law()).findings
+    ('steps are explicit Euler of 0.02',)
+    """
+    code = CODES[ensure_known("implementation", name, CODES)]
+    rng = np.random.default_rng(7)
+    q = D * np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=2).reshape(-1, 2)
+    q, p = q + rng.normal(0.0, 0.6, (_AGENTS, 2)), rng.normal(0.0, 1.0, (_AGENTS, 2))
+    t = _STEP * np.arange(_SAMPLES)
+    if name == "D":
+        places, speeds = [q], [p]
+        for _ in t[1:]:
+            q, p = q + _STEP * p, p + _STEP * code(q, p)
+            places.append(q)
+            speeds.append(p)
+        return Recording(t, np.array(places), np.array(speeds), bound=1e-9, p_bound=1e-9, source="implementation D")
+    from scipy.integrate import solve_ivp
+
+    def rate(_: float, y: FloatArray) -> FloatArray:
+        x, v = y.reshape(2, _AGENTS, 2)
+        return np.concatenate([v.ravel(), code(x, v).ravel()])
+
+    done = solve_ivp(rate, (0.0, _END), np.concatenate([q.ravel(), p.ravel()]), t_eval=t, rtol=1e-9, atol=1e-9)
+    states = done.y.T.reshape(len(t), 2, _AGENTS, 2)
+    return Recording(t, states[:, 0], states[:, 1], bound=1e-6, source=f"implementation {name}")

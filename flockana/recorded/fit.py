@@ -1,0 +1,200 @@
+"""Parameters of a law fitted to a recording, with standard errors and what the data cannot tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, sqrt
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.recorded.parameters import Free
+from flockana.recorded.recording import Recording
+from flockana.recorded.shooting import matched, windows
+from flockana.recorded.steps import predicted
+
+_LEVEL = 0.95
+_TIMES = 8.0  # of the law, which a window of samples is as long as
+_FEWEST = 40  # samples in a window
+_UNKNOWN = 0.5  # relative standard error beyond which the data do not tell a parameter
+_TIED = 0.99  # correlation of two parameters beyond which the data tell one combination only
+_FAR = 1e6  # residual of a law that cannot be
+_LEAST = 1e-6  # of its first value, below which no positive parameter goes
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A law fitted to a recording.
+
+    Attributes
+    ----------
+    law : Law
+        The law with the fitted parameters.
+    values, errors : mapping of str to float
+        The parameters and their standard errors.
+    correlation : ndarray, shape (P, P)
+        Of the estimates.
+    intervals : mapping of str to (float, float)
+        95 % confidence intervals.
+    misfit : float
+        Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
+    freedom : int
+        Degrees of freedom.
+    untold : tuple of str
+        What the data cannot tell, in words.
+    message : str
+        How the search ended.
+    """
+
+    law: Any
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    correlation: FloatArray
+    misfit: float
+    freedom: int
+    untold: tuple[str, ...]
+    message: str = ""
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """95 % confidence intervals."""
+        from scipy.stats import t
+
+        width = float(t.ppf(0.5 * (1.0 + _LEVEL), max(self.freedom, 1)))
+        return {k: (v - width * self.errors[k], v + width * self.errors[k]) for k, v in self.values.items()}
+
+    def __str__(self) -> str:
+        lines = [f"{type(self.law).__name__} fitted; residual {self.misfit:.3g} times the accuracy"]
+        for name, (low, high) in self.intervals.items():
+            lines.append(f"  {name} = {self.values[name]:.5g}, between {low:.5g} and {high:.5g} (95 %)")
+        return "\n".join([*lines, *(f"  {text}" for text in self.untold)])
+
+
+def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: float | None = None) -> Fit:
+    """Return a law with those parameters that lead from sample to sample best.
+
+    Where noise is stated (`sd`), or has to be estimated as only positions are known, solutions of the law are matched
+    to windows of samples, each from a start of its own; standard errors count the starts, too. Where samples have
+    velocities and no noise, the law is integrated from each sample to the next.
+
+    Parameters
+    ----------
+    rec : Recording
+        The recording.
+    law : Law
+        A continuous law, whose parameters are the first guess.
+    free : sequence of str, optional
+        Names of the parameters to fit, such as ``"c1_alpha"`` or ``"alpha.d"``; by default all gains.
+    window : float, optional
+        Duration of a window; by default eight times the law's time, and 40 samples at least.
+
+    Raises
+    ------
+    ArgumentError
+        On an unknown parameter, a law that is a map, or a recording that is too short.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.interactions import Gains
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> from flockana.recorded.recording import recording_of
+    >>> run = simulate(Algorithm1(gains=Gains(c1_alpha=20.0)), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> round(fit(recording_of(run), Algorithm1(), free=("c1_alpha",)).values["c1_alpha"], 4)
+    20.0
+    """
+    own = ensure_law(law)
+    if isinstance(own, DiscreteLaw):
+        raise ArgumentError(f"{type(law).__name__} is a map: expected a continuous law, such as the one that it steps")
+    own.check_dimension(rec.m)
+    own.check_agents(rec.n)
+    parameters = Free.of(law, free)
+    noisy = rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0))
+    if noisy:
+        return _matched(rec, parameters, window)
+    return _stepped(rec, parameters)
+
+
+def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
+    """Solutions matched to windows of noisy positions."""
+    if len(rec.t) < 4:
+        raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
+    scales = parameters.law.scales
+    usual = _FEWEST * rec.interval if scales is None else max(_TIMES * scales.time, _FEWEST * rec.interval)
+    parts = windows(rec, usual if window is None else ensure_positive("window", window))
+    found = matched(parts, parameters.with_values, parameters.values)
+    variance = found.squares / found.freedom
+    stated = rec.sd is not None and not rec.estimated
+    covariance = found.covariance * (max(variance, 1.0) if stated else variance)
+    misfit = sqrt(variance) if stated else np.nan
+    return _result(parameters, found.values, covariance, found.told, misfit, found.freedom, found.message)
+
+
+def _stepped(rec: Recording, parameters: Free) -> Fit:
+    """The law integrated from each sample to the next; errors by how residuals of the agents differ."""
+    from scipy.optimize import least_squares
+
+    rec.ensure_complete("a fit from sample to sample")
+    if len(rec.t) < 2:
+        raise ArgumentError("one sample: expected two or more to step between")
+    assert rec.p is not None
+    h, p = np.diff(rec.t)[:, None, None], rec.p
+    start = parameters.values
+    unit = np.where(start == 0.0, 1.0, np.abs(start))
+
+    def residual(z: FloatArray) -> FloatArray:
+        try:
+            q_next, p_next = predicted(parameters.with_values(z * unit), rec.t, rec.q, p, refine=2)
+        except FlockanaError:
+            return np.full(2 * (len(rec.t) - 1) * rec.n * rec.m, _FAR)
+        return np.concatenate([((rec.q[1:] - q_next) / h).ravel(), (p[1:] - p_next).ravel()])
+
+    low = np.where(start > 0.0, _LEAST, -inf)
+    found: Any = least_squares(residual, start / unit, bounds=(low, inf), xtol=1e-10, ftol=1e-10, max_nfev=60)
+    left = found.fun.reshape(2 * (len(rec.t) - 1), rec.n, rec.m)
+    slopes = found.jac.reshape(*left.shape, -1)
+    inverse = np.linalg.pinv(found.jac.T @ found.jac)
+    scores = np.einsum("kimc,kim->ic", slopes, left)
+    freedom = max(left.size - len(start), 1)
+    spread = inverse @ (scores.T @ scores) @ inverse
+    plain = inverse * float(np.sum(left**2)) / freedom
+    covariance = spread if rec.n >= 2 * len(start) else plain
+    speed = rec.accuracy.speed
+    stated = float(np.median(speed)) if np.ndim(speed) else float(speed)
+    misfit = float(np.sqrt(np.mean(left**2)) / stated) if 0.0 < stated < inf else np.nan
+    covariance = covariance * np.outer(unit, unit)
+    return _result(
+        parameters, found.x * unit, covariance, np.abs(found.jac).max(axis=0) > 0.0, misfit, freedom, str(found.message)
+    )
+
+
+def _result(
+    parameters: Free, values: FloatArray, covariance: FloatArray, told: Any, misfit: float, freedom: int, message: str
+) -> Fit:
+    names, errors = parameters.names, np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    scale = np.where(errors > 0.0, errors, 1.0)
+    errors = np.where(told, errors, inf)
+    correlation = covariance / np.outer(scale, scale)
+    untold = [
+        f"the data do not tell {name}: {value:.3g} ± {2.0 * error:.2g}"
+        for name, value, error in zip(names, values, errors, strict=True)
+        if error > _UNKNOWN * abs(value)
+    ]
+    pairs = np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
+    untold += [
+        f"the data tell {names[i]} and {names[j]} only together: correlation {correlation[i, j]:.4f}" for i, j in pairs
+    ]
+    return Fit(
+        parameters.with_values(values),
+        dict(zip(names, values.tolist(), strict=True)),
+        dict(zip(names, errors.tolist(), strict=True)),
+        correlation,
+        misfit,
+        freedom,
+        tuple(untold),
+        message,
+    )

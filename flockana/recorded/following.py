@@ -1,0 +1,194 @@
+"""Whether the samples of a recording follow a law, within their stated accuracy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.vectors import lengths
+from flockana.dynamics.tolerance import rounding_floors
+from flockana.laws.discrete import DiscreteLaw
+from flockana.recorded.accuracy import CONFIDENCE
+from flockana.recorded.recording import Recording
+from flockana.recorded.shooting import Window, match_start, windows
+from flockana.recorded.steps import predicted
+
+_WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
+_GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
+_ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two samples
+_TIMES = 8.0  # of the law, which a window of noisy samples is as long as
+_FEWEST = 40  # samples in a window
+
+
+@dataclass(frozen=True, eq=False)
+class Following:
+    """Whether samples follow a law; the start and the velocities to judge the law's solution with.
+
+    Attributes
+    ----------
+    status : {"met", "unmet", "assumed"}
+        "assumed" where no accuracy is stated.
+    margin : float
+        Allowed less actual distance at the worst place, over the allowed.
+    detail : str
+        In words: by how much, when, and which agent.
+    q0, p0 : ndarray, shape (n, m)
+        Where the law's solution starts.
+    p : ndarray, shape (T, n, m)
+        Velocities at the samples.
+    speed : float or ndarray, shape (T, n)
+        Their accuracy.
+    """
+
+    status: Literal["met", "unmet", "assumed"]
+    margin: float
+    detail: str
+    q0: FloatArray
+    p0: FloatArray
+    p: FloatArray
+    speed: Any
+
+
+def following(rec: Recording, law: Any) -> Following:
+    """Return whether a recording follows a law: from sample to sample, or where noise is stated over windows.
+
+    Parameters
+    ----------
+    rec : Recording
+        Complete.
+    law : Law or DiscreteLaw
+        The law.
+
+    Raises
+    ------
+    ArgumentError
+        If there is one sample only, or noisy positions under a map.
+    """
+    if len(rec.t) < 2:
+        raise ArgumentError("one sample shows no motion: expected two or more")
+    if rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0)):
+        return _over_windows(rec, law)
+    return _from_sample_to_sample(rec, law)
+
+
+def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
+    """Each sample against where the law leads from the one before, and from one law time before."""
+    assert rec.p is not None
+    shape = rec.q.shape[:2]
+    place, speed = (
+        np.broadcast_to(np.asarray(each, dtype=np.float64), shape) for each in (rec.accuracy.place, rec.accuracy.speed)
+    )
+    known = bool(np.isfinite(place).all())
+    worst: list[tuple[float, float, str, float, int]] = []
+    for samples in _strides(rec, law):
+        t, q, p = rec.t[samples], rec.q[samples], rec.p[samples]
+        widths = [x[samples] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
+        off, allowed = _differences(law, t, q, p, *widths)
+        for name, apart, room in zip(("q", "p"), off, allowed, strict=True):
+            ratio = apart / room
+            k, i = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
+            worst.append((float(ratio[k, i]), float(apart[k, i]), name, float(t[k + 1]), int(i)))
+    ratio, size, name, t, agent = max(worst)
+    largest = {kind: max((one[1] for one in worst if one[2] == kind), default=0.0) for kind in "qp"}
+    where = f"worst: {name} of agent {rec.ids[agent]} at t = {t:.6g}"
+    if not known:
+        text = f"off by {largest['q']:.3g} in q and {largest['p']:.3g} in p ({where}); no accuracy is stated"
+        return Following("assumed", 0.0, text, rec.q[0], rec.p[0], rec.p, speed)
+    if ratio > 1.0:
+        text = (
+            f"{name} of agent {rec.ids[agent]} at t = {t:.6g} is off by {size:.3g} where {size / ratio:.3g} is allowed"
+        )
+        status: Any = "unmet"
+    else:
+        text = f"within {largest['q']:.3g} in q and {largest['p']:.3g} in p from sample to sample ({where})"
+        status = "met" if rec.accuracy.decides else "assumed"
+    return Following(status, 1.0 - ratio, f"{text}, {rec.accuracy}", rec.q[0], rec.p[0], rec.p, speed)
+
+
+def _strides(rec: Recording, law: Any) -> list[Any]:
+    """All samples, and if they lie closer than one law time every so many."""
+    strides = [slice(None)]
+    scales = law.scales
+    if scales is not None and (wide := int(scales.time / rec.interval)) > 1 and len(rec.t) > wide:
+        strides.append(slice(None, None, wide))
+    return strides
+
+
+def _differences(
+    law: Any, t: FloatArray, q: FloatArray, p: FloatArray, place: FloatArray, speed: FloatArray
+) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
+    """Distances of samples from where the law leads, and those that accuracy, integration and rounding allow."""
+    near, fine = predicted(law, t, q, p), predicted(law, t, q, p, refine=2)
+    ends = tuple(b + (b - a) / 15.0 for a, b in zip(near, fine, strict=True))  # Richardson's, of a scheme of order 4
+    off = lengths(q[1:] - ends[0]), lengths(p[1:] - ends[1])
+    rng, grown = np.random.default_rng(0), [np.zeros(off[0].shape), np.zeros(off[0].shape)]
+    if place.any() or speed.any():
+        for _ in range(_WAYS):
+            ways = rng.normal(size=(2, *q.shape))
+            ways /= np.linalg.norm(ways, axis=3, keepdims=True)
+            moved = predicted(law, t, q + place[:, :, None] * ways[0], p + speed[:, :, None] * ways[1])
+            for k in range(2):
+                widest = lengths(moved[k] - near[k]).max(axis=1, keepdims=True)
+                grown[k] = np.maximum(grown[k], np.broadcast_to(widest, off[0].shape))
+    floors = rounding_floors(t, q, p, np.diff(p, axis=0) / np.diff(t)[:, None, None], np.empty(0))
+    tiny = np.finfo(float).tiny
+    allowed = tuple(
+        own[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + tiny
+        for k, (own, floor) in enumerate(((place, floors.place), (speed, floors.speed)))
+    )
+    return off, (allowed[0], allowed[1])
+
+
+def _over_windows(rec: Recording, law: Any) -> Following:
+    """Solutions matched to windows of noisy positions: their residuals against the stated noise."""
+    from scipy.stats import chi2, norm
+
+    if isinstance(law, DiscreteLaw):
+        raise ArgumentError(
+            f"noisy positions under the map {type(law).__name__}: expected its continuous law, or velocities and bound="
+        )
+    scales = law.scales
+    duration = max(_TIMES * (rec.interval if scales is None else scales.time), _FEWEST * rec.interval)
+    smooth = rec.with_velocities()
+    assert smooth.p is not None
+    squares, freedom, largest = 0.0, 0, (0.0, 0.0, 0)
+    first: FloatArray | None = None
+    for part in windows(rec, duration):
+        start, residual = _matched(law, part)
+        first = start if first is None else first
+        seen = part.root > 0.0
+        scaled = np.zeros(part.root.shape)
+        scaled[seen] = residual
+        squares, freedom = squares + float(residual @ residual), freedom + residual.size - start.size
+        size = np.abs(scaled).reshape(len(part.t), rec.n, rec.m).max(axis=2)
+        k, i = np.unravel_index(int(np.argmax(size)), size.shape)
+        largest = max(largest, (float(size[k, i]), float(part.t[k]), int(i)))
+    assert first is not None
+    misfit = float(np.sqrt(squares / max(freedom, 1)))
+    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, max(freedom, 1)) / max(freedom, 1)))
+    band = float(norm.isf((1.0 - CONFIDENCE) / 4.0 / rec.q.size))
+    size, t, agent = largest
+    ratio = max(misfit / most, size / band)
+    where = f"worst: {size:.3g} deviations, agent {rec.ids[agent]} at t = {t:.6g}"
+    q0, p0 = first.reshape(2, rec.n, rec.m)
+    stated = rec.sd is not None and not rec.estimated
+    status: Literal["met", "unmet", "assumed"] = "assumed"
+    if stated:
+        status = "met" if ratio <= 1.0 else "unmet"
+        text = f"solutions of the law over {duration:.3g} each are off by {misfit:.4g} times the stated noise ({where})"
+        if ratio > 1.0:
+            text += f", where {most:.4g} times, and {band:.3g} deviations at one place, are allowed"
+    else:
+        text = f"solutions of the law are off by {misfit:.3g} times the noise, which is only estimated ({where})"
+    return Following(status, 1.0 - ratio, text, q0, p0, smooth.p, smooth.accuracy.speed)
+
+
+def _matched(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
+    try:
+        return match_start(law, part)
+    except FlockanaError as error:
+        raise ArgumentError(f"the law cannot be integrated from t = {part.t[0]:g} of the recording: {error}") from error

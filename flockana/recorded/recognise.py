@@ -1,0 +1,87 @@
+"""Recognition of a recording's law among several: a ranked table of comparisons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from flockana.base.errors import ArgumentError, FlockanaError, format_value
+from flockana.laws.cucker_smale import CuckerSmale
+from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.recorded.compare import Comparison, compare
+from flockana.recorded.recording import Recording
+
+_FITS = 0.99  # share explained, the gains as the recording has them, from which a law fits
+
+
+@dataclass(frozen=True, eq=False)
+class Recognition:
+    """Laws ranked by how much of a recording they explain, and those that do not apply to it.
+
+    Attributes
+    ----------
+    ranked : tuple of (str, Comparison)
+        The laws by name.
+    refused : mapping of str to str
+        Why a law was not compared.
+    """
+
+    ranked: tuple[tuple[str, Comparison], ...]
+    refused: Mapping[str, str]
+
+    @property
+    def best(self) -> Comparison | None:
+        """The comparison with the law that fits best; None if none fits."""
+        first = self.ranked[0][1] if self.ranked else None
+        return first if first is not None and first.explained_refitted >= _FITS else None
+
+    def __str__(self) -> str:
+        lines = [
+            f"{one.explained_refitted:9.2%} ({one.explained:.2%} with its own gains)  {name}"
+            for name, one in self.ranked
+        ]
+        lines += [f"        -  {name}: {reason}" for name, reason in self.refused.items()]
+        if self.best is None:
+            lines.append(f"none fits: a law does that explains {_FITS:.0%} with gains as the recording has them")
+        return "\n".join(lines)
+
+
+def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognition:
+    """Return laws ranked by how much of a recording they explain.
+
+    Parameters
+    ----------
+    rec : Recording
+        The recording.
+    laws : mapping of str to Law, optional
+        The laws by name; by default those that need no target, with their usual parameters.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no law to compare.
+
+    Examples
+    --------
+    >>> from flockana.dynamics.simulate import simulate
+    >>> from flockana.recorded.recording import recording_of
+    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
+    >>> recognise(recording_of(run)).ranked[0][0]
+    'Algorithm 1'
+    """
+    if laws is None:
+        laws = {"Algorithm 1": Algorithm1(), "dead-zone": DeadZoneFlocking(), "Cucker-Smale": CuckerSmale()}
+    if not isinstance(laws, Mapping) or not laws:
+        raise ArgumentError(f"laws = {format_value(laws)}: expected laws by name, such as {{'mine': Algorithm1()}}")
+    found: list[tuple[str, Comparison]] = []
+    refused: dict[str, str] = {}
+    for name, law in laws.items():
+        try:
+            found.append((name, compare(rec, law)))
+        except FlockanaError as error:
+            refused[name] = str(error)
+    if not found:
+        raise ArgumentError(f"no law is for this recording: {next(iter(refused.values()))}")
+    return Recognition(tuple(sorted(found, key=lambda each: -each[1].explained_refitted)), refused)

@@ -1,0 +1,93 @@
+"""Where a law leads from each recorded sample to the time of the next."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.laws.discrete import DiscreteLaw
+
+SHARE = 0.05  # of the law's time, which a step of the integration is at most
+_MOST = 2000  # steps between two samples
+_WHOLE = 1e-6  # of a step by which an interval between samples may miss a whole number of them
+
+
+def substeps(law: Any, interval: float, share: float = SHARE) -> int:
+    """Return the number of integration steps between samples.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> substeps(Algorithm1(), 0.02) >= 1
+    True
+    """
+    scales = law.scales
+    time = interval if scales is None else scales.time
+    return int(min(max(ceil(interval / (share * time)), 1), _MOST))
+
+
+def predicted(
+    law: Any, t: FloatArray, q: FloatArray, p: FloatArray, *, refine: int = 1
+) -> tuple[FloatArray, FloatArray]:
+    """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m).
+
+    Parameters
+    ----------
+    law : Law or DiscreteLaw
+        The law: integrated by the classical Runge-Kutta scheme, or stepped.
+    t, q, p : ndarray
+        The samples.
+    refine : int
+        Factor of the number of integration steps.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> q = np.array([[[0.0], [50.0]], [[1.0], [50.0]]])
+    >>> predicted(Algorithm1(), np.array([0.0, 1.0]), q, np.ones((2, 2, 1)))[0].round(9).tolist()
+    [[[1.0], [51.0]]]
+    """
+    ends = np.empty((2, max(len(t) - 1, 0), *q.shape[1:]))
+    for k in range(len(t) - 1):
+        ends[0, k], ends[1, k] = _led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine)
+    return ends[0], ends[1]
+
+
+def _led(law: Any, t: float, h: float, q: FloatArray, p: FloatArray, refine: int) -> tuple[FloatArray, FloatArray]:
+    if isinstance(law, DiscreteLaw):
+        steps = round(h / law.dt)
+        if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
+            raise ArgumentError(
+                f"samples are {h:g} apart at t = {t:g}: expected whole steps of {type(law).__name__}, dt = {law.dt:g}"
+            )
+        memory = law.start(q, p)
+        for k in range(steps):
+            q, p, _, memory = law.step(t + k * law.dt, q, p, memory)
+        return q, p
+    count = substeps(law, h) * refine
+    for k in range(count):
+        q, p = rk4(law, t + k * h / count, h / count, q, p)
+    return q, p
+
+
+def rk4(law: Any, t: float, h: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the state after one step of the classical Runge-Kutta scheme.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> rk4(Algorithm1(), 0.0, 0.5, np.zeros((1, 1)), np.ones((1, 1)))[0].tolist()
+    [[0.5]]
+    """
+    u1 = law.flow(t, q, p)[0]
+    p2 = p + 0.5 * h * u1
+    u2 = law.flow(t + 0.5 * h, q + 0.5 * h * p, p2)[0]
+    p3 = p + 0.5 * h * u2
+    u3 = law.flow(t + 0.5 * h, q + 0.5 * h * p2, p3)[0]
+    p4 = p + h * u3
+    u4 = law.flow(t + h, q + h * p3, p4)[0]
+    return q + h / 6.0 * (p + 2.0 * p2 + 2.0 * p3 + p4), p + h / 6.0 * (u1 + 2.0 * u2 + 2.0 * u3 + u4)

@@ -1,0 +1,127 @@
+"""Forms of Algorithms 1 to 3 that implementations have in place of the paper's, to be tried on a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
+from flockana.interactions import AlphaInteraction
+from flockana.measures.nets import links
+from flockana.recorded.contributions import Part
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Alternative form of a part of a law, and the finding that it stands for."""
+
+    gain: str
+    finding: str
+    acts: Part
+
+
+def variants(law: Any) -> tuple[Variant, ...]:
+    """Return the forms to try in place of a law's own.
+
+    Parameters
+    ----------
+    law : Law
+        The law that a recording is compared with.
+
+    Examples
+    --------
+    >>> from flockana.laws.olfati_saber import Algorithm1
+    >>> len(variants(Algorithm1())), variants(Algorithm1())[0].gain
+    (4, 'c1_alpha')
+    """
+    found: list[Variant] = []
+    alpha = getattr(law, "alpha", None)
+    if isinstance(alpha, AlphaInteraction) and hasattr(law, "gains"):
+        found += _of_pairs(alpha)
+    if law.target is not None and hasattr(law, "gains"):
+        found += _of_pull(law)
+    return tuple(found)
+
+
+def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
+    def per_axis(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
+        return alpha.phi_alpha(alpha.sigma_norm(s))[:, None] * x / np.sqrt(1.0 + alpha.eps * x**2)
+
+    def euclidean(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
+        force = alpha.phi_alpha(s) * (s < alpha.r_alpha)
+        return force[:, None] * x / np.sqrt(1.0 + alpha.eps * s**2)[:, None]
+
+    def unit(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
+        return alpha.phi_alpha(alpha.sigma_norm(s))[:, None] * x / np.maximum(s, 1e-300)[:, None]
+
+    def counted(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
+        return v * (s < alpha.r)[:, None]
+
+    return [
+        Variant(
+            "c1_alpha",
+            "the pair force's direction n_ij is taken coordinate by coordinate, x_k/√(1 + ε x_k²), "
+            "not of the vector, x/√(1 + ε‖x‖²)",
+            _pair_sum(alpha.r, per_axis),
+        ),
+        Variant(
+            "c1_alpha",
+            "φ_α is given the distance, not its σ-norm",
+            _pair_sum(max(alpha.r, alpha.r_alpha), euclidean),
+        ),
+        Variant("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, unit)),
+        Variant(
+            "c2_alpha", "all neighbours within r count alike in the consensus, not by a_ij", _pair_sum(alpha.r, counted)
+        ),
+    ]
+
+
+def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]) -> Part:
+    """Sum over pairs within r of a force that is odd in the pair."""
+
+    def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
+        i, j = np.asarray(links(q, r)).T
+        x = q[j] - q[i]
+        given = force(x, lengths(x), p[j] - p[i])
+        u = np.zeros_like(q)
+        np.add.at(u, i, given)
+        np.add.at(u, j, -given)
+        return u
+
+    return acts
+
+
+def _of_pull(law: Any) -> list[Variant]:
+    unit = getattr(law.pair, "unit", 1.0)
+
+    def pull(bend: Callable[[FloatArray], FloatArray]) -> Part:
+        def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
+            x = q - law.target.state(t)[0]
+            u: FloatArray = -x / bend(x / unit)
+            return u
+
+        return acts
+
+    return [
+        Variant(
+            "c1_gamma",
+            "the pull to the γ-agent is proportional to each coordinate's σ₁, not to the vector"
+            + ("'s" if _is_bounded(law) else ""),
+            pull(lambda x: np.sqrt(1.0 + x**2)),
+        ),
+        Variant(
+            "c1_gamma",
+            "the pull to the γ-agent is linear, not bounded by σ₁"
+            if _is_bounded(law)
+            else "the pull to the γ-agent is bounded by σ₁ of the vector, not linear",
+            pull(np.ones_like if _is_bounded(law) else lambda x: np.sqrt(1.0 + np.sum(x**2, axis=1))[:, None]),
+        ),
+    ]
+
+
+def _is_bounded(law: Any) -> bool:
+    return any(getattr(term, "target", None) is law.target and getattr(term, "unit", None) for term in law.terms)

@@ -1,0 +1,67 @@
+"""Scenarios of pair laws by their formula: a Morse flock that follows, and one that holds together by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flockana.environment.targets import LinearTarget
+from flockana.interactions import FormulaInteraction, Gains, pair_law
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios.scenario import Scenario
+
+_CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
+_VERIFIED = {"any-potential": "verified", **{f"any-potential:{claim}": "verified" for claim in _CLAIMS}}
+
+
+def _morse() -> FormulaInteraction:
+    """Return Morse's potential with its least near 7, brought to 0 at the range 14."""
+    return pair_law(
+        "k*((1 - exp(-a*(s - d)))**2 - 1)*(1 - s**2/r**2)**2",
+        adjacency="(1 - s/r)**2",
+        range=14.0,
+        length=7.0,
+        parameters={"k": 30.0, "a": 0.5},
+    )
+
+
+def _follows(seed: int = 0) -> Scenario:
+    """Return twelve agents under Algorithm 2 with Morse's potential, spread over a disc."""
+    generator = np.random.default_rng(seed)
+    grid = 8.0 * np.array([(i, j) for i in range(4) for j in range(3)], dtype=np.float64)
+    return Scenario(
+        "morse-follows",
+        "Twelve agents with Morse's potential follow a γ-agent",
+        "Ours: Algorithm 2 with a Morse potential of depth 30, a = 0.5, d = 7, brought to 0 at r = 14; a grid of "
+        "spacing 8, each coordinate displaced by up to 1, velocities up to 1 per axis.",
+        Algorithm2(_morse(), Gains(1.0, 1.0, 0.0, 0.0, 0.2, 0.5), LinearTarget((40.0, 0.0), (1.0, 0.0))),
+        grid + generator.uniform(-1.0, 1.0, grid.shape),
+        generator.uniform(-1.0, 1.0, grid.shape),
+        (0.0, 30.0),
+        seed,
+        {"energy": "verified", **_VERIFIED, "os-3": "vacuous", "os-3:i": "verified", "os-3:iii": "verified"},
+        references=("olfati-saber-2006", "flockana"),
+    )
+
+
+def _holds(seed: int = 0) -> Scenario:
+    """Return four agents under Algorithm 1 with too little energy to part."""
+    generator = np.random.default_rng(seed)
+    rhombus = 6.0 * np.array([(0.0, 0.0), (1.0, 0.0), (0.5, 0.75**0.5), (1.5, 0.75**0.5)])
+    return Scenario(
+        "morse-holds",
+        "Four agents with Morse's potential that have too little energy to part",
+        "Ours: Algorithm 1 with a Morse potential of depth 30, a = 0.5, d = 7, brought to 0 at r = 14; a rhombus of "
+        "side 6, velocities up to 1 per axis. E(0) < 3 c1α (ψ(r) - L), so that no solution from there is disconnected.",
+        Algorithm1(_morse(), Gains(1.0, 1.0)),
+        rhombus,
+        generator.uniform(-1.0, 1.0, rhombus.shape),
+        (0.0, 20.0),
+        seed,
+        {"energy": "verified", **_VERIFIED, "os-1": "vacuous", "os-1:ii": "verified", "os-1:iii": "verified"},
+        references=("olfati-saber-2006", "flockana"),
+    )
+
+
+SCENARIOS: dict[str, Callable[..., Scenario]] = {"morse-follows": _follows, "morse-holds": _holds}

@@ -1,0 +1,57 @@
+"""The Cucker-Smale law in steps of time: the flock of the continuous law, if a step is not too long."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from flockana.laws.cucker_smale import CuckerSmale
+from flockana.laws.explicit_euler import ExplicitEuler
+from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.laws.taylor_step import TaylorStep
+from flockana.theorems.classics.alignment_bounds import Guarantee
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.hypotheses import condition, positive_room
+from flockana.theorems.observed import Observed
+from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+
+_CLAIMS = ("bounded", "rate", "velocities")
+_ROUNDING = 1e-14  # relative, of a product of three numbers
+
+
+def _law(seen: Observed) -> Hypothesis:
+    """The hypothesis that a run is of the law in steps, which move positions by old or new velocities or their mean."""
+    law = seen.law
+    steps = type(law) in (ExplicitEuler, SemiImplicitEuler, TaylorStep) and type(law.law) is CuckerSmale
+    name = type(law).__name__ + (f" of {type(law.law).__name__}" if hasattr(law, "law") else "")
+    return condition("steps of the Cucker-Smale law are applied", steps, detail=name)
+
+
+def _short_step(seen: Observed, strength: float) -> Hypothesis:
+    """The hypothesis h λ <= 1: no step takes more of a relative velocity than there is."""
+    most = Enclosure.around(seen.law.dt * strength, _ROUNDING * seen.law.dt * strength)
+    return positive_room("h λ <= 1", 1.0 + 2.0 * _ROUNDING - most, f"h λ = {float(most.mid):.6g}")
+
+
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    guarantee = Guarantee(seen, sqrt(2.0))
+    needs = [_short_step(seen, guarantee.phi.strength), guarantee.hypothesis("‖v(0)‖ < ∫φ from ‖x(0)‖ on")]
+    return needs, [] if unmet(needs) else guarantee.claims(_CLAIMS, needs, proof="cucker-smale")
+
+
+THEOREM = Theorem(
+    id="cucker-smale-steps",
+    title="The Cucker-Smale law in steps of time flocks as the continuous one, if steps are short",
+    statement=(
+        "With steps h of the Cucker-Smale law, p' = p + h u and positions moved by h times p, p' or their mean, let "
+        "h λ <= 1, where λ = nK of plain sums and K of means. If ‖v(0)‖ < ∫φ from ‖x(0)‖ on, as always for β <= ½, "
+        "then ‖x‖ <= x_M at all steps and ‖v‖ <= ‖v(0)‖ (1 - hφ(x_M))^k <= ‖v(0)‖ exp(-φ(x_M) t). In our words, after "
+        "the discrete-time theorem of Cucker and Smale, who bound the step too."
+    ),
+    source="Cucker and Smale 2007, discrete time; condition and bounds ours, after Ha and Liu 2009",
+    kind="trajectory",
+    law=_law,
+    check=_check,
+    claims=_CLAIMS,
+    references=("cucker-smale-2007", "ha-liu-2009", "flockana"),
+    author="flockana",
+)

@@ -1,0 +1,261 @@
+"""Verdicts on recordings: do the samples follow the law, and what do the theorems say within their accuracy?
+
+The first hypothesis is that each sample is where the law leads from the one before, within the stated accuracy. If it
+is, the law's solution from the recorded start is judged, on enclosures that hold the recording, too: as wide as the two
+differ, the accuracy added, at worst within one time unit of the law before and after; an observable is as wide as it
+differs between the solution and states at the ends of the enclosure. Limits are certified from the last state if its
+whole enclosure lies in a basin. Without a law, definitions about samples are judged alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.base.vectors import centres, lengths
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.recorded.following import Following, following
+from flockana.recorded.recording import Recording
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed, with_doubt
+from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, largest_over
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+
+DEFINITIONS = ("alpha-flocking", "alpha-flocking-strict", "os-5-terminal")  # which need no law
+_WAYS = 3  # random directions in which states are moved to the ends of their enclosures
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedRecording(Observed):
+    """The law's solution from a recorded start, with enclosures that hold the recording; `given` is the recording."""
+
+    place: float = 0.0  # accuracy of the last positions
+
+    @property
+    def begins_exactly(self) -> bool:
+        """Never: the recorded start is known to its accuracy."""
+        return False
+
+    @property
+    def accuracy_of_end(self) -> float:
+        """How far the last recorded positions may be off."""
+        return self.place
+
+    def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Largest half width from one law time before each start to one after each end, of a map too."""
+        unit, times = 0.0 if self.is_map else self.run.scales.time, self.errors.t
+        first = np.searchsorted(times, start - unit)
+        stop = np.searchsorted(times, end + unit, side="right")
+        return largest_over(errors, first, np.maximum(stop, first + 1))
+
+    def sensitivity(self, observable: Callable[[Trajectory], Any]) -> FloatArray:
+        """Return by how much an observable differs between the solution and states that the recording allows."""
+        best = np.asarray(observable(self.run), dtype=np.float64)
+        widest = np.zeros(best.shape)
+        for other in self.allowed:
+            with np.errstate(invalid="ignore"):
+                off = np.abs(np.asarray(observable(other), dtype=np.float64) - best)
+            widest = np.maximum(widest, DOUBT * np.where(np.isnan(off), np.inf, off))
+        return widest
+
+    def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
+        """Return an observable over time, as wide as the states that the recording allows make it."""
+        return super().series(observable, floor=floor + self.sensitivity(observable))
+
+    @property
+    def residual(self) -> Enclosure:  # type: ignore[override]  # not cached
+        """Energy balance of the law's solution: a recording has no work of its own."""
+        return replace_class(self, Observed).residual
+
+    @property
+    def allowed(self) -> tuple[Trajectory, ...]:
+        """The recording, and states at the ends of the enclosures, in some directions and along the forces."""
+        return self.cached("allowed", self._allowed)
+
+    def _allowed(self) -> tuple[Trajectory, ...]:
+        run, rng = self.run, np.random.default_rng(0)
+        off_q = (self.shape_error + self.centre_error[:, None])[:, :, None]
+        off_p = (self.speed_error + self.drift_error[:, None])[:, :, None]
+        recorded = replace(self.given, extra=run.extra) if len(self.given.t) == len(run.t) else run
+        ways = [tuple(_unit(rng.normal(size=run.q.shape)) for _ in range(2)) for _ in range(_WAYS)]
+        ways.append((_unit(run.u), _unit(centred(run.p))))
+        moved = (
+            [
+                replace(run, q=run.q + sign * off_q * a, p=run.p + sign * off_p * b, between=None)
+                for a, b in ways
+                for sign in (1.0, -1.0)
+            ]
+            if np.isfinite(off_q).all() and np.isfinite(off_p).all()
+            else []
+        )
+        return (recorded, *moved)
+
+
+def replace_class(seen: Observed, kind: type[Observed]) -> Observed:
+    """Return the same evidence as another class of it."""
+    return kind(seen.given, seen.run, seen.other, seen.errors, seen.doubt)
+
+
+def _unit(x: FloatArray) -> FloatArray:
+    sizes = lengths(x)[:, :, None]
+    unit: FloatArray = np.divide(x, sizes, out=np.zeros_like(x), where=sizes > 0.0)
+    return unit
+
+
+def verify_recording(
+    item: Theorem,
+    rec: Recording,
+    tolerances: Tolerances,
+    *,
+    law: Any = None,
+    d: float | None = None,
+    r: float | None = None,
+    subject: str = "",
+) -> Verdict:
+    """Return the verdict of a theorem on a recording, under a law or, of definitions about samples, without one.
+
+    Parameters
+    ----------
+    item : Theorem
+        The theorem, about motion.
+    rec : Recording
+        The recording, without gaps.
+    tolerances : Tolerances
+        Thresholds.
+    law : Law or DiscreteLaw, optional
+        The law that it may follow.
+    d, r : float, optional
+        Without a law: scale and range.
+    subject : str
+        A name for the case.
+
+    Raises
+    ------
+    ArgumentError
+        If the theorem is not about motion, needs a law, or the recording has gaps.
+    """
+    if item.kind != "trajectory":
+        raise ArgumentError(f"{item.id} is not about motion: expected a theorem that is checked on a run")
+    rec.ensure_complete("a verdict")
+    if law is None:
+        return _of_samples(item, rec, tolerances, d, r, subject)
+    if d is not None or r is not None:
+        raise ArgumentError("law and d or r are given: expected one of them; a law has its own scale and range")
+    law = ensure_law(law)
+    law.check_dimension(rec.m)
+    law.check_agents(rec.n)
+    follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
+    first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail)
+    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
+    named = f"{name}: {rec.accuracy}"
+    if follow.status == "unmet":
+        text = "the samples do not follow the law"
+        claims = tuple(Claim(each, "vacuous", detail=text, needs=(first,), by=item.by(each)) for each in _names(item))
+        return Verdict(item.id, (first,), claims, tolerances, named, item.author)
+    seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
+    hypotheses, claims = item.examine(seen, tolerances)
+    decided = tuple(_weighed(claim, rec, first) for claim in with_doubt(claims, seen))
+    return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
+
+
+def _names(item: Theorem) -> tuple[str, ...]:
+    return item.claims or ("all",)
+
+
+def _of_samples(
+    item: Theorem, rec: Recording, tolerances: Tolerances, d: float | None, r: float | None, subject: str
+) -> Verdict:
+    """A definition about samples, with nothing known between them."""
+    if item.id not in DEFINITIONS:
+        raise ArgumentError(
+            f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
+            f"{', '.join(DEFINITIONS)} are judged with d= and r="
+        )
+    if d is None and r is None:
+        raise ArgumentError("no law, no d and no r: expected law=..., or the scale d and the range r of nets")
+    if rec.p is None:
+        rec = rec.with_velocities()
+    run = rec.trajectory(d=d, r=r)
+    place, speed = _widths(rec)
+    errors = Errors(
+        run.t,
+        place + place.mean(axis=1)[:, None],
+        speed + speed.mean(axis=1)[:, None],
+        place.mean(axis=1),
+        speed.mean(axis=1),
+    )
+    doubt = "" if len(run.t) > 1 else "one sample shows no motion"
+    seen = ObservedRecording(run, run, run, errors, doubt, float(place[-1].max()))
+    stated = Hypothesis(
+        "the accuracy of the samples is stated", "met" if rec.accuracy.decides else "assumed", detail=str(rec.accuracy)
+    )
+    hypotheses, claims = item.examine(seen, tolerances)
+    decided = tuple(_weighed(claim, rec, stated) for claim in with_doubt(claims, seen))
+    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
+    return Verdict(
+        item.id, (stated, *hypotheses), decided, tolerances, f"{name}, at its samples: {rec.accuracy}", item.author
+    )
+
+
+def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
+    """Accuracy of places and velocities, shape (T, n)."""
+    place, speed = (
+        np.broadcast_to(np.asarray(each, dtype=np.float64), rec.q.shape[:2])
+        for each in (rec.accuracy.place, rec.accuracy.speed)
+    )
+    return place, speed
+
+
+def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
+    """Return the law's solution from the recorded start, with enclosures that hold the recording.
+
+    Parameters
+    ----------
+    rec : Recording
+        Complete, with two samples or more.
+    law : Law or DiscreteLaw
+        The law.
+    follow : Following
+        The start, and the velocities at the samples.
+    """
+    run = simulate(law, follow.q0, follow.p0, (float(rec.t[0]), float(rec.t[-1])), t_eval=rec.t)
+    seen = Observed.of(run)
+    p = np.broadcast_to(follow.p, rec.q.shape)
+    zeros = np.zeros(rec.q.shape)
+    given = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
+    if seen.doubt or len(run.t) != len(rec.t) or doubt_of(given):
+        return ObservedRecording(given, run, seen.other, seen.errors, seen.doubt or doubt_of(given) or "the run ended")
+    place, (apart, slip) = _widths(rec)[0], (rec.q - run.q, p - run.p)
+    speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
+    if not rec.accuracy.decides:
+        place, speed = np.zeros(place.shape), np.zeros(speed.shape)
+    off = (
+        lengths(centred(apart)) + place + place.mean(axis=1)[:, None],
+        lengths(centred(slip)) + speed + speed.mean(axis=1)[:, None],
+        lengths(centres(apart)[:, None])[:, 0] + place.mean(axis=1),
+        lengths(centres(slip)[:, None])[:, 0] + speed.mean(axis=1),
+    )
+    times, end = seen.errors.t, float(place[-1].max())
+    if isinstance(law, DiscreteLaw):
+        return ObservedRecording(given, run, seen.other, Errors(rec.t, *off), place=end)
+    after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
+    before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)
+    widened = [x + np.maximum(y[before], y[after]) for x, y in zip(seen.errors[1:], off, strict=True)]
+    return ObservedRecording(given, run, seen.other, Errors(times, *widened), place=end)
+
+
+def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
+    """A claim with the rigour that the accuracy allows; one under a hypothesis that is only assumed decides nothing."""
+    if claim.status not in ("verified", "refuted"):
+        return claim
+    if first.status != "met":
+        detail = f"{claim.detail}; {first.name}: {first.detail}, which decides nothing"
+        return replace(claim, status="inconclusive", detail=detail.lstrip("; "))
+    return replace(claim, rigour="statistical" if rec.accuracy.kind == "sd" else "numeric")

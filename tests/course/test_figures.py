@@ -1,0 +1,97 @@
+"""Explanatory figures: what they draw is what their captions say, in numbers."""
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.course import figures
+from flockana.plots import subplots
+
+ALPHA = fl.AlphaInteraction()
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    """Close the figures of a test."""
+    yield
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
+
+
+def curves(ax):
+    return {line.get_label(): np.asarray(line.get_xydata(), float) for line in ax.lines}
+
+
+def test_the_vector_of_a_pair_is_shorter_than_their_difference_and_bounded():
+    axes = figures.pair_vector(eps=0.1, axes=subplots(1, 2)[1])
+    lengths = curves(axes[1])
+    whole, short = (next(c for name, c in lengths.items() if key in name) for key in ("q_j", "n_{ij}"))
+    assert np.all(short[1:, 1] < whole[1:, 1])
+    assert np.allclose(short[:, 1], whole[:, 1] / np.sqrt(1.0 + 0.1 * whole[:, 1] ** 2))
+    assert short[:, 1].max() < 10.0**0.5
+
+
+def test_the_norms_and_bumps_are_the_librarys():
+    x, drawn = np.linspace(-4.0, 4.0, 401), curves(figures.norms(eps=(0.1, 1.0)))
+    assert np.allclose(drawn["σ-norm, ε = 0.1"][:, 1], ALPHA.sigma_norm(np.abs(x)))
+    bumps = curves(figures.bumps(h=(0.2, 0.9)))
+    for h in (0.2, 0.9):
+        z, values = bumps[f"h = {h:g}"].T
+        assert np.allclose(values, fl.AlphaInteraction(h=h).bump(z), atol=1e-12)
+
+
+def test_three_orbits_keep_their_energies():
+    for share, curve in zip((0.5, 0.5, 1.0, 1.0, 1.6, 1.6), figures.three_orbits(ALPHA).lines, strict=False):
+        y, rate = np.asarray(curve.get_xydata(), float).T
+        energy = ALPHA.psi_alpha(ALPHA.sigma_norm(y)) + rate**2 / 4.0
+        assert np.allclose(energy, share * ALPHA.psi_alpha(ALPHA.r_alpha), rtol=1e-9)
+
+
+def test_two_links_of_length_1_cross_and_two_ends_are_near():
+    ax = figures.crossing_links()
+    links = [np.asarray(line.get_xydata(), float) for line in ax.lines[:2]]
+    assert np.allclose([np.hypot(*(link[1] - link[0])) for link in links], 1.0, atol=0.01)
+    ends = [np.hypot(*(a - b)) for a in links[0] for b in links[1]]
+    assert min(ends) <= 2.0**-0.5
+    assert f"{min(ends):.2f}" in {text.get_text() for text in ax.texts}
+
+
+def test_the_velocity_of_a_beta_agent_is_the_projection():
+    sphere, wall = figures.projections(axes=subplots(1, 2)[1])
+    law = fl.Algorithm3(target=fl.StaticTarget((0.0, 0.0)), obstacles=(fl.Sphere((0.0, 0.0), 1.0),))
+    q, image = (np.asarray(line.get_xydata(), float)[0] for line in sphere.lines[:2])
+    assert np.allclose(image, q / np.hypot(*q))
+    assert law.obstacles[0].radius == 1.0
+    assert np.asarray(wall.lines[1].get_xydata(), float)[0].tolist() == [0.0, 0.0]
+
+
+def test_the_tails_of_an_interval_are_two_and_a_half_per_cent():
+    ends = tuple(map(float, fl.clopper_pearson(57, 60)))
+    bars = figures.interval_tails(57, 60, ends).containers
+    for drawn in (bars[1], bars[3]):
+        assert sum(bar.get_height() for bar in drawn) == pytest.approx(0.025, rel=1e-6)
+
+
+def test_zones_are_nested_and_named_once():
+    ax = figures.zones({"near": 1.0, "far": 3.0, "middle": 2.0})
+    sizes = [np.abs(patch.get_xy()).max() for patch in ax.patches]
+    assert np.allclose(sizes, [3.0, 2.0, 1.0], rtol=1e-3)
+    assert sorted(text.get_text() for text in ax.texts) == ["far = 3", "middle = 2", "near = 1"]
+
+
+@pytest.mark.parametrize("draw", [figures.orbit_ball_level, figures.target_pull, figures.wall_and_well])
+def test_other_figures_draw_something(draw):
+    ax = draw(ALPHA) if draw is figures.wall_and_well else draw()
+    assert ax.lines or ax.collections
+
+
+def test_kinds_of_equilibria_are_told_by_eigenvalues():
+    axes = figures.equilibria(axes=subplots(1, 3)[1])
+    assert [ax.get_title(loc="left").split(":")[0] for ax in axes] == ["minimum", "saddle", "degenerate"]
+
+
+def test_a_net_draws_its_links_and_numbers():
+    ax = figures.net(3, [(0, 1), (1, 2)], title="path")
+    assert len(ax.lines) == 2
+    assert [text.get_text() for text in ax.texts] == ["1", "2", "3"]

@@ -1,0 +1,119 @@
+"""Delayed laws: the method of steps by hand, its order, what is heard, delays link by link."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.interactions import Gains
+from flockana.lattice import hexagonal_spiral
+from flockana.laws.cucker_smale import CuckerSmale
+from flockana.laws.delayed import LATE, Delayed
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+
+LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
+
+
+def lone(c1, c2, target=None):
+    return Algorithm2(gains=Gains(c1_gamma=c1, c2_gamma=c2), target=target or StaticTarget((0.0,)))
+
+
+def test_the_integrator_is_of_fourth_order():
+    """At the margin, k = ω² cos ωτ and d = ω sin ωτ: halving the step takes the error down by sixteen."""
+    w, tau = 1.3, 0.4
+    law = lone(w * w * cos(w * tau), w * sin(w * tau))
+    errors, fine = [], simulate(Delayed(law, tau), [[1.0]], [[0.0]], (0.0, 6.0), dt=tau / 64)
+    for steps in (2, 4, 8):
+        run = simulate(Delayed(law, tau), [[1.0]], [[0.0]], (0.0, 6.0), dt=tau / steps)
+        errors.append(abs(run.q[-1, 0, 0] - fine.q[-1, 0, 0]))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.6)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.6)
+
+
+def test_the_method_of_steps_by_hand():
+    """x'' = −2 x(t − 1), at rest at 1 before: 1 − t², then 1 − t² + (t − 1)⁴/6."""
+    run = simulate(Delayed(lone(2.0, 0.0), 1.0), [[1.0]], [[0.0]], (0.0, 2.0), dt=1.0 / 10)
+    t = run.t
+    exact = 1.0 - t**2 + np.where(t > 1.0, (t - 1.0) ** 4 / 6.0, 0.0)
+    np.testing.assert_allclose(run.q[:, 0, 0], exact, atol=2e-5)
+    fine = simulate(Delayed(lone(2.0, 0.0), 1.0), [[1.0]], [[0.0]], (0.0, 2.0), dt=1.0 / 80)
+    assert abs(fine.q[-1, 0, 0] - exact[-1]) < 1e-8
+
+
+def test_a_moving_past_is_heard():
+    """Before the start the agent moved steadily: what is heard at t = 0 is where it was τ ago, and so is the target."""
+    law = Delayed(lone(2.0, 0.5, LinearTarget((1.0,), (3.0,))), 0.1)
+    run = simulate(law, [[0.0]], [[4.0]], (0.0, 0.1), dt=0.1 / 50)
+    u = -2.0 * ((-0.4) - (1.0 - 0.3)) - 0.5 * (4.0 - 3.0)
+    assert (run.p[1, 0, 0] - 4.0) / run.t[1] == pytest.approx(u, abs=5e-3)
+
+
+@pytest.mark.parametrize("late", LATE)
+def test_a_short_delay_is_none(late):
+    q = hexagonal_spiral(4, 7.0) + 0.2
+    p = np.random.default_rng(1).standard_normal(q.shape)
+    run = simulate(Delayed(LAW, 1e-3, late), q, p, (0.0, 0.3), dt=1e-3)
+    prompt = simulate(LAW, q, p, (0.0, 0.3), t_eval=[0.3])
+    np.testing.assert_allclose(run.q[-1], prompt.q[-1], atol=5e-3)
+
+
+def test_what_is_heard_by_hand():
+    """Two agents on a line, the first step from rest: each sees where the other was, "neighbours" itself where it is.
+
+    Drifting together at speed 2 for τ = 0.25 the one behind finds the other half a length nearer, the one ahead finds
+    it half a length farther off; both are pushed backwards, and the centre of mass with them. "pairs" has its own past.
+    """
+    law, q, p = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), [[0.0], [7.0]], [[2.0], [2.0]]
+    for late, seen in (("neighbours", (6.5, 7.5)), ("pairs", (7.0, 7.0))):
+        run = simulate(Delayed(law, 0.25, late), q, p, (0.0, 1e-4), dt=1e-4)
+        pulls = [law.acceleration(0.0, [[0.0], [x]], [[0.0], [0.0]])[0, 0] for x in seen]
+        u = (run.p[1] - run.p[0])[:, 0] / run.t[1]
+        np.testing.assert_allclose(u, [pulls[0], -pulls[1]], atol=1e-3)
+
+
+def test_one_delay_for_each_pair_is_that_of_all_where_they_agree():
+    q = hexagonal_spiral(4, 7.0) + 0.2
+    p = np.random.default_rng(1).standard_normal(q.shape)
+    runs = [
+        simulate(Delayed(LAW, lag, "neighbours"), q, p, (0.0, 0.2), dt=0.005) for lag in (0.02, np.full((4, 4), 0.02))
+    ]
+    np.testing.assert_allclose(runs[0].q, runs[1].q, rtol=0.0, atol=1e-13)
+
+
+def test_who_hears_whom_late_is_told_link_by_link():
+    """Agent 0 hears agent 1 a quarter late, agent 1 hears agent 0 at once: drifting, only agent 0 is wrong."""
+    law, q, p = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.0)), [[0.0], [7.0]], [[2.0], [2.0]]
+    run = simulate(Delayed(law, [[0.0, 0.25], [0.0, 0.0]], "neighbours"), q, p, (0.0, 1e-4), dt=1e-4)
+    pull = law.acceleration(0.0, [[0.0], [6.5]], [[0.0], [0.0]])[0, 0]
+    np.testing.assert_allclose((run.p[1] - run.p[0])[:, 0] / 1e-4, [pull, 0.0], atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Delayed(LAW, -0.1), "delay = -0.1: expected a number >= 0"),
+        (lambda: Delayed(LAW, [[0.0, 0.1], [0.1, 0.0]]), 'expected late="neighbours"'),
+        (lambda: Delayed(CuckerSmale(), 0.1, "pairs"), "expected a sum of terms with a pair term"),
+        (lambda: Delayed(None, 0.1), "law = None: expected a continuous law"),
+        (lambda: Delayed(LAW, 0.1, "some"), "late = 'some'"),
+        (lambda: simulate(Delayed(LAW, 0.1), [[0.0, 0.0]], [[0.0, 0.0]], (0, 1)), "dt = None: Delayed is run in fixed"),
+        (lambda: simulate(Delayed(LAW, 0.1), [[0.0]], [[0.0]], (0, 1), dt=0.1), "the target has 2 components"),
+        (
+            lambda: simulate(Delayed(LAW, 0.1), [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), dt=0.03),
+            "dt = 0.03: expected a step that divides the delay or period 0.1, such as 0.025",
+        ),
+        (
+            lambda: simulate(Delayed(LAW, [[0.0, 0.1]], "neighbours"), [[0.0, 0.0]], [[0.0, 0.0]], (0, 1), dt=0.1),
+            r"delay has shape \(1, 2\): expected \(1, 1\)",
+        ),
+        (lambda: Delayed(LAW, 0.1).acceleration(0.0, [[0.0, 0.0]], [[0.0, 0.0]]), "no input at an instant"),
+    ],
+)
+def test_bad_input(call, message):
+    with pytest.raises(ArgumentError, match=message):
+        call()

@@ -1,0 +1,37 @@
+"""Lossy laws: nothing, all or a share of the messages lost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.interactions import Gains
+from flockana.laws.lossy import Lossy
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.laws.sampled import Sampled
+from flockana.laws.taylor_step import TaylorStep
+
+LAW = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.5))
+PAIR, STILL = np.array([[0.0], [8.0]]), np.zeros((2, 1))
+
+
+def test_no_loss_is_the_law_and_all_lost_is_none():
+    whole = simulate(TaylorStep(LAW, 0.01), PAIR, STILL, (0.0, 1.0))
+    kept, lost = (simulate(Sampled(Lossy(LAW, loss), 0.01), PAIR, STILL, (0.0, 1.0), dt=0.01) for loss in (0.0, 1.0))
+    np.testing.assert_allclose(kept.q, whole.q, rtol=0.0, atol=1e-12)
+    np.testing.assert_array_equal(lost.q, np.broadcast_to(PAIR, lost.q.shape))
+
+
+def test_messages_are_lost_by_their_probability_and_each_way_by_itself():
+    run = simulate(Sampled(Lossy(LAW, 0.3, seed=4), 1e-4), PAIR, STILL, (0.0, 0.2), dt=1e-4)
+    arrived = run.u[1:, :, 0] != 0.0
+    assert arrived.mean() == pytest.approx(0.7, abs=0.03)
+    assert (arrived[:, 0] != arrived[:, 1]).mean() == pytest.approx(2 * 0.7 * 0.3, abs=0.03)
+
+
+@pytest.mark.parametrize(("loss", "message"), [(-0.1, "loss = -0.1"), (1.1, "loss = 1.1: expected a probability")])
+def test_bad_input(loss, message):
+    with pytest.raises(ArgumentError, match=message):
+        Lossy(LAW, loss)

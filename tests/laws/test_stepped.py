@@ -1,0 +1,68 @@
+"""Steps of wrapped laws: all wrappers at once, in any pieces, saved and replayed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.simulate import simulate
+from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.targets import StaticTarget
+from flockana.lattice import hexagonal_patch
+from flockana.laws.delayed import Delayed
+from flockana.laws.disturbed import Disturbed
+from flockana.laws.lossy import Lossy
+from flockana.laws.measured import Measured
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.laws.sampled import Sampled
+from flockana.laws.saturated import Saturated
+from flockana.laws.stepped import Stepped
+from flockana.stability import linearise
+
+LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
+Q = hexagonal_patch(1, 7.0)
+SENSED = Sampled(Delayed(Measured(Lossy(LAW, 0.1), 0.001, 0.01, "neighbours", seed=2), 0.02, "neighbours"), 0.02)
+ALL = Disturbed(Saturated(SENSED, 5.0), intensity=0.1, swing=(1.0, 0.0), frequency=0.5, seed=7)
+
+
+def test_all_at_once_is_saved_and_replayed(tmp_path):
+    run = simulate(ALL, Q, 0.0 * Q, (0.0, 1.0), dt=0.01)
+    again = Trajectory.load(run.save(tmp_path / "run.nc"))
+    assert again.law == run.law == Stepped(ALL, 0.01, 2)
+    np.testing.assert_array_equal(simulate(again.law, Q, 0.0 * Q, (0.0, 1.0)).q, run.q)
+    assert run.extra == {}  # the past is not recorded
+    assert run.status == "complete"
+
+
+def test_steps_are_the_same_in_any_pieces():
+    law, memory = Stepped(ALL, 0.01, 2), None
+    q, p, memory = Q, 0.0 * Q, law.start(Q, 0.0 * Q)
+    whole = law.iterate(0.0, q, p, memory, 30)
+    done = 0
+    for piece in (1, 5, 24):
+        states = law.iterate(0.01 * done, q, p, memory, piece)
+        q, p, memory = states[0][-1], states[1][-1], {name: values[-1] for name, values in states[3].items()}
+        done += piece
+    np.testing.assert_array_equal(q, whole[0][-1])
+
+
+def test_what_wraps_shows_through():
+    assert ALL.core is LAW
+    assert [type(one).__name__ for one in ALL.wrappers][:3] == ["Disturbed", "Saturated", "Sampled"]
+    law = Stepped(ALL, 0.01)
+    assert (law.target, law.pair, law.scales) == (LAW.target, LAW.pair, LAW.scales)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Stepped(LAW, 0.01), "expected a law that wraps one"),
+        (lambda: Stepped(ALL, 0.01, 3), "order = 3: expected one of 1, 2, 4"),
+        (lambda: Stepped(ALL, 0.03), "dt = 0.03: expected a step that divides the delay or period 0.02, such as 0.02"),
+        (lambda: linearise(Delayed(LAW, 0.1), Q), "Delayed gives no derivatives"),
+    ],
+)
+def test_bad_input(call, message):
+    with pytest.raises(ArgumentError, match=message):
+        call()

@@ -1,0 +1,100 @@
+"""A recording held against a law: what it explains, and the errors of other implementations, each in a sentence."""
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.base.errors import ArgumentError
+from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
+
+T = np.linspace(0.0, 2.0, 101)
+
+
+def recorded(**faults):
+    q, p = own_run(T, **faults)
+    return fl.Recording(T, q, p, bound=1e-6)
+
+
+def test_a_users_own_right_code_is_explained_and_its_gains_are_found():
+    seen = fl.compare(recorded(), LAW)
+    assert seen.basis == "steps"
+    assert seen.explained > 0.9999
+    assert seen.findings == ()
+    found = {one.symbol: one.found for one in seen.shares}
+    assert found["c1α"] == pytest.approx(30.0, rel=2e-3)
+    assert found["c2γ"] == pytest.approx(2.0 * np.sqrt(1.1), rel=2e-3)
+    assert sum(one.share for one in seen.shares) == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("faults", "finding"),
+    [
+        ({"pull_per_axis": True}, "the pull to the γ-agent is proportional to each coordinate's σ₁, not to the vector"),
+        ({"direction_per_axis": True}, "the pair force's direction n_ij is taken coordinate by coordinate"),
+        ({"c2a": 30.0}, "velocity consensus is c2α = 30 here, 10.95 in the law"),
+    ],
+)
+def test_the_errors_of_public_implementations_are_told(faults, finding):
+    seen = fl.compare(recorded(**faults), LAW)
+    assert len(seen.findings) == 1
+    assert seen.findings[0].startswith(finding)
+    assert seen.explained < 0.99 < seen.explained_refitted
+
+
+def test_two_errors_at_once_are_told_apart():
+    texts = fl.compare(recorded(pull_per_axis=True, c2a=30.0), LAW).findings
+    assert [text.split(" is ")[0] for text in texts] == ["the pull to the γ-agent", "velocity consensus"]
+
+
+def test_recorded_accelerations_are_compared_at_the_samples():
+    q, p = own_run(T)
+    u = np.array([own_acceleration(*state) for state in zip(q, p, strict=True)])
+    seen = fl.compare(fl.Recording(T, q, p, u), LAW)
+    assert seen.basis == "accelerations"
+    assert np.abs(seen.residual).max() < 1e-9 * np.abs(u).max()
+    u[7, 3] += 5.0
+    worst = fl.compare(fl.Recording(T, q, p, u), LAW).worst[0]
+    assert worst == (pytest.approx(T[7]), "3", pytest.approx(5.0 * np.sqrt(2.0)))
+
+
+@pytest.mark.parametrize(
+    ("scheme", "name"),
+    [
+        (fl.ExplicitEuler, "explicit Euler"),
+        (fl.SemiImplicitEuler, "semi-implicit Euler"),
+        (fl.TaylorStep, "Taylor steps"),
+    ],
+)
+def test_schemes_are_told_and_the_input_of_each_step_is_the_laws(scheme, name):
+    run = fl.simulate(scheme(LAW, 0.01), Q0, P0, (0.0, 0.5))
+    seen = fl.compare(fl.Recording(run.t, run.q, run.p), LAW)
+    assert seen.findings == (f"steps are {name} of 0.01",)
+    assert seen.explained > 1.0 - 1e-12
+    assert fl.compare(fl.Recording(run.t, run.q, run.p), scheme(LAW, 0.01)).findings == seen.findings
+
+
+def test_runge_kutta_steps_are_told():
+    run = fl.simulate(LAW, Q0, P0, (0.0, 1.0), method="RK4", dt=0.04, t_eval=np.arange(26) * 0.04)
+    assert "steps are Runge-Kutta steps (RK4) of 0.04" in fl.compare(fl.Recording(run.t, run.q, run.p), LAW).findings
+
+
+def test_a_foreign_law_is_told_and_a_ranking_says_which_fits():
+    rec = recorded()
+    seen = fl.recognise(rec, {"mine": LAW, "no target": fl.Algorithm1(), "mean": fl.CuckerSmale()})
+    assert seen.ranked[0][0] == "mine"
+    assert seen.best is seen.ranked[0][1]
+    other = fl.recognise(rec, {"mean": fl.CuckerSmale()})
+    assert other.best is None
+    assert "none fits" in str(other)
+    assert "another law acts" in str(other.ranked[0][1])
+    with pytest.raises(ArgumentError, match="expected laws by name"):
+        fl.recognise(rec, {})
+    flat = fl.Algorithm2(target=fl.StaticTarget((0.0,)))
+    assert "expected equal dimensions" in fl.recognise(rec, {"flat": flat, "mine": LAW}).refused["flat"]
+
+
+def test_too_few_samples_are_refused():
+    with pytest.raises(ArgumentError, match="one sample without accelerations"):
+        fl.compare(fl.Recording([0.0], Q0[None], P0[None]), LAW)
+    with pytest.raises(ArgumentError, match="expected 4 or more"):
+        fl.compare(fl.Recording([0.0, 1.0], np.stack([Q0, Q0])), LAW)

@@ -1,0 +1,27 @@
+"""Each faulty implementation is found out by one sentence of `compare`."""
+
+import numpy as np
+import pytest
+
+import flockana as fl
+from flockana.recorded.faulty import CODES, faulty_recording, intended_law
+
+FINDINGS = {
+    "A": "the pull to the γ-agent is proportional to each coordinate's σ₁, not to the vector",
+    "B": "velocity consensus is c2α = 30 here, 10.95 in the law",
+    "C": "the pair force's direction n_ij is taken coordinate by coordinate",
+    "D": "steps are explicit Euler of 0.02",
+}
+
+
+@pytest.mark.parametrize("name", list(CODES))
+def test_the_error_is_the_only_finding(name):
+    findings = fl.compare(faulty_recording(name), intended_law()).findings
+    assert len(findings) == 1
+    assert findings[0].startswith(FINDINGS[name])
+
+
+def test_the_step_of_d_is_right_but_for_the_scheme():
+    rec = faulty_recording("D")
+    q, p = rec.q[7], rec.p[7]
+    np.testing.assert_allclose(CODES["D"](q, p), intended_law().acceleration(0.0, q, p), rtol=1e-9, atol=1e-9)

@@ -1,1 +1,0 @@
-"""Whether the catalogue keeps its statuses on other machine code, from moved starts, at other tolerances."""
