@@ -12,7 +12,7 @@ _TEXT = "compiling for this machine, which happens once and takes up to a minute
 
 
 @contextmanager
-def compiling_is_told() -> Iterator[None]:
+def announce_compiling() -> Iterator[None]:
     """Print a line on a terminal's error stream if the main thread compiles for some seconds."""
     if not sys.stderr.isatty():
         yield
@@ -36,10 +36,12 @@ def _watch(thread: int, over: threading.Event) -> None:
 
 
 def in_compiler(thread: int) -> bool:
-    """Return whether a thread is inside of numba or llvmlite."""
+    """Return whether a thread compiles a kernel."""
+    jit = sys.modules.get("flockana.jit")  # not imported for this: most commands need no compiler
+    compile_functions = (jit.Kernel._compile.__code__, jit.callback.__code__) if jit else ()
     frame = sys._current_frames().get(thread)
     while frame is not None:
-        if frame.f_globals.get("__name__", "").startswith(("numba.core", "llvmlite")):
+        if frame.f_code in compile_functions:
             return True
         frame = frame.f_back
     return False
