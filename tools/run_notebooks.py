@@ -74,29 +74,12 @@ def run(versions: list[str], numbers: list[str]) -> int:
     return 1 if failed or not found else 0
 
 
-def lend_compiled(checkout: Path, installed: Path) -> int:
-    """Put kernels that the checkout has compiled beside an installed package; how many files.
-
-    They are taken for the installed package's own where its sources are the same, byte by byte, and else compiled anew
-    (`flockana.kernels.caching`): only the waiting is saved.
-    """
-    count = 0
-    for kernel in checkout.rglob("__pycache__/*.nb[ci]"):
-        place = installed / kernel.relative_to(checkout)
-        if not place.exists() and place.parent.parent.is_dir():
-            place.parent.mkdir(exist_ok=True)
-            shutil.copyfile(kernel, place)
-            count += 1
-    return count
-
-
 def run_from_wheel(arguments: list[str]) -> int:
     """Run this file where the wheel is installed, away from the checkout."""
     root = Path(__file__).resolve().parent.parent
     python, wheel = str(root / ".venv-wheel/bin/python"), next((root / "dist").glob("flockana-*.whl"))
     pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*pip, "install", f"{wheel}[course]", "nbclient>=0.10"], check=True)
-    lend_compiled(root / "flockana", next((root / ".venv-wheel").glob("lib/*/site-packages/flockana")))
     with tempfile.TemporaryDirectory() as folder:
         alone = shutil.copy(__file__, folder)
         plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}

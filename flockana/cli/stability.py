@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -154,14 +155,15 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
     law: Any = linear.law
     if delay:
         for kind in DELAYED:
-            margin = delay_margin(delay_system(law, linear.q, delayed=kind, strict=strict))
+            system = delay_system(law, linear.q, delayed=kind, strict=strict)
+            margin = delay_margin(system, progress=sys.stderr.isatty())
             numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
             facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
     if norms:
-        system = disturbance_system(law_blocks(law, linear.q, strict=strict))
-        assert system is not None  # shapes are always bounded
-        peak = hinf_norm(system)
-        facts["H2"], facts["Hinf"] = finite(h2_norm(system)), finite(peak[0])
+        disturbed = disturbance_system(law_blocks(law, linear.q, strict=strict))
+        assert disturbed is not None  # shapes are always bounded
+        peak = hinf_norm(disturbed)
+        facts["H2"], facts["Hinf"] = finite(h2_norm(disturbed)), finite(peak[0])
         facts["Hinf at"] = finite(peak[1])
     return facts
 

@@ -86,6 +86,16 @@ class LinkKeeping(SumOfTerms):
         """Empty, as no force begins or ends at a distance."""
         return ()
 
+    @property
+    def poles(self) -> tuple[float, ...]:
+        """r, which no link may reach."""
+        return (self.r,)
+
+    @property
+    def pole_pairs(self) -> tuple[tuple[int, int], ...]:
+        """The links."""
+        return self.links
+
     def check_agents(self, n: int) -> None:
         """Raise if a link is of an agent that is not there."""
         last = max((j for _, j in self.links), default=0)
