@@ -6,13 +6,12 @@ the rows of the constant part, of the amplitudes of cos ωt and of those of sin 
 
 from __future__ import annotations
 
-from functools import cache
 from math import cos, sin
 from typing import Any
 
 import numpy as np
 
-from flockana.kernels.listed import CompiledFunction, term_functions
+from flockana.jit import njit
 
 _MOVING, _OMEGA, _ROWS, _FIRST = range(4)
 
@@ -23,7 +22,9 @@ def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -
     return np.concatenate([head, np.ravel(constant), np.ravel(cosine), np.ravel(sine)])
 
 
-def _act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
+@njit(cache=True, error_model="numpy", nogil=True)
+def act(t, x, v, u, numbers, panels, listed):
+    """Add the push to u and return its power."""
     (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0
     co, si, part = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
     for k in range(m):
@@ -32,20 +33,10 @@ def _act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, r
             for i in range(n):
                 centre += v[i, k] / n
         else:
-            centre = -frame[1, k]
+            centre = -listed.frame[1, k]
         for i in range(n):
-            at = _FIRST + (np.int64(order[i]) if rows > 1 else 0) * m + k
+            at = _FIRST + (np.int64(listed.order[i]) if rows > 1 else 0) * m + k
             push = numbers[at] + co * numbers[at + part] + si * numbers[at + 2 * part]
             u[i, k] += push
             power += push * (v[i, k] - centre)
     return power
-
-
-def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
-    return 0.0
-
-
-@cache
-def compiled() -> tuple[CompiledFunction, CompiledFunction]:
-    """Force of the push and no energy, compiled when first asked for."""
-    return term_functions(_act, _no_energy, allocates=False)

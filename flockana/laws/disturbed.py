@@ -12,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative
 from flockana.base.errors import ArgumentError
 from flockana.kernels import force as kernel
+from flockana.kernels.listed import no_energy
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, TermKernel
 from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of
@@ -145,7 +146,7 @@ class Disturbed(Wrapper):
         if form is None:
             return None
         numbers = kernel.numbers(form.moving, *self._rows(m), 2.0 * pi * self.frequency)
-        term = TermKernel(*kernel.compiled(), numbers, np.empty((0, 0)), 0.0)
+        term = TermKernel(kernel.act, no_energy, numbers, np.empty((0, 0)), 0.0)
         return form._replace(terms=(*form.terms, term))
 
     def _rows(self, m: int) -> tuple[FloatArray, FloatArray, FloatArray]:
