@@ -41,7 +41,7 @@ course: .venv/.dev  ## write course/student and course/solutions as .ipynb, unle
 	$(BIN)/flockana course course/student
 	$(BIN)/flockana course course/solutions --solutions
 
-coverage: .venv/.dev  ## write docs/coverage.md, docs/errata.md and the errata of README.md from their tables
+coverage: .venv/.dev  ## write docs/coverage.md and docs/errata.md from their tables
 	$(BIN)/python -m tools.coverage_page
 	$(BIN)/python -m tools.errata_page
 

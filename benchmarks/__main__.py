@@ -30,6 +30,7 @@ STUDIES = (
     "zones",
     "search",
     "commands",
+    "waits",
     "others",
 )
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from benchmarks.flocks import R
 from flockana.base.checks import FloatArray
-from flockana.kernels.compiling import njit
-from flockana.kernels.sweep import BLOCK
+from flockana.jit import njit
+from flockana.kernels.blocks import BLOCK
+from flockana.kernels.listed import Listed
 from flockana.kernels.verlet import SKIN, empty_list, list_pairs, listed_anew, outdated, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
@@ -24,30 +25,34 @@ def listed_evaluation(
     order, few = spatial_order(q, REACH), np.empty(1, np.uint32)
     x, v, own = q[order].copy(), p[order].copy(), np.arange(len(q), dtype=np.uint64)
     first, second, count = list_pairs(x, REACH, few, few)
-    rate, given = _rate(law)
+    rate = _rate(law)
 
     def call() -> tuple[FloatArray, float]:
         u = np.empty(x.shape)
-        return u, rate(x, v, u, first, second, count, own, *given)
+        return u, rate(x, v, u, first, second, count, own)
 
     return call, order
 
 
-def _rate(law: Algorithm2) -> tuple[Callable[..., float], tuple[FloatArray, ...]]:
-    """All terms of the law in one compiled call, as a run evaluates them; and what they read."""
+def _rate(law: Algorithm2) -> Callable[..., float]:
+    """All terms of the law in one compiled call, as a run evaluates them."""
     form = law.compiled(2)
     assert form is not None
     pairs, pull = form.terms
     force, follow = pairs.act, pull.act
 
     @njit(error_model="numpy")
-    def rate(x, v, u, first, second, count, own, near, room, still, one, panels, other, none):  # type: ignore[no-untyped-def]
+    def rate(x, v, u, listed, one, panels, other, none):  # type: ignore[no-untyped-def]
         u[:] = 0.0
-        power = force(0.0, x, v, u, still, one, panels, first, second, count, own, near, room)
-        return power + follow(0.0, x, v, u, still, other, none, first, second, count, own, near, room)
+        return force(0.0, x, v, u, one, panels, listed) + follow(0.0, x, v, u, other, none, listed)
 
-    arrays = (np.array(array) for term in form.terms for array in (term.numbers, term.panels))
-    return rate, (np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)), np.zeros((2, 2)), *arrays)
+    def rate_of(x: FloatArray, v: FloatArray, u: FloatArray, first: Any, second: Any, count: int, own: Any) -> float:
+        listed = Listed(still, first, second, count, own, *room)
+        return float(rate(x, v, u, listed, *arrays))
+
+    arrays = [np.array(array) for term in form.terms for array in (term.numbers, term.panels)]
+    still, room = np.zeros((2, 2)), (np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)))
+    return rate_of
 
 
 def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations: int) -> Callable[[], FloatArray]:
@@ -55,7 +60,7 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
 
     As in a run: agents are sorted when a turn begins, pairs are listed anew when the list may lack one.
     """
-    moved, own, (rate, given) = q.copy(), np.arange(len(q), dtype=np.uint64), _rate(law)
+    moved, own, rate = q.copy(), np.arange(len(q), dtype=np.uint64), _rate(law)
 
     def turn() -> FloatArray:
         order = spatial_order(moved, REACH)
@@ -63,8 +68,8 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
         for _ in range(evaluations):
             x += dt * v
             if outdated(x, R, SKIN * R, pairs):
-                pairs = listed_anew(x, REACH, pairs, list_pairs)
-            rate(x, v, u, *pairs[:3], own, *given)
+                pairs = listed_anew(x, REACH, pairs)
+            rate(x, v, u, *pairs[:3], own)
         moved[order], felt[order] = x, u
         return felt
 

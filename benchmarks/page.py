@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.pictures import draw
-from benchmarks.rows import from_json, missed, table
+from benchmarks.rows import Row, from_json, missed, table
 
+_SHORT = 10  # ratios on the first screen
 _HEAD = """# Performance
 
 Written by `{command}`; no number in its tables is typed by hand. Times are CPU times on one core, medians over
@@ -32,6 +33,15 @@ def write(record: Mapping[str, Any], folder: Path) -> list[Path]:
     return [raw, page, *pictures]
 
 
+def in_short(rows: list[Row]) -> str:
+    """Return the ratio of the last row of each study that has one, ten at most."""
+    last: dict[str, Row] = {}
+    for row in rows:
+        if row.ratio is not None:
+            last[row.study] = row
+    return table(list(last.values())[:_SHORT])
+
+
 def text(record: Mapping[str, Any], pictures: list[str]) -> str:
     """The page in Markdown.
 
@@ -43,11 +53,15 @@ def text(record: Mapping[str, Any], pictures: list[str]) -> str:
         File names beside the page.
     """
     machine = "".join(f"| {name} | {value} |\n" for name, value in record["machine"].items())
-    parts = [_HEAD.format(command=record["command"]), f"| machine | |\n|---|---|\n{machine}"]
+    parts = [
+        _HEAD.format(command=record["command"]),
+        f"<details><summary>The machine</summary>\n\n| machine | |\n|---|---|\n{machine}\n</details>\n",
+    ]
     parts += [f"![{name.removesuffix('.png')}]({name})\n" for name in pictures]
     rows = from_json(record["rows"])
+    parts.insert(1, f"## In short\n\n{in_short(rows)}")
     for study, own in groupby(rows, key=lambda row: row.study):
-        parts.append(f"## {study}\n\n{table(list(own))}")
+        parts.append(f"<details><summary>{study}</summary>\n\n{table(list(own))}\n</details>\n")
     if short := missed(rows):
         parts.append(f"## Asked for and not reached\n\n{short}")
     if record["notices"]:

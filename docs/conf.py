@@ -48,6 +48,7 @@ html_static_path = ["_static"]
 html_extra_path = ["generated/extra"]  # runs that play, and the report
 html_css_files = ["flockana.css"]
 html_js_files = ["print.js"]
+html_search_scorer = "scorer.js"
 html_favicon = "_static/icon.svg"
 html_sidebars = {page: [] for page in ("index", "start", "generated/mathematics", "performance")}  # no pages below them
 html_copy_source = False

@@ -11,7 +11,11 @@ from .certified.basin import Basin as Basin
 from .certified.basin import certify as certify
 from .certified.certificate import write_certificate as write_certificate
 from .certified.check import check_certificate as check_certificate
+from .certified.disturbed import UltimateBound as UltimateBound
+from .certified.disturbed import ultimate_bound as ultimate_bound
 from .certified.enclose import enclose as enclose
+from .certified.gain_box import GainBox as GainBox
+from .certified.gain_box import gain_box as gain_box
 from .certified.sampling import sample_basin as sample_basin
 from .certified.tube import Tube as Tube
 from .certified.tube_certificate import write_tube_certificate as write_tube_certificate
@@ -28,6 +32,7 @@ from .environment.obstacles import Wall as Wall
 from .environment.polygon import Polygon as Polygon
 from .environment.spring import Spring as Spring
 from .environment.system import SystemTarget as SystemTarget
+from .environment.table_target import TableTarget as TableTarget
 from .environment.target import Target as Target
 from .environment.targets import CallableTarget as CallableTarget
 from .environment.targets import CircleTarget as CircleTarget

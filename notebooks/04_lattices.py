@@ -262,6 +262,21 @@ for name, places in (("square", lattice.square(2, 2, d)), ("patch of 37", q)):
 # Links beyond $2n - 3$ are redundant and carry *self-stress*: some may pull while others push, and the whole is at
 # rest. The patch of 37 has $90 - 71 = 19$ such states, which is why a flock can come to rest strained.
 #
+# ## How many links does a flock need?
+#
+# A flock in the plane has three interesting numbers of links. With $n - 1$ it can just be connected: a tree, in
+# which every lost link cuts the flock in two. With $2n - 3$ it can just be rigid: the shape holds, and no link can
+# be spared. With Harborth's $\lfloor3n - \sqrt{12n-3}\rfloor$ it is as full as a lattice can be. For the 37 robots
+# of the scene these are 36, 71 and 90. The surplus of 19 is redundancy: so many links may fail, if they are the
+# right ones, before the shape goes soft.
+#
+# Now the practical side. Each link is a radio channel that has to be kept alive, so a designer would like few; each
+# missing link makes the shape softer and the agreement slower ($\lambda_2$ of lecture 00a), so the same designer
+# would like many. An α-lattice does not ask: its links are all the pairs in range. Whoever wants fewer must choose
+# them, and then the law is no longer one of *all neighbours*, but of a graph that somebody has planned (formation
+# control; the directed trees of lecture 08 are an example). What this lecture says about crossings matters there
+# too: a planar net can be drawn on a map for the operator, and messages can be routed along its faces.
+#
 # ## What surprised, and what the theorem does not say
 #
 # The definition leaves the pattern open, and yet every flock that we ran shows triangles: not because squares are no

@@ -163,13 +163,13 @@ _ = plots.components(run, ax=axes[1])
 #
 # $T = \tfrac12\sum_i\|p_i\|^2$ and $H = V_\alpha + V_\beta + V_\gamma + T$.
 #
-# > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. Then
-# >
-# > $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle -
-# >   c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr),$$
-# >
-# > and if $\tfrac n2\langle p_c(t), p_d\rangle \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all
-# > $t \ge t_0$.
+# Its rate will be
+#
+# $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle
+#   - c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr) .$$
+#
+# > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. Then $\dot H$ is as displayed, and if
+# > $\tfrac n2\langle p_c(t), p_d\rangle \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all $t \ge t_0$.
 #
 # *Proof.* Three lemmas, then a sum.
 #
@@ -264,6 +264,9 @@ assert curvatures(cup, inside)[0] > 0.1
 assert np.linalg.norm(past.q[-1, 0] - [-60.0, 0.0]) < 1e-6
 assert np.linalg.norm(trapped.p[-1], axis=1).max() < 1e-4
 assert int(np.sum(trapped.q[-1, :, 0] > 100.0)) == 2
+for lucky in np.flatnonzero(trapped.q[-1, :, 0] > 100.0):  # they arrive without the flock, too
+    single = fl.simulate(cup, trapped.q[0, [lucky]], trapped.p[0, [lucky]], (0.0, 100.0))
+    assert np.linalg.norm(single.q[-1, 0] - [120.0, 0.0]) < 1e-3
 assert fl.verify("os-6", trapped).status == "verified"
 pieces = [len(set(fl.components(run.n, fl.links(q, 8.4)))) for q in run.q]
 assert max(pieces) == 3
@@ -276,6 +279,20 @@ assert pieces[-1] == 1
 # disturbance frees an agent. Around a convex obstacle one meets saddles, on the axis; a nonconvex one makes minima.
 # Khatib's potential fields of 1986 have the same disease, and it is a theorem that every smooth potential with
 # obstacles has saddles: one for each obstacle at least, if it is a disc in the plane.
+#
+# What can be done about traps? Three answers are in use, and each gives something up.
+#
+# - *Plan.* Compute a way around with a map, and let the γ-agent follow it. Then the law only has to keep the flock
+#   together, and Theorem 6 is vacuous, because the target moves. Somebody must have the map.
+# - *Choose another potential.* Rimon and Koditschek (1992) construct *navigation functions*, whose only minimum is
+#   the target, for obstacles that are balls. One then has saddles, which almost no start meets. The construction
+#   needs all obstacles in advance, and its gradients are very small in places and very large in others.
+# - *Disturb.* Noise frees an agent from a saddle at once and from a shallow minimum sooner or later. From the
+#   minimum in the U, with curvatures 0.18 and 2600, it would take very long.
+#
+# For a flock there is a fourth possibility: *neighbours push*. An agent that would be trapped alone can be shoved
+# out by those behind it. It did not happen here: the two that arrived started beside the U, and they arrive alone,
+# too. Do not credit the flock with what a single agent does.
 #
 # ## A moving target
 

@@ -139,6 +139,19 @@ stability.mode_motion(flock, shapes[0]).player(height=520)
 # **Figure 6.3.** The three slowest structural modes. The slowest is *breathing*: all agents move outwards together
 # and back. The player shows it in motion, much enlarged.
 #
+# What do the shapes mean? A flock of $n$ agents in the plane has $2n$ coordinates, so $2n$ modes: 2 translations, 1
+# rotation, and $2n - 3$ shapes. For nineteen agents that is 35 shapes. A *breathing* mode changes all distances by
+# the same share. *Shear* modes come in pairs, because the hexagon looks the same after a turn by 60°: two shapes
+# with the same pole, of which one is the other one turned. (Modes 6 and 7 of the figure are such a pair.) If you see
+# two equal poles, look for a symmetry. If you see three, look again.
+#
+# Which modes are slow? A mode is stiff if it changes the lengths of many links, and soft if it changes few.
+# Breathing changes all of them, and yet it is among the slowest to decay here, because decay is not stiffness: an
+# underdamped mode decays at the rate $\zeta'$ of the proof, half of its friction, whatever its stiffness. Friction
+# between neighbours acts on *differences* of velocities, and in breathing neighbours move nearly alike. The fastest
+# modes are those in which neighbours move against each other. That is the same fact as in lecture 00a: the Laplacian
+# is small on smooth vectors and large on rough ones.
+#
 # ## Does it tell the truth?
 #
 # A linear model is a claim about small disturbances. Test it: push the flock along its slowest structural mode by

@@ -16,6 +16,22 @@
 # **Aims.** Read a theorem as a contract: which hypothesis does the work, when can it be met at all, and how would you
 # notice that a printed claim is false?
 #
+# ## A scene
+#
+# A safety engineer reads a paper on drone shows: "no two agents ever collide, if the initial energy is below $c^*$".
+# She computes the energy of her show, finds it a hundred times above, and asks the authors whether collisions are to
+# be feared. They answer that in simulations there were none. **What does the theorem say about her show?** Nothing.
+# Could it ever say something about a show of her size? That is a question one can decide with pencil and paper, and
+# papers seldom do. This lecture reads printed theorems as contracts: who has to deliver what, and can anyone?
+#
+# ## Two agents
+#
+# For two agents the theorem is fine. At rest at the distance $d$ they have $H = 0$, and any speeds with
+# $\tfrac12(\|p_1\|^2+\|p_2\|^2) < c^* = 52.4$ are below the bound. Then they never meet: to meet, one has to climb
+# the whole wall. Add a third agent out of range of both. It feels nothing and does nothing, and yet $H$ has grown by
+# $2\psi_\alpha(r_\alpha) = 1.47$, because $V$ counts pairs out of range. Add ten more bystanders, and the bound is
+# broken by agents that do not even move. That is the mechanism; how fast does it bite?
+#
 # ## A true statement that says nothing
 #
 # Theorem 1(iii) of Olfati-Saber (2006): if $H(x(0), v(0)) < c^* = \psi_\alpha(0)$, no two agents ever collide. (The
@@ -44,6 +60,10 @@ largest, empty = lattice_reach(alpha), least_infeasible_size(alpha)
 print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no state does")
 
 # %% [markdown]
+# **Figure 7.1.** What the best lattice of $n$ agents costs (circles), and what every state costs at least, by the
+# theorem below (squares). Where the circles pass $c^*$, no lattice meets the hypothesis; where the squares do, no
+# state.
+#
 # The floor is a theorem of its own (erratum E4).
 #
 # > **Theorem.** For $m = 2$ and these parameters every state has
@@ -100,6 +120,9 @@ ax.plot(early.t, early.q[:, :, 0])
 _ = ax.set(xlabel="t (time)", ylabel="x (length)")
 
 # %% [markdown]
+# **Figure 7.2.** Three agents on a line. The fast one passes the second and then the third: two collisions of
+# distinct pairs, one after the other.
+#
 # Two crossings within 0.03 time units can hide between samples. The library therefore looks along the interpolated
 # paths, and bounds what it cannot see.
 #
@@ -115,6 +138,21 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
     print(*(item for item in fl.errata() if item.sort == sort and item.id.startswith("E")), sep="\n")
 
 # %% [markdown]
+# ## What surprised, and how to read the next theorem
+#
+# Nothing in this lecture needed a new technique; it needed the question "can the hypothesis be met?", asked with
+# numbers. A list for the next paper that you read:
+#
+# 1. Copy the theorem with all hypotheses, those in the text before it included.
+# 2. Meet the hypotheses once, with numbers, for the smallest case. Then for the size that matters.
+# 3. Which hypothesis does the work? Drop it and look for a counterexample.
+# 4. Which words hide a quantifier: *almost every*, *at most $k$ pairs*, *for all later times*?
+# 5. What would a simulation look like that refutes the claim? Look for that one, instead of for one that confirms it
+#    (lecture 10).
+#
+# Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
+# be wrong.
+#
 # ## Summary
 #
 # - A true theorem may have a hypothesis that no state satisfies.

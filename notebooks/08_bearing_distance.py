@@ -16,6 +16,23 @@
 # **Aims.** Run a law that knows only bearings and distances. Then read its theorem, refute it with a counterexample,
 # and see what can be saved.
 #
+# ## A scene
+#
+# Underwater there is no GPS. A glider hears from which direction its neighbour's sound comes, and from its echo how
+# far away it is; nobody can tell it where it *is*. Fish manage with less. **Can a flock keep together with bearings
+# and distances only, and does the theorem that says so hold?** The first half of the question is about information:
+# which terms of a law can be computed from what is sensed? The second is a lesson in reading a proof: this one
+# computes eigenvalues, all in the left half-plane, and concludes something false.
+#
+# ## One glider behind another
+#
+# Glider 1 perceives glider 0 and wants to be $d$ away from it; glider 0 perceives nobody and drifts on. With
+# $x = q_0 - q_1$ and a spring of the strength $w_0$, the error of the length behaves like a damped oscillator: if
+# $\|x\| > d$ the spring pulls, if $\|x\| < d$ it pushes. The *direction* of $x$ is free: nothing in the law says
+# whether 1 swims to the left or to the right of 0. So the goal is no point but a sphere of positions, and a theorem
+# that promises $x \to 0$ has confused the error with the thing itself. Keep this picture; the rest is the same with
+# more gliders.
+#
 # Jond (2025; `fl.cite(fl.scenario("zone-51"))`) surrounds each agent with zones of radii $0 < z_r \le z_c <
 # z_a < z_s$: flockmates up to $z_c$ repel, those between $z_r$ and $z_a$ attract and align, intruders up to $z_s$
 # repel. The law is a map from step to step,
@@ -50,13 +67,23 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import figures, grade
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors
 from flockana.stability import linearise
 from flockana.symbolic import bearing_distance, spanning_trees
 
+figure, ax = plots.subplots(size=(6.4, 3.6))
+radii = {"repulsion $z_r$": 1.5, "conflict $z_c$": 3.0, "attraction $z_a$": 5.0, "surveillance $z_s$": 6.0}
+_ = figures.zones(radii, ax=ax)
+
+# %% [markdown]
+# **Figure 8.1.** The zones of one agent (dot), with the radii of the paper's second experiment. Flockmates in the
+# two inner discs repel, those outside the innermost one and within $z_a$ attract and align; aliens anywhere within
+# $z_s$ repel.
+
+# %%
 hunted = fl.scenario("zone-52").run()
 hunted.window(0.0, 32.0).animate(seconds=4, fps=8)
 
@@ -71,6 +98,9 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
+# **Figure 8.2.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
+# circle) the same agents do not get through (right).
+#
 # ## Two forms, and where they part
 #
 # From a bearing $\hat b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}\hat b_{ij}$, and from their
@@ -120,11 +150,16 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
 # %% [markdown]
+# **Figure 8.3.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
+# plain clip they end at 3.
+#
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
-# (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
-# $d$:
+# (`MinimalFlocking`). A graph is a *spanning tree*, more precisely a rooted out-tree, if every agent but one, the
+# root, perceives exactly one other, and following who is perceived leads from everybody to the root. A matrix is
+# *Hurwitz* if all its eigenvalues have negative real part. With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$
+# perceives $j$, and a desired length $d$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
 # > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
@@ -136,6 +171,10 @@ tree = fl.scenario("zone-tree").run()
 figure, axes = plots.subplots(1, 2, size=(11, 4))
 plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
 _ = plots.snapshot(tree, ax=axes[1], velocities=False)
+
+# %% [markdown]
+# **Figure 8.4.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
+# colour shows how far an edge is from its desired length. At the end every edge is right, and none is 0.
 
 # %%
 verdict = fl.verify("zone-1-printed", tree)
@@ -188,6 +227,19 @@ figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
 # %% [markdown]
+# **Figure 8.5.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
+# and eleven zeros.
+#
+# ## What surprised, and what the corrected theorem does not say
+#
+# The printed proof contains a true computation: the eigenvalues are right. What is false is the step from
+# eigenvalues of a matrix that *depends on the state* to the behaviour of solutions. A linear system whose matrix
+# changes in time may grow although every one of its matrices is Hurwitz; students meet this with a swing that is
+# pumped at the right moments. The correction replaces *from any initial condition* by *near the equilibria*, and the
+# point by a set. It does not say that agents that are not joined by an edge keep a distance: two branches of the
+# tree may cross. It does not say what happens if the graph changes, as a perception graph does when agents move. And
+# it says nothing of starts far from the spheres.
+#
 # ## Summary
 #
 # - Bearings and distances suffice for all terms but the global speed.

@@ -16,6 +16,23 @@
 # **Aims.** Read a force law that jumps, find its potential and the energy that belongs to it, see what a jump does to
 # an integrator, and sort a printed theorem into what is true, what is false and what can be mended.
 #
+# ## A scene
+#
+# A convoy of robots is told: closer than 3.5 metres, back off; farther than 12.5, catch up; in between, mind your
+# own business. It is how people drive. The rule is simple to write into a controller, three cases and an `if`.
+# **What does such an `if` do to the motion, to the energy, and to the program that integrates it?** More than its
+# author thought: the force jumps, the printed energy jumps too, and a pair of robots can be caught *at* the jump,
+# where the law has no value.
+#
+# ## Two robots at the edge
+#
+# Let two robots stand just inside 3.5, where they repel. They move apart, cross 3.5, and enter the dead zone, in
+# which only a weak pull is left. It brings them back to 3.5, slowly, and there the full repulsion throws them out
+# again, in no time. Friction makes each throw shorter. In the end they sit at 3.5, pushed from one side and pulled
+# from the other, and the motion consists of infinitely many switches in a finite time. Filippov (1960) gave this a
+# meaning: at a jump the force may be any mean of its two one-sided values, and the robots take the one that keeps
+# them there. A computer that steps in time cannot take a mean; it rattles.
+#
 # Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
 # above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $d_{ij} =
 # \|q_j-q_i\|$,
@@ -39,6 +56,10 @@ hard, ramped = fl.DeadZoneInteraction(ramp=0.0), fl.DeadZoneInteraction()
 figure, axes = plots.subplots(1, 2, size=(11, 3.4))
 plots.dead_zone_force(hard, ax=axes[0])
 _ = plots.dead_zone_force(ramped, ax=axes[1])
+
+# %% [markdown]
+# **Figure 9.1.** The force of a pair over its distance, below 0 where it repels. Open circles are values beside a
+# jump.
 
 # %%
 for jump in hard.jumps():
@@ -74,6 +95,9 @@ plots.dead_zone_energies(run.window(0.5, 20.0), ax=axes[0])
 _ = plots.energy_residual(run, ax=axes[1])
 
 # %% [markdown]
+# **Figure 9.2.** Sixteen agents. Left: the energy over all pairs falls, the printed one over neighbours jumps up
+# whenever a pair comes into range. Right: the balance closes to seven digits.
+#
 # ## What a jump does to an integrator
 #
 # An adaptive solver assumes that the solution is smooth within a step. At a jump its error estimate means nothing: it
@@ -121,6 +145,33 @@ axes[0].legend()
 _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 
 # %% [markdown]
+# **Figure 9.3.** A pair that is drawn to $d_1 = 3.5$; right, enlarged. With jumps it bounces ever lower and the run
+# ends where it is held; with a ramp it comes to rest.
+#
+# What does it mean to be held where the law has no value? Let $y$ be the distance and $\ddot y = F(y) - 2k_2\dot y$
+# its equation near $d_1$, with $F > 0$ just below $d_1$ (repulsion) and $F < 0$ just above (the pull of $k_1$).
+# *Filippov's* definition: at $y = d_1$ the acceleration may be any number between the two one-sided limits
+# $F(d_1-) > 0$ and $F(d_1+) < 0$.
+#
+# > **Theorem (held at the jump).** Let $F \ge f_1 > 0$ for $y$ just below $d_1$ and $F \le -f_2 < 0$ just above, and
+# > $k_2 > 0$. Then $y = d_1$, $\dot y = 0$ is an equilibrium in Filippov's sense, and every solution that starts
+# > near it converges to it.
+#
+# *Proof.*
+#
+# 1. 0 lies between $F(d_1-)$ and $F(d_1+)$, so the constant function $y = d_1$ has an admissible acceleration,
+#    namely 0: it is a solution. The share $z$ of the repelling force is fixed by $z\,F(d_1-) + (1-z)\,F(d_1+) = 0$.
+# 2. Let $W = \tfrac12\dot y^2 - \int_{d_1}^yF$. Below $d_1$ the second term is at least $f_1\,(d_1 - y)$, above at
+#    least $f_2\,(y - d_1)$. So $W > 0$ near the equilibrium except at it, though it has a corner there.
+# 3. Where $F$ is continuous, $\dot W = \dot y\,\ddot y - F\dot y = -2k_2\dot y^2 \le 0$. A solution is at $y = d_1$
+#    either for single instants, through which $W$ is continuous, or for an interval of time, on which $\dot y = 0$
+#    and $W$ is constant. So $W$ never rises, and by Lyapunov's argument (lecture 00a) solutions from near stay near.
+# 4. By LaSalle's principle, which holds for Filippov's solutions too, the solution approaches a set on which
+#    $\dot y = 0$ for ever. There $y$ is constant and 0 is an admissible acceleration, which it is near $d_1$ at
+#    $d_1$ only. $\square$
+#
+# So the vibration of a program with fixed steps is no motion of the law: the law's motion comes to rest.
+#
 # With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
 # jump nor sliding; it goes on, and chatters (erratum L7):
 
@@ -219,6 +270,16 @@ figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
 # %% [markdown]
+# **Figure 9.4.** The middle of the flock is squeezed (dark), its rim is not.
+#
+# ## What surprised, and what the corrected theorem does not say
+#
+# The energy that the source wrote down rises, and the one that it meant falls; they differ by a constant for each
+# pair, that is switched on and off. Filippov's idea, a convex combination at the jump, is the definition that makes
+# sliding a solution and not an artefact; the ramp is its smooth neighbour. The corrected theorem does not promise
+# one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match in the
+# limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
+#
 # ## Summary
 #
 # - The potential that is continuous across switches holds each pair's cost constant beyond the range; its sum falls.

@@ -16,6 +16,21 @@
 # **Aims.** Turn "in our simulations it always worked" into a share with an interval, run campaigns that survive a
 # crash, and search for the start that breaks a claim instead of waiting for it.
 #
+# ## A scene
+#
+# "We ran our drones two hundred times, and two hundred times they flocked." The insurer asks: what is the
+# probability that they do not? "Zero", says the start-up. "Somewhere below 1.8 %", says the statistician, "if your
+# starts are those of the show". "I found a start at which they do not", says the engineer who had *looked* for one.
+# **Who is right, and what does each of them know?** All three used the same simulator. They asked different
+# questions: how often, among random starts? is there any? This lecture teaches both, and the honest sentence that
+# goes with each.
+#
+# ## Two coins
+#
+# Toss a coin ten times and see ten heads. Is it a coin that always shows heads? A coin with a probability of heads
+# of 0.9 does that in $0.9^{10} = 35\,\%$ of all experiments, one with 0.7 still in $2.8\,\%$. So ten successes
+# exclude 0.6, and do not exclude 0.75. The interval of this lecture says the same for any $k$ of $N$.
+#
 # "Almost every solution converges" is a statement about all initial states. One run verifies nothing; $k$ successes
 # in $N$ runs say that the probability of success lies, with 95 % confidence, in the interval of Clopper and Pearson
 # (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
@@ -80,6 +95,9 @@ plots.share_bars(fl.shares(printed), ax=axes[0], title="as printed")
 _ = plots.share_bars(fl.shares(mended), ax=axes[1], title="as recommended")
 
 # %% [markdown]
+# **Figure 10.2.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
+# intervals. As printed one of five holds; with the recommended gains nearly all.
+#
 # The result is an `xarray.Dataset`, so everything else is a question to it: how close did they come?
 
 # %%
@@ -99,14 +117,19 @@ runs = fl.ensemble("phase", range(3), parameters=grid, theorems=())
 _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 
 # %% [markdown]
+# **Figure 10.3.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is
+# divided in their shares.
+#
 # Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
 # arrives. Kill it at any moment and call it again: only what is missing is computed. `executor=` takes any
 # `concurrent.futures.Executor`, `cluster=` a Dask scheduler's address; the numbers are the same to the bit.
 #
 # ## Do not wait for the counterexample
 #
-# Random starts rarely hit the bad one. A search that minimises the claim's *margin* does. Theorem 1(iii) excludes a
-# collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then below it:
+# Random starts rarely hit the bad one. Every claim has a *margin*, a number that is positive where the claim holds,
+# and smaller the nearer it is to failing. A search that minimises the margin goes downhill to the bad start. Theorem
+# 1(iii) excludes a collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then
+# below it:
 
 # %%
 broken = fl.falsify("collision-energy", "head-on", claim="twice", budget=100)
@@ -116,6 +139,8 @@ print(safe)
 _ = plots.falsification(broken)
 
 # %% [markdown]
+# **Figure 10.4.** The margin of the claim in each run of the search, and the least so far. Below 0 the claim fails.
+#
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
 # converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the
 # scenario. A run refutes a limit only by what is certain at all later times: it must end in the basin of a strict
@@ -129,6 +154,9 @@ ax = plots.snapshot(found.run(), velocities=False)
 _ = ax.set_title("four places for five agents")
 
 # %% [markdown]
+# **Figure 10.5.** The counterexample: five agents at rest in four places, one of which two share (×2). Every link
+# looks like a lattice's.
+#
 # A counterexample is a file that anyone can replay: `found.save("e3.json")`, then `fl.replay("e3.json")`, or in a shell
 # `flockana falsify --replay e3.json`.
 
@@ -141,6 +169,14 @@ found.save(path)
 print(fl.replay(path))
 
 # %% [markdown]
+# ## What surprised, and what the numbers do not say
+#
+# An interval is about a *distribution of starts*. Change the box from which starts are drawn, and the share changes;
+# 60 of 60 in a small box say nothing about a large one. A search is about *existence*. It finds in a hundred runs
+# what random starts would show once in a million, and says nothing about how often it would happen to a user.
+# Neither is a proof, and a proof says nothing about frequencies. A good report has all three columns, and leaves
+# none of them empty in silence.
+#
 # ## Summary
 #
 # - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.

@@ -17,6 +17,22 @@
 # formula may lack, and what that costs. Then add a law of another kind in one file, its theorem in a second and its
 # proof in a third.
 #
+# ## A scene
+#
+# You have an idea: fish might attract each other with a force that grows up to some distance and then fades. By
+# tonight you want to know whether such a school keeps together, by tomorrow whether that can be proved. **How far is
+# it from an idea to a law with a verdict, and from a verdict to a theorem?** Five lines, three lines, and an
+# evening. This lecture is a workshop: it ends with a law, a theorem and a proof of your own.
+#
+# ## What makes a pair law
+#
+# A pair law needs a potential $\psi$ of the distance, and the weight $a_{ij}$ of the friction. From the potential
+# everything else follows by differentiating, once for the force, twice for the stiffness. But not every formula
+# gives a law for which the theorems hold. The proofs of lectures 01 to 03 used four properties: the force vanishes
+# smoothly where two agents coincide, it has no jump inside the range, it ends at the range without a jump, and the
+# weight is not negative. A formula may lack any of them, and then a theorem that used it claims nothing. The library
+# looks for each, and says which is missing.
+#
 # ## A law in five lines
 #
 # Two agents are to repel each other nearer than $d$, to attract each other from $d$ to $r$, and to feel nothing beyond,
@@ -64,6 +80,9 @@ ax.set(xlabel="distance (length)", ylabel="length/time², length²/time²")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.1.** Force and potential of the law. The force repels below 2, attracts up to 3, and ends there without
+# a jump or a corner.
+#
 # ## Its verdicts in three
 
 # %%
@@ -141,6 +160,9 @@ ax.set(xlabel="t (time)", ylabel="K (length²/time²)")
 _ = ax.legend()
 
 # %% [markdown]
+# **Figure 11.2.** The mismatch of thirty agents and the bound of the theorem, which is true and not sharp: it takes
+# the weight at the largest distance for all pairs.
+#
 # A verdict on a run is `numeric`: it says what this run did. For all runs there is the proof.
 #
 # ## The proof
@@ -152,6 +174,15 @@ for step in PROOF.steps():
     print("✓" if step.holds else "✗", step.text)
 
 # %% [markdown]
+# ## What surprised, and what a proof by computer does not say
+#
+# A formula can look right and be wrong in a way that no run shows: a potential that repels again beyond some
+# distance still holds agents at $d$, and fails only when somebody strays. The check "does the force change its sign
+# once?" costs a line. A symbolic proof of an identity for one generic pair is a proof for all $n$, *because* the
+# energy is a sum over pairs; for a law that is no such sum, like a normalised mean, the same computation for $n = 3$
+# proves the case $n = 3$. Say which of the two you have. And the rate that `flow` returns is a promise of yours: the
+# residual tests it along runs, the proof tests it for all.
+#
 # ## Summary
 #
 # - From the formula of a pair potential force, energy, Jacobian and compiled code follow, and what the formula lacks is

@@ -16,6 +16,21 @@
 # **Aims.** Put the field's classics side by side: one start, many laws. What does each theorem promise from there,
 # which hypothesis does the work, and what happens where it fails?
 #
+# ## A scene
+#
+# At a conference six speakers show the same film: a cloud of dots that becomes a flock. Each has a law of her own
+# and a theorem. In the coffee break somebody asks: "If I give all of you the *same* ten drones, at the same places,
+# with the same velocities, what does each of you promise me?" Silence; then six different answers, two of which are
+# "nothing". **What do the classics promise about one and the same start, and which hypothesis decides?**
+#
+# ## Two ideas, and two agents
+#
+# For two agents that see each other all laws do nearly the same: velocities tend to each other. There are two
+# reasons why. *Energy*: friction takes kinetic energy out of the relative motion, and what remains must be at rest
+# relative to each other, if the agents stay in touch. *Averaging*: each new velocity is a mean of the old ones, so
+# the larger falls and the smaller rises, if they keep hearing each other. The words after "if" are the theorem. For
+# $n$ agents everything depends on how they are kept in touch.
+#
 # Ten agents near a patch of a lattice, all at one speed, with headings about one direction:
 
 # %%
@@ -31,6 +46,8 @@ ax = plots.configuration(q, p, r=8.4, title="the start of them all")
 print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diameter {fl.diameter(p):.3g}")
 
 # %% [markdown]
+# **Figure 12.1.** The start: ten agents, links of nearly equal length, headings about one direction.
+#
 # ## What is promised
 #
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
@@ -59,6 +76,9 @@ for entry in ENTRIES:
 outcomes = compare()
 axes = plots.side_by_side(outcomes)
 
+# %% [markdown]
+# **Figure 12.2.** The same start (grey) under ten laws, and the end, with the verdict of the theorem above each.
+
 # %%
 for outcome in outcomes:
     happened = f"velocity diameter x {outcome.velocity_share:.1e}, {outcome.groups} group(s)"
@@ -66,6 +86,9 @@ for outcome in outcomes:
 ax = plots.velocity_diameters(outcomes)
 
 # %% [markdown]
+# **Figure 12.3.** The largest difference of two velocities over that at the start. The dead-zone flock has not
+# settled at 60.
+#
 # A **vacuous** verdict beside a flock that flocks is no contradiction: the theorem says nothing about this start. Which
 # hypothesis failed stands in the verdict:
 
@@ -114,6 +137,9 @@ plots.diameters(meet, ax=axes[1])
 print(fl.verify("jlm-headings", meet))
 
 # %% [markdown]
+# **Figure 12.4.** Left: relative connectivity, below 1 until the two groups meet at 35, and the windows across which
+# the agents are linked together. Right: the spread of velocities falls from then on.
+#
 # The argument: once headings nearly agree, all that distances can still change adds up to less than what each of them
 # is away from $r$. So no link is ever made or lost again, and a net that stays connected averages its headings to one.
 #
@@ -166,6 +192,14 @@ shares = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0, 1.05, 1.1)
 slider(late, shares, name="τ/τ*", title="consensus of four agents that hear late", start=3)
 
 # %% [markdown]
+# ## What surprised, and what the theorems do not say
+#
+# The theorems do not differ in what flocking *is*; they differ in what keeps agents in touch: a pull, a potential
+# without bound at the range, weights that fall slowly, an assumption on the whole run. A vacuous verdict beside a
+# beautiful flock is the normal case, not the exception. And of the corrected dead-zone theorem above, that
+# velocities match within components is measured and not proved (lecture 09): a statement in a list is only as good
+# as its weakest clause.
+#
 # ## Summary
 #
 # - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.

@@ -15,9 +15,9 @@ import sympy as sp
 from flint import arb, ctx
 
 from flockana.certified.decimals import small
+from flockana.jit import Inlined
 from flockana.kernels import dead_zone as dead_zone_kernel
 from flockana.kernels import scalars
-from flockana.kernels.compiling import Inlined
 from flockana.symbolic.dead_zone import D_1, D_2, ETA, K_1, K_DELTA, K_R, R_D, RHO, R, force
 from flockana.symbolic.functions import taper
 from flockana.symbolic.norms import sigma_1, sigma_norm

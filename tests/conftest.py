@@ -23,7 +23,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 SLOW = (
     *("adversarial", "benchmarks", "tools", "ensemble/test_cluster.py", "ensemble/test_processes.py"),
     *("base/test_interrupts.py", "proofs"),
-    *("explore/test_server.py", "explore/test_worker.py", "kernels/test_turns.py", "kernels/test_compiling.py"),
+    *("explore/test_server.py", "explore/test_worker.py", "test_jit.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
     *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),

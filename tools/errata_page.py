@@ -1,6 +1,6 @@
-"""Write docs/errata.md and the errata of README.md from the table of errata (`python -m tools.errata_page`).
+"""Write docs/errata.md from the table of errata (`python -m tools.errata_page`).
 
-`--check` writes nothing, and ends with 3 if one of the two is not what the table says.
+`--check` writes nothing, and ends with 3 if the page is not what the table says.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from flockana.theorems.errata import FOREWORD, SORTS, Erratum, errata
 from tools.coverage_page import markdown_table, plain
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE, README = ROOT / "docs" / "errata.md", ROOT / "README.md"
-_BEGIN, _END = "<!-- errata: written by `make coverage` -->", "<!-- end of the errata -->"
+PAGE = ROOT / "docs" / "errata.md"
 _SIGNS = "✗ is refuted, ✓ verified, by the claim of `flockana verify ID`; · was read and not computed."
 
 
@@ -41,25 +40,12 @@ def _cells(item: Erratum) -> tuple[str, ...]:
     )
 
 
-def readme(items: Iterable[Erratum], text: str) -> str:
-    """Return the text of a README with its errata: those of slides and projects, and how many others there are."""
-    items = tuple(items)
-    before, _, rest = text.partition(_BEGIN)
-    _, _, after = rest.partition(_END)
-    own = [item for item in items if item.id[0] == "E"]
-    counts = ", ".join(f"{sum(item.sort == sort for item in items)} {sort} ({SORTS[sort]})" for sort in SORTS)
-    rows = [(item.id, plain(item.printer), *_cells(item)[2:4], item.sort) for item in own]
-    table = markdown_table(("", "printed by", "printed", "right", "sort"), rows)
-    told = f"{FOREWORD}\n\n{table}\n\n{_SIGNS} All {len(items)}, with their places: [errata](docs/errata.md): {counts}."
-    return f"{before}{_BEGIN}\n\n{told}\n\n{_END}{after}"
-
-
 def main(arguments: list[str]) -> int:
-    """Write both, or check them; return the exit status."""
+    """Write the page, or check it; return the exit status."""
     if arguments not in ([], ["--check"]):
         sys.stderr.write(f"{' '.join(arguments)}: expected nothing, or --check\n")
         return 2
-    texts = {PAGE: page(errata()), README: readme(errata(), README.read_text(encoding="utf-8"))}
+    texts = {PAGE: page(errata())}
     for path, text in texts.items():
         if not arguments:
             path.write_text(text, encoding="utf-8")

@@ -15,6 +15,7 @@ PACKAGE = "flockana"
 STAGES: tuple[tuple[str, ...], ...] = (
     ("_version",),
     ("base",),
+    ("jit",),
     ("symbolic", "kernels"),
     ("interactions",),
     ("environment",),

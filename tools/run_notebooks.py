@@ -2,9 +2,9 @@
 
 `python tools/run_notebooks.py [--wheel] [--student | --solutions] [NUMBER...]` runs those whose names begin so; by
 default all, of both versions, two at a time. With `--wheel` everything runs in the environment of `make wheel`, to
-which the wheel's extra is added, with no checkout on the path. A cell that fails, and a check that does not say what it
-should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over 90 s of processor
-time, its worker processes included, is pointed out: that does not depend on what else runs.
+which the wheel's extra is added, with no checkout on the path. A cell that fails or warns, and a check that does not
+say what it should, fail the run: "right" with our solutions, "not answered" without. A lecture that takes over 90 s of
+processor time, its worker processes included, is pointed out: that does not depend on what else runs.
 """
 
 from __future__ import annotations
@@ -42,8 +42,9 @@ def execute(path: Path, version: str) -> tuple[str, list[str], float, float]:
         NotebookClient(book, timeout=_TIMEOUT, startup_timeout=_TIMEOUT, resources=place).execute()
         used = float(shown(book.cells[-1]))
         checks = [cell for cell in book.cells if "check" in cell.metadata.get("tags", ())]
+        warned = [out.text for cell in book.cells for out in cell.get("outputs", ()) if out.get("name") == "stderr"]
         faults = [f"a check says {shown(c)!r}:\n{c.source}" for c in checks if _SAYS[version] not in shown(c)]
-        faults += [f"exercise without a check: {path.name}"] * (not checks)
+        faults += [f"no checks: {path.name}"] * (not checks) + [f"a warning: {text}" for text in warned]
     except Exception as error:  # a cell that fails or takes too long, a kernel that dies or does not start
         faults = [f"{type(error).__name__}: {error}"]
     return f"{path.parent.name}/{path.name}", faults, time.perf_counter() - started, used
@@ -73,29 +74,12 @@ def run(versions: list[str], numbers: list[str]) -> int:
     return 1 if failed or not found else 0
 
 
-def lend_compiled(checkout: Path, installed: Path) -> int:
-    """Put kernels that the checkout has compiled beside an installed package; how many files.
-
-    They are taken for the installed package's own where its sources are the same, byte by byte, and else compiled anew
-    (`flockana.kernels.caching`): only the waiting is saved.
-    """
-    count = 0
-    for kernel in checkout.rglob("__pycache__/*.nb[ci]"):
-        place = installed / kernel.relative_to(checkout)
-        if not place.exists() and place.parent.parent.is_dir():
-            place.parent.mkdir(exist_ok=True)
-            shutil.copyfile(kernel, place)
-            count += 1
-    return count
-
-
 def run_from_wheel(arguments: list[str]) -> int:
     """Run this file where the wheel is installed, away from the checkout."""
     root = Path(__file__).resolve().parent.parent
     python, wheel = str(root / ".venv-wheel/bin/python"), next((root / "dist").glob("flockana-*.whl"))
     pip = [python, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     subprocess.run([*pip, "install", f"{wheel}[course]", "nbclient>=0.10"], check=True)
-    lend_compiled(root / "flockana", next((root / ".venv-wheel").glob("lib/*/site-packages/flockana")))
     with tempfile.TemporaryDirectory() as folder:
         alone = shutil.copy(__file__, folder)
         plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}

@@ -20,12 +20,12 @@ class Fact:
     width: float = 0.0
 
 
-def together(facts: Iterable[Fact], proof: str = "") -> Fact:
+def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     """Return the conjunction of facts: unmet if one is, else assumed if one is, else met.
 
     Examples
     --------
-    >>> together([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
+    >>> conjunction([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
     'a'
     """
     facts = list(facts)

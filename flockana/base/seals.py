@@ -87,7 +87,7 @@ def is_sealed(evidence: Any) -> bool:
     return bool(vars(evidence).get(_ATTRIBUTE) == seal_of(evidence))
 
 
-def changed(evidence: _Evidence, **changes: Any) -> _Evidence:
+def replace_sealed(evidence: _Evidence, **changes: Any) -> _Evidence:
     """Return a dataclass with some fields replaced, sealed again if it was sealed before."""
     made = replace(evidence, **changes)  # type: ignore[type-var]
     return sealed(made) if is_sealed(evidence) else made

@@ -34,7 +34,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     if not regular(u, x, radius):
         raise SolverError("the equilibrium's turns are not certainly independent: it is too nearly on one line")
     equations, slope = system(u, x)
-    found = enclose_zero(equations, slope, [*centre, *[arb(0)] * (len(u.turns(centre)) + u.m)], radius)
+    found = enclose_zero(equations, slope, [*centre, *[arb(0)] * (len(u.rotation_tangents(centre)) + u.m)], radius)
     if found is None:
         raise SolverError(
             "Krawczyk's test found no isolated equilibrium there: it is degenerate (a soft mode beyond the rigid "
@@ -46,7 +46,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
     """Return the equations in (x, μ, ν) about a computed x̄, and their derivative."""
     centre, size = [arb(y) for y in x], len(x)
-    motions, shifts = u.turns(centre), u.shifts()
+    motions, shifts = u.rotation_tangents(centre), u.translations()
     held = motions + shifts
     offsets = [dot(motion, centre) for motion in motions] + [arb(0)] * u.m
 
@@ -66,7 +66,7 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
 
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
     """Return whether no configuration in the box has a rotation orthogonal to all those of the computed one."""
-    fixed, moving = u.turns([arb(y) for y in x]), u.turns([arb(y, radius) for y in x])
+    fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
 
 
@@ -88,7 +88,7 @@ def _refined(u: Structure, q: FloatArray) -> list[float]:
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):
         equations, slope = system(u, x.tolist())
-        at = [arb(float(y)) for y in x] + [arb(0)] * (len(u.turns([arb(0)] * len(x))) + u.m)
+        at = [arb(float(y)) for y in x] + [arb(0)] * (len(u.rotation_tangents([arb(0)] * len(x))) + u.m)
         matrix = np.array([[float(entry.mid()) for entry in row] for row in slope(at).tolist()])
         value = np.array([float(y.mid()) for y in equations(at)])
         x = x - np.linalg.lstsq(matrix, value, rcond=None)[0][: x.size]

@@ -75,10 +75,10 @@ class Net:
         The turns are those of the positions, to which they are orthogonal.
         """
         n, m = self.n, self.m
-        turns = self.turns(self.centre)
-        held = turns + self.shifts()
+        turns = self.rotation_tangents(self.centre)
+        held = turns + self.translations()
         start = [y for row in self.centre for y in row]
-        moving = self.turns([[y + arb(0, self.box) for y in row] for row in self.centre])
+        moving = self.rotation_tangents([[y + arb(0, self.box) for y in row] for row in self.centre])
         products = [[inner(a, b) for b in turns] for a in moving]
         ensure(not turns or bool(arb_mat(products).det() != 0), "the rotations are not independent")
         size = len(start) + len(held)
@@ -104,7 +104,7 @@ class Net:
         """Return coordinates grouped by agent."""
         return [list(flat[self.m * i : self.m * (i + 1)]) for i in range(self.n)]
 
-    def shifts(self) -> list[list[arb]]:
+    def translations(self) -> list[list[arb]]:
         """Return the translations along the axes."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
@@ -157,12 +157,12 @@ class Net:
             gap = gaps[pair]
             blocks[pair] = block(gap, ball(across), ball(along - across) / sum(map(square, gap), arb(0)))
         total = arb_mat(self.assembled(blocks))
-        for motion in self.turns(x) + self.shifts():
+        for motion in self.rotation_tangents(x) + self.translations():
             column = arb_mat([[y] for y in motion])
             total += column * column.transpose() * (10**9 * ball(self.c1_alpha) / sum(map(square, motion), arb(0)))
         return total
 
-    def turns(self, x: Sequence[Sequence[arb]]) -> list[list[arb]]:
+    def rotation_tangents(self, x: Sequence[Sequence[arb]]) -> list[list[arb]]:
         """Return the tangents of the orbit under rotations: (−y, x) of each agent in each coordinate plane."""
         return [
             [-row[b] if k == a else row[a] if k == b else arb(0) for row in x for k in range(self.m)]

@@ -83,7 +83,7 @@ class Surroundings:
         """Return Σ g gᵀ/‖g‖² over the rigid motions, times a large number."""
         total = arb_mat(len(self.rest), len(self.rest))
         at_rest = [abs(float(self.u.stiffness(length**2).mid())) for _, length in self.gaps.values()]
-        for motion in self.u.turns(self.rest) + self.u.shifts():
+        for motion in self.u.rotation_tangents(self.rest) + self.u.translations():
             g = column(motion)
             total += g * g.transpose() * (_LIFT * arb(max(at_rest)) / sum((y * y for y in motion), arb(0)))
         return total
@@ -141,7 +141,7 @@ class Surroundings:
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the matrices that α and β of each bond multiply, and the rest, in floating point."""
         size, m = len(self.rest), self.u.m
-        motions = np.array([[float(y) for y in g] for g in self.u.turns(self.rest) + self.u.shifts()])
+        motions = np.array([[float(y) for y in g] for g in self.u.rotation_tangents(self.rest) + self.u.translations()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
         parts = np.zeros((2, len(bonds), len(basis), len(basis)))
         for k, bond in enumerate(bonds):

@@ -132,7 +132,7 @@ class Structure:
             total += far if s >= beyond else psi_alpha(sigma_of_square(s, self.par.eps), self.par)
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * sum(map(square, x), arb(0))
 
-    def turns(self, x: Balls) -> list[list[arb]]:
+    def rotation_tangents(self, x: Balls) -> list[list[arb]]:
         """Return tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
         m, found = self.m, []
         for a in range(m):
@@ -143,7 +143,7 @@ class Structure:
                 found.append(turn)
         return found
 
-    def shifts(self) -> list[list[arb]]:
+    def translations(self) -> list[list[arb]]:
         """Return the translations along the axes."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 

@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import changed, ensure_sealed
+from flockana.base.seals import ensure_sealed, replace_sealed
 from flockana.certified.structural_energy import BITS, energy_of, norm2, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
@@ -108,7 +108,7 @@ class Tube:
 
     def with_seconds(self, seconds: float) -> Tube:
         """Return the same tube with its computing time."""
-        return changed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
+        return replace_sealed(self, stats={**self.stats, "steps": len(self.taken), "seconds": seconds})
 
     def ensure_unedited(self) -> None:
         """Raise unless the tube is unchanged since `enclose` returned it."""

@@ -16,7 +16,7 @@ def check_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A certificate (.json).")],
     as_json: AsJson = False,
 ) -> int:
-    """Verify a certificate, such as that of a basin, and say what it proves, step by step.
+    """Verify a certificate, such as that of a basin, and print what it proves, step by step.
 
     The checker shares with the code that proves only the scalar functions in ball arithmetic. It rejects a file in
     which anything was changed, and one that claims more than is true.

@@ -41,7 +41,7 @@ def _paths(command: Any) -> set[str]:
 
 
 def _refuse_empty(param: Any) -> None:
-    """Raise on a path that is '', as of a variable that is not set: it would stand for the current folder."""
+    """Raise on an empty path, as from an unset variable."""
     name = param.opts[0] if param.param_type_name == "option" else param.metavar
     here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
     raise FileError(f"{name} '': the name is empty; choose another name{here}")

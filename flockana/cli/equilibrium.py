@@ -115,7 +115,7 @@ def _draw(ax: Any, equilibrium: Equilibrium, name: str) -> None:
 
 
 def _rows(equilibrium: Equilibrium, facts: dict[str, Any]) -> tuple[tuple[str, str], ...]:
-    """The facts in words."""
+    """Return the equilibrium's facts as table rows."""
     lowest = ", ".join(f"{value:.4g}" for value in equilibrium.hessian_eigenvalues[:_LOWEST])
     contacts = equilibrium.law.lattice is None
     scale, length = ("a contact's force", "contact − d1|/d1") if contacts else ("the law's force scale", "link − d|/d")

@@ -49,7 +49,7 @@ def explore_command(
 
 
 def _first(name: str) -> dict[str, str]:
-    """The case that the page begins with; an unknown name or a bad file is an error before anything starts."""
+    """Return the case that the page begins with; raise on an unknown name or a bad file."""
     import os
     from pathlib import Path
 

@@ -89,7 +89,7 @@ def falsify_command(
 
 
 def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
-    """Bounds by parameter.
+    """Return bounds by parameter.
 
     Examples
     --------

@@ -90,7 +90,7 @@ def _ensured(law: Any, m: int, potential: bool) -> Any:
 def _of_source(
     name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None, potential: bool
 ) -> Any:
-    """The law of the file, or Algorithm 1 or 2 with the user's scale and range; positions."""
+    """Return positions, and the law of the file or Algorithm 1 or 2 with the user's scale and range."""
     from flockana.cli.source import read_source
     from flockana.interactions import AlphaInteraction
     from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -108,7 +108,7 @@ def _of_source(
 
 
 def _held(law: Any, t: float) -> Any:
-    """Return the law with its γ-agent held where it is at time t."""
+    """Return the law with its γ-agent fixed at its position at time t."""
     from flockana.environment.targets import StaticTarget
 
     target = law.target

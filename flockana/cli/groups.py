@@ -49,7 +49,7 @@ class Groups(TyperGroup):
     """The root command, whose help lists commands by what they are for."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the groups."""
+        """Write the groups of commands."""
         listed: set[str] = set()
         for heading, group in GROUPS.items():
             known = {name: entry for name, entry in group.items() if name in self.commands}

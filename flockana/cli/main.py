@@ -19,6 +19,7 @@ from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.check import check_command
 from flockana.cli.command import Command
+from flockana.cli.compiling import compiling_is_told
 from flockana.cli.course import course_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
@@ -28,6 +29,7 @@ from flockana.cli.falsify import falsify_command
 from flockana.cli.groups import Groups, example
 from flockana.cli.home import prepare_home
 from flockana.cli.lattice import lattice_command
+from flockana.cli.observe import observe_command
 from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
 from flockana.cli.stability import stability_command
@@ -55,6 +57,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "export": export_command,
     "course": course_command,
     "explore": explore_command,
+    "observe": observe_command,
 }
 
 
@@ -97,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_output()
     prepare_home()
     try:
-        with restore_interrupts(), relaxed_gc():
+        with restore_interrupts(), relaxed_gc(), compiling_is_told():
             given = list(sys.argv[1:] if arguments is None else arguments)
             code = _app(_asked(given))(args=given, prog_name=_NAME, standalone_mode=False)
             if arguments is None:

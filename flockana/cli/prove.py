@@ -71,7 +71,7 @@ def prove_command(
 
 
 def _module(name: str) -> Any:
-    """A module of the checkout's `proofs`, which is no part of the installed package.
+    """Import a module of the checkout's `proofs`, which is not part of the installed package.
 
     A course's folder has a `proofs` too, without what runs them, and may come first where modules are looked for.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def show(title: str, *tables: RenderableType) -> Console:
-    """Print a title in bold, and tables under it; gives the console, for more."""
+    """Print a title in bold, and tables under it; return the console."""
     from rich.console import Console
 
     console = Console(highlight=False)

@@ -174,7 +174,7 @@ def read_csv(path: Path) -> FloatArray:
     except (UnicodeDecodeError, csv.Error) as error:
         raise FileError(f"cannot read {path}: {error}; expected a CSV of positions") from error
     if lines and not any(_is_number(cell) for cell in lines[0][1]):
-        lines = lines[1:]
+        lines = _positions_by_header(path, lines[0][1], lines[1:])
     if not lines:
         raise FileError(f"{path} holds no positions: expected a row of 1 to 3 numbers for each agent")
     columns = len(lines[0][1])
@@ -187,6 +187,25 @@ def read_csv(path: Path) -> FloatArray:
         if bad is not None:
             raise FileError(f"{path}, line {k}: {bad!r}, expected finite numbers with commas between them")
     return np.array([[float(cell) for cell in row] for _, row in lines])
+
+
+def _positions_by_header(
+    path: Path, header: list[str], lines: list[tuple[int, list[str]]]
+) -> list[tuple[int, list[str]]]:
+    """The rows with the columns that a header names as positions; all of them where it names none that is known."""
+    from flockana.recorded.reading.names import AGENTS, TIMES, coordinate, layout_of, plain
+
+    names = [plain(cell) for cell in header]
+    if not any(coordinate(name) is not None or name in (*AGENTS, *TIMES) for name in names):
+        return lines
+    layout = layout_of(header, str(path))
+    if layout.time is not None or "q" not in layout.long:
+        raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; a recording is for observe")
+    kept = [header.index(name) for name in layout.long["q"]]
+    for k, row in lines:
+        if len(row) != len(header):
+            raise FileError(f"{path}, line {k}: {len(row)} values, expected {len(header)} as in the header")
+    return [(k, [row[i] for i in kept]) for k, row in lines]
 
 
 def _is_number(text: str) -> bool:

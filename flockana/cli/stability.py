@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -82,7 +83,7 @@ def stability_command(
 
 
 def _tell_time(n: int, *, as_given: bool) -> None:
-    """Print how long a large flock takes, on the error stream; raise if that is too long to wait for."""
+    """Print the expected time for a large flock on the error stream; raise if it is too long."""
     from flockana.base.errors import ArgumentError
 
     seconds = _SECONDS[as_given] * (n / 1000.0) ** 2
@@ -154,20 +155,21 @@ def margins_and_norms(linear: Linearisation, *, delay: bool, norms: bool, strict
     law: Any = linear.law
     if delay:
         for kind in DELAYED:
-            margin = delay_margin(delay_system(law, linear.q, delayed=kind, strict=strict))
+            system = delay_system(law, linear.q, delayed=kind, strict=strict)
+            margin = delay_margin(system, progress=sys.stderr.isatty())
             numbers = {name: finite(getattr(margin, name)) for name in ("delay", "frequency", "least")}
             facts[f"delay margin, {kind}"] = numbers | {"certified": margin.certified}
     if norms:
-        system = disturbance_system(law_blocks(law, linear.q, strict=strict))
-        assert system is not None  # shapes are always bounded
-        peak = hinf_norm(system)
-        facts["H2"], facts["Hinf"] = finite(h2_norm(system)), finite(peak[0])
+        disturbed = disturbance_system(law_blocks(law, linear.q, strict=strict))
+        assert disturbed is not None  # shapes are always bounded
+        peak = hinf_norm(disturbed)
+        facts["H2"], facts["Hinf"] = finite(h2_norm(disturbed)), finite(peak[0])
         facts["Hinf at"] = finite(peak[1])
     return facts
 
 
 def _draw(figure: Any, linear: Linearisation, slow: tuple[Mode, ...]) -> None:
-    """Pole map, the slowest modes of the shape, and the centre's Bode plot where there is one."""
+    """Draw the pole map, the slowest modes, and the centre's Bode plot where there is one."""
     import numpy as np
 
     from flockana import plots
@@ -205,7 +207,7 @@ def _title(facts: dict[str, Any]) -> str:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """Facts in words."""
+    """Return the linearisation's facts as table rows."""
     drifts = f"; drifting: {', '.join(facts['drifting'])}" if facts["drifting"] else ""
     abscissa = facts["spectral abscissa"]
     rows = [

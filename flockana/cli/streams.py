@@ -31,7 +31,7 @@ class _Outlet(io.FileIO):
 
 
 def prepare_output() -> None:
-    """Make the standard output accept every letter and survive its reader."""
+    """Make the standard output accept every letter, and survive a closed pipe."""
     stream = sys.stdout
     if stream is None or stream is not sys.__stdout__ or not isinstance(stream, io.TextIOWrapper):
         return

@@ -75,12 +75,12 @@ def sources() -> list[Path]:
 
 
 def tags(cell: Any) -> list[str]:
-    """The tags of a cell."""
+    """Return the tags of a cell."""
     return list(cell.metadata.get("tags", ()))
 
 
 def notebook(source: Path, version: str, *, address: str = "") -> Any:
-    """The notebook of a lecture: for the student, for study alone (with checks), or with solutions.
+    """Return the notebook of a lecture: for the student, for self-study (with checks), or with solutions.
 
     `address` is where its first cell installs flockana from if it is missing, such as ``git+https://host/flockana``.
     """
@@ -113,7 +113,7 @@ def needs_companions(source: Path) -> bool:
 
 
 def exercises(source: Path) -> Iterator[Exercise]:
-    """The exercises of a lecture, in order."""
+    """Return the exercises of a lecture, in order."""
     parts: list[dict[str, str]] = []
     for cell in jupytext.read(source).cells:
         for tag in {"exercise", "check"} & set(tags(cell)):

@@ -35,7 +35,7 @@ GRADERS = ("otter", "nbgrader")
 
 
 def master(source: Path, grader: str) -> Any:
-    """The notebook that a grader starts from, with solutions and all tests: for lecturers only."""
+    """Return the notebook that a grader starts from, with solutions and all tests; for lecturers."""
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, asked = notebook(source, "solutions"), iter(exercises(source))
@@ -71,7 +71,7 @@ def write_for(folder: Path, grader: str) -> list[Path]:
 
 
 def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
-    """The test that students see, and the one that they do not."""
+    """Return the visible and the hidden test of an exercise."""
     seen = f'{_IMPORTS}assert answered({exercise.name}, "{exercise.form}").status == "handed in"'
     return seen, f'assert {check.rstrip()}.status == "right"'
 

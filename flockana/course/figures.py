@@ -10,7 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from flockana.plots.style import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION, ensure_axes, finish, head
+from flockana.plots.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    VERMILLION,
+    ensure_axes,
+    finish,
+    write_title,
+)
 
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 200)
 
@@ -25,7 +37,7 @@ def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = 
     for k, place in enumerate(q):
         ax.text(*place, f"{k + 1}", ha="center", va="center", fontsize=8, zorder=3)
     ax.set(xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
-    head(ax, title)
+    write_title(ax, title)
     return ax
 
 
@@ -140,13 +152,13 @@ def projections(*, axes: Any) -> Any:
     sphere.plot(*np.array([centre, q]).T, color=MUTED, linestyle=":", linewidth=1.0)
     sphere.annotate("$y$", centre, (-12, -4), textcoords="offset points")
     sphere.set(xlim=(-1.3, 3.0), ylim=(-1.2, 2.4))
-    head(sphere, "sphere: $\\hat p = \\mu P p$")
+    write_title(sphere, "sphere: $\\hat p = \\mu P p$")
     q, p = np.array([0.0, 1.3]), np.array([1.2, -0.8])
     wall.fill_between([-1.6, 2.6], -0.8, 0.0, color=FAINT)
     _agent_and_image(wall, q, p, np.array([0.0, 0.0]), np.array([p[0], 0.0]))
     wall.plot([0.0, 0.0], [0.0, 1.3], color=MUTED, linestyle=":", linewidth=1.0)
     wall.set(xlim=(-1.6, 2.6), ylim=(-0.8, 2.2))
-    head(wall, "wall: $\\hat p = P p$")
+    write_title(wall, "wall: $\\hat p = P p$")
     return axes
 
 
@@ -158,7 +170,7 @@ def _agent_and_image(ax: Any, q: Any, p: Any, image: Any, image_p: Any) -> None:
     ax.annotate("$q_i$", q, (6, 3), textcoords="offset points", color=BLUE)
     ax.annotate("$p_i$", q + p, (-4, 6), textcoords="offset points", color=BLUE)
     ax.annotate("$\\hat q_{ik}$", image, (-4, -16), textcoords="offset points", color=VERMILLION)
-    ax.annotate("$\\hat p_{ik}$", image + image_p, (-16, -2), textcoords="offset points", color=VERMILLION)
+    ax.annotate("$\\hat p_{ik}$", image + image_p, (4, 4), textcoords="offset points", color=VERMILLION)
 
 
 def zones(radii: Mapping[str, float], *, ax: Any = None) -> Any:
@@ -236,7 +248,7 @@ def equilibria(*, axes: Any) -> Any:
             ax.plot(*start, "o", color=colour, markersize=4, markerfacecolor="white")
         ax.plot(0.0, 0.0, "k*", markersize=8)
         ax.set(xlim=(-1.5, 1.5), ylim=(-1.5, 1.5), aspect="equal")
-        head(ax, name)
+        write_title(ax, name)
         finish(ax, "first coordinate", "second coordinate")
     return axes
 

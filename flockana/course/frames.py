@@ -94,7 +94,7 @@ def slider(
     size: tuple[float, float] = (6.0, 3.6),
     start: int = 0,
 ) -> Frames:
-    """A picture for each value, behind a slider.
+    """Return a slider over a sequence of pictures.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def film(
     size: tuple[float, float] = (6.0, 3.6),
     seconds: float = 6.0,
 ) -> Frames:
-    """A picture for each value, one after another at the touch of a button."""
+    """Return a player over a sequence of pictures."""
     return _drawn(draw, values, name, title, size, 0, ensure_positive("seconds", seconds))
 
 

@@ -66,7 +66,7 @@ def grade(
 
 
 def answered(answer: Any, form: str) -> Grade:
-    """Look at the form of an answer only: all that a student's copy checks.
+    """Check only the form of an answer, as a student's copy does.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def answered(answer: Any, form: str) -> Grade:
 
 
 def form_of(right: Any) -> str:
-    """The form of a right answer, as `answered` knows it; empty for a function, which may ask for anything.
+    """Return the form of a right answer; empty for a function.
 
     Examples
     --------

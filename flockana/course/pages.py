@@ -68,7 +68,7 @@ def _title(source: Path) -> str:
 
 
 def as_text(bibtex: str) -> str:
-    """A BibTeX entry as a line of text.
+    """Return a BibTeX entry as a line of text.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def _initials(name: str) -> str:
 
 
 def notation(folder: Path) -> list[dict[str, str]]:
-    """The table of symbols: ``symbol``, ``meaning``, ``unit`` and the ``lectures`` that use it."""
+    """Return the table of symbols: ``symbol``, ``meaning``, ``unit`` and ``lectures``."""
     with (folder / "notation.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file, delimiter="|", quoting=csv.QUOTE_NONE))
 
@@ -128,7 +128,7 @@ def references(lecture: Lecture) -> str:
 
 
 def notation_page(folder: Path) -> str:
-    """All symbols of the course, in Markdown."""
+    """Return all symbols of the course, in Markdown."""
     return (
         "# Notation\n\nA symbol means the same in all lectures.\n\n" + "\n".join(_rows(notation(folder), "all")) + "\n"
     )

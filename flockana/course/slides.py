@@ -28,7 +28,7 @@ _STYLE = """<style>
 
 
 def slides(source: Path) -> Any:
-    """The notebook of a lecture, marked for ``jupyter nbconvert --to slides --execute``."""
+    """Return a lecture's notebook marked for ``jupyter nbconvert --to slides --execute``."""
     book = notebook(source, "student")
     book.cells = [part for cell in book.cells if not _LEFT_OUT & set(tags(cell)) for part in _parts(cell)]
     book.cells[0].source += f"\n\n{_STYLE}"

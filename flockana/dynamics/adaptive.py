@@ -17,7 +17,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of, stepped
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
-from flockana.dynamics.stepping import ONE_STEP, Balance, Check, EncounterCheck, Flow, Frame, Stepper
+from flockana.dynamics.stepping import ONE_STEP, Balance, Check, EncounterCheck, FiniteEnergy, Flow, Frame, Stepper
 from flockana.dynamics.switches import Switches
 from flockana.dynamics.tolerance import Floors
 from flockana.kernels.advance import TOO_SMALL
@@ -155,8 +155,8 @@ def _checks(law: Law, frame: Frame, method: str, rtol: float, floor: Floors) -> 
     """What every step of a law without jumps must stand up to."""
     encounters = Encounters.of(law, frame.shape[0])
     checks: list[Check] = [EncounterCheck(encounters)] if encounters.any else []
-    if frame.energetic and method in ONE_STEP:
-        checks.append(Balance(law, rtol, floor.work))
+    if frame.energetic:
+        checks.append(Balance(law, rtol, floor.work) if method in ONE_STEP else FiniteEnergy(law))
     return tuple(checks)
 
 

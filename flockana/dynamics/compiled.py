@@ -14,15 +14,16 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.encounters import Encounters
+from flockana.dynamics.encounters import Encounters, at_a_pole
 from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
 from flockana.dynamics.tolerance import Floors
-from flockana.kernels.advance import CROWDED, RUNNING, advance
-from flockana.kernels.bodies import no_guard
-from flockana.kernels.sweep import BLOCK
+from flockana.jit import thawed
+from flockana.kernels.advance import CROWDED, RUNNING, SINGULAR, Around, Kept, Method, advance
+from flockana.kernels.blocks import BLOCK
+from flockana.kernels.runge_kutta import System
 from flockana.kernels.tableaus import Tableau, tableau
-from flockana.kernels.verlet import SKIN, list_pairs, search_of_pairs
+from flockana.kernels.verlet import SKIN, list_pairs
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
@@ -84,49 +85,34 @@ class Engine:
         return Sample(t0, q0, p0, u, {"work": np.array(0.0)}), Point(t0, y0, rate, 0.0)
 
     @cached_property
-    def _system(self) -> tuple[Any, ...]:
+    def _system(self) -> tuple[System, Around, Method]:
         """What stays the same from call to call (`flockana.kernels.advance`)."""
-        frame, size = self.frame, self.frame.shape[1]
-        terms = self.form.padded
-        view = (frame.t0, frame.origin[:size].copy(), frame.drift[:size].copy())
-        arrays = (tuple(np.array(getattr(term, name)) for term in terms) for name in ("numbers", "panels"))
-        guards = (term.guard or no_guard() for term in terms)
-        functions = (search_of_pairs()[0], *(term.act for term in terms), *(term.energy for term in terms), *guards)
-        met = self.encounters
-        bodies = met.bodies is not None
-        around = ((self.form.reach, SKIN * self.form.reach), met.radii, met.far, bodies, (met.shell, met.skirt))
-        allowed = (self.allowed.rtol, tuple(self.allowed.floor), self.allowed.balance)
-        return (
-            *functions,
-            *arrays,
-            frame.shape,
-            view,
-            self.form.moving,
-            len(self.form.terms),
-            *self.method,
-            *around,
-            *allowed,
-        )
+        frame, (n, m), met = self.frame, self.frame.shape, self.encounters
+        view = (frame.t0, frame.origin[:m].copy(), frame.drift[:m].copy())
+        own, reach = np.arange(n, dtype=np.uint64), (self.form.reach, SKIN * self.form.reach)
+        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        numbers = self.form.numbers
+        system = System(*self.form.functions, numbers, view, self.form.moving, reach, own, *room)
+        shell = float(met.shell), float(met.skirt)
+        around = Around(thawed(met.radii), float(met.far), met.bodies is not None, shell, thawed(met.poles))
+        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in self.method]
+        floor, balance = (tuple(float(x) for x in each) for each in (self.allowed.floor, self.allowed.balance))
+        given += [float(self.allowed.rtol), floor, balance]
+        return system, around, Method(*given)
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
         """Some steps from here."""
         most = int(np.clip(_NUMBERS // (3 * self.frame.size), 1, _STEPS))
-        result: tuple[Any, ...] = advance()(*self._system, ledger, *now, stops, due, most)
+        kept = Kept(float(now.t), now.y, now.f, float(now.h), ledger)
+        result: tuple[Any, ...] = advance(*self._system, kept, stops, due, most)
         return result
 
     def fits(self, q: FloatArray, p: FloatArray) -> bool:
         """Whether a list has room for the pairs within reach, and the energy is finite, so it has a rate."""
-        q, p = np.array(q), np.array(p)  # what is compiled takes arrays that may be written to
-        few, still = np.empty(1, np.uint32), np.zeros((2, q.shape[1]))
-        first, second, count = list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)
-        if count < 0:
+        few = np.empty(1, np.uint32)
+        if list_pairs(q, (1.0 + SKIN) * self.form.reach, few, few)[2] < 0:
             return False
-        own, energy = np.arange(len(q), dtype=np.uint64), 0.5 * float(np.vdot(p, p))
-        near, room = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
-        for term in self.form.terms:
-            numbers, panels = np.array(term.numbers), np.array(term.panels)
-            energy += term.energy(self.frame.t0, q, p, still, numbers, panels, first, second, count, own, near, room)
-        return bool(np.isfinite(energy))
+        return bool(np.isfinite(self.law.hamiltonian(self.frame.t0, q, p)))
 
 
 def engine_of(
@@ -184,6 +170,8 @@ def stepped(
             yield Samples(made, states[:, 0], states[:, 1], states[:, 2], {"work": work})
         if status == CROWDED:
             tally.fail(f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'")
+        elif status == SINGULAR:
+            tally.fail(at_a_pole(t))
         elif status != RUNNING:
             tally.fail(reason(status, t + h))
         if status != RUNNING:

@@ -16,16 +16,18 @@ shortens no step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.environment.beta import ObstacleField
 from flockana.kernels.encounters import share_of_all, share_of_pairs
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.poles import crossing
 from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
@@ -54,6 +56,10 @@ class Encounters:
         The law's obstacles.
     shell, skirt : float
         Distance from an obstacle's surface at which its force begins, and how far an agent may go within it.
+    poles : ndarray
+        Distances between agents that none crosses: their potential is infinite there, or their force undefined.
+    among : ndarray, shape (L, 2), optional
+        The pairs that poles concern; None: all.
     """
 
     radii: FloatArray
@@ -61,6 +67,8 @@ class Encounters:
     bodies: ObstacleField | None = None
     shell: float = 0.0
     skirt: float = 0.0
+    poles: FloatArray = field(default_factory=lambda: np.empty(0))
+    among: npt.NDArray[np.int32] | None = None
 
     @classmethod
     def of(cls, law: Law, n: int) -> Encounters:
@@ -76,18 +84,19 @@ class Encounters:
         surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
         radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
         length = min(np.inf if law.scales is None else law.scales.length, radii[:, -1].min() if surfaces else np.inf)
-        bodies = law.obstacle_field
+        bodies, radii, poles = law.obstacle_field, np.ascontiguousarray(radii), np.array(law.poles, dtype=np.float64)
+        among = None if law.pole_pairs is None else np.array(law.pole_pairs, dtype=np.int32).reshape(-1, 2)
         if bodies is None or not bodies.obstacles:
-            return cls(np.ascontiguousarray(radii), SHARE * length)
-        return cls(np.ascontiguousarray(radii), SHARE * length, bodies, bodies.beta.r, SHARE * bodies.beta.d)
+            return cls(radii, SHARE * length, poles=poles, among=among)
+        return cls(radii, SHARE * length, bodies, bodies.beta.r, SHARE * bodies.beta.d, poles, among)
 
     @property
     def any(self) -> bool:
         """Whether there is anything to run into."""
-        return self.radii.size > 0 or self.bodies is not None
+        return self.radii.size > 0 or self.bodies is not None or self.poles.size > 0
 
     def share(self, h: float, before: State, after: State) -> float:
-        """How much of a step may be taken, 1 if it stands.
+        """How much of a step may be taken, 1 if it stands; negative if a pair crosses a pole.
 
         Examples
         --------
@@ -102,9 +111,13 @@ class Encounters:
         """
         points, _, allowance = bernstein(h, *before, *after)
         share = 1.0 if self.bodies is None else self._share_of_bodies(self.bodies, points, allowance)
-        if not self.radii.size or len(points) == 1:
+        if len(points) == 1 or not (self.radii.size or self.poles.size):
             return share
         reach = centred(points, allowance)
+        if self.poles.size and self._crosses(points, reach, before.q):
+            return -0.5
+        if not self.radii.size:
+            return share
         if len(reach) <= DENSE:
             return float(min(share, share_of_all(points, reach, allowance, self.radii, self.far)))
         search = (float(self.radii.max()) + 2.0 * float(reach.max() + allowance.max())) * (1.0 + 1e-9)
@@ -112,9 +125,22 @@ class Encounters:
             share = share_of_pairs(points, reach, allowance, self.radii, self.far, i, j, share)
         return share
 
+    def _crosses(self, points: FloatArray, reach: FloatArray, q: FloatArray) -> bool:
+        """Whether a pair crosses a pole."""
+        if self.among is not None:
+            first, second = (np.ascontiguousarray(ends) for ends in self.among.T)
+            return bool(crossing(points, reach, self.poles, first, second))
+        around = (float(self.poles.max()) + 2.0 * float(reach.max())) * (1.0 + 1e-9)
+        return any(crossing(points, reach, self.poles, i, j) for i, j in pair_blocks(q, around))
+
     def _share_of_bodies(self, field: ObstacleField, points: FloatArray, allowance: FloatArray) -> float:
         """The share of the step that the obstacles allow."""
         share = 1.0
         for kernels, _, pars, starts, balls in field.kinds:
             share = kernels.share(points, allowance, pars, starts, balls, self.shell, self.skirt, share)
         return share
+
+
+def at_a_pole(t: float) -> str:
+    """Return why a run ended that no shorter step takes past a pole."""
+    return f"agents met at t = {t:g} where their potential is infinite or their force has no limit: no motion goes on"

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of, stepped
-from flockana.dynamics.encounters import Encounters, State
+from flockana.dynamics.encounters import Encounters, State, at_a_pole
 from flockana.dynamics.iterate import count_steps
 from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
 from flockana.kernels.advance import GROWTH
@@ -49,10 +49,14 @@ def rk4(
                 later, more, rate_there = _rk4_step(law, t, state, rate, h)
                 tally.evaluations += 4
                 share = encounters.share(h, state, later) if encounters.any and finite(*later) else 1.0
+                singular, share = share < 0.0, abs(share)
                 if share == 1.0 or t + share * h == t:
                     break
                 h *= max(share, 1.0 / GROWTH)  # what a step that is far too long foresees is no measure of the next
                 tally.notes["redone"] += 1
+            if singular:
+                tally.fail(at_a_pole(t))
+                return
             if not finite(*later):
                 tally.fail(_left(t + h, dt))
                 return

@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.encounters import Encounters, State
+from flockana.dynamics.encounters import Encounters, State, at_a_pole
 from flockana.kernels.advance import FALLS, HALVINGS, HELPS, PATIENCE, ROUNDINGS
 from flockana.laws.law import Law
 
@@ -97,7 +97,7 @@ class Check(Protocol):
     """Something to hold a step against."""
 
     def share(self, before: Moment, after: Moment) -> float:
-        """How much of a step may be taken; 1 if it stands."""
+        """Return how much of a step may be taken: 1 if it stands, negative if it crossed a pole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +145,9 @@ class Balance:
             return 1.0
         first = self._known[1] if self._known[0] == before.t else self._energy(before)
         last = self._energy(after)
+        if np.isfinite(first) and not np.isfinite(last):  # the step ends where the potential is infinite
+            self._known = (before.t, first)
+            return -0.5
         residual = abs(last - first - float(after.y[-1] - before.y[-1]))
         largest = max(self._largest, abs(first), abs(last))
         off, tried = residual > max(self.share_of_energy * largest, self.floor), self._tried
@@ -159,6 +162,23 @@ class Balance:
 
     def _energy(self, moment: Moment) -> float:
         return self.law.hamiltonian(moment.t, moment.state.q, moment.state.p)
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteEnergy:
+    """The check that no step ends where the potential is infinite.
+
+    Parameters
+    ----------
+    law : Law
+        With an energy.
+    """
+
+    law: Law
+
+    def share(self, before: Moment, after: Moment) -> float:
+        """Return 1, or a half, negative, for a step that crossed a pole."""
+        return 1.0 if np.isfinite(self.law.hamiltonian(after.t, after.state.q, after.state.p)) else -0.5
 
 
 class Stepper:
@@ -234,8 +254,15 @@ class Stepper:
             reached = self._attempt()
             if reached is None:
                 return False
+            if reached.t <= start.t:
+                self.message = f"{self.method} gave up at t = {start.t:g}: its step is lost in the rounding of the time"
+                return False
             h, shortest = reached.t - start.t, ROUNDINGS * float(np.spacing(max(abs(start.t), abs(reached.t))))
             share = next((share for check in checks if (share := check.share(start, reached)) < 1.0), 1.0)
+            singular, share = share < 0.0, abs(share)
+            if singular and share * h <= shortest:
+                self.message = at_a_pole(start.t)
+                return False
             if share == 1.0 or share * h <= shortest:
                 self.now = reached
                 return True

@@ -16,7 +16,7 @@ from flockana.base.checks import FloatArray, ensure_choice, ensure_positive, rea
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
-from flockana.base.seals import changed
+from flockana.base.seals import replace_sealed
 from flockana.base.tables import facts_html
 from flockana.base.units import rescale, times
 from flockana.base.vectors import centres, lengths
@@ -177,7 +177,7 @@ class Trajectory(ResultCache):
             stats["floors"] = [value * factor for value, factor in zip(stats["floors"], factors, strict=True)]
         law = rescale(self.law, length=length, time=time)
         between = None if self.between is None else rescale(self.between, length=length, time=time)
-        return changed(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
+        return replace_sealed(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)
 
     @cached_property
     def _flows(self) -> tuple[FloatArray, FloatArray]:
@@ -480,7 +480,7 @@ class Trajectory(ResultCache):
         if self.resolved and self.between is None and "steps" in stats:
             stats = {**stats, "steps": min(stats["steps"], int(keep.sum()) - 1)}
         part = {name: getattr(self, name)[keep] for name in ("t", "q", "p", "u")}
-        return changed(self, **part, extra=extra, between=between, stats=stats)
+        return replace_sealed(self, **part, extra=extra, between=between, stats=stats)
 
     def to_xarray(self) -> xarray.Dataset:
         """The run as an `xarray.Dataset` with dimensions time, agent and axis; the law is in the attributes."""

@@ -33,12 +33,12 @@ _ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
 
 
 @cache
-def mathematics() -> str:
+def numerics_version() -> str:
     """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits.
 
     Examples
     --------
-    >>> len(mathematics())
+    >>> len(numerics_version())
     16
     """
     root = Path(__file__).resolve().parent.parent

@@ -20,7 +20,7 @@ from types import TracebackType
 from flockana._version import __version__
 from flockana.base.errors import FileError
 from flockana.base.files import ensure_path
-from flockana.ensemble.digest import mathematics
+from flockana.ensemble.digest import numerics_version
 from flockana.ensemble.work import COMPLETE, Record
 
 FORMAT = 1
@@ -70,7 +70,7 @@ class Store:
         with self._transaction():  # a second program may be doing the same: nothing is done twice
             for statement in _SCHEMA:
                 self._file.execute(statement)
-            facts = (("mathematics", mathematics()), ("flockana", __version__))
+            facts = (("mathematics", numerics_version()), ("flockana", __version__))
             self._file.executemany("INSERT OR IGNORE INTO facts VALUES (?, ?)", facts)
         self._ensure_version()
 
@@ -97,11 +97,11 @@ class Store:
 
     def _ensure_version(self) -> None:
         facts = dict(self._file.execute("SELECT name, value FROM facts"))
-        if facts.get("mathematics") != mathematics():
+        if facts.get("mathematics") != numerics_version():
             raise FileError(
                 f"{self.path} holds runs of another version of the mathematics ({facts.get('mathematics')}, flockana "
-                f"{facts.get('flockana')}; this is {mathematics()}, flockana {__version__}): choose another file, or "
-                "compute with the flockana, numpy, scipy and numba that wrote it"
+                f"{facts.get('flockana')}; this is {numerics_version()}, flockana {__version__}): choose another file, "
+                "or compute with the flockana, numpy, scipy and numba that wrote it"
             )
 
     def __enter__(self) -> Store:

@@ -14,7 +14,7 @@ from flockana.base.interrupts import restore_interrupts
 from flockana.base.seals import SEAL, digest
 from flockana.base.serialize import to_data, to_data_mapping
 from flockana.dynamics.trajectory import Trajectory
-from flockana.ensemble.digest import mathematics
+from flockana.ensemble.digest import numerics_version
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenario
 from flockana.scenarios.given import SOURCE
@@ -42,7 +42,7 @@ class Request:
     # names of measures, or ``"module:function"``
     metrics: tuple[str, ...] = field(default_factory=lambda: tuple(measures()))
     tolerances: Tolerances = field(default_factory=Tolerances)
-    mathematics: str = field(default_factory=mathematics)  # version that the runs must be computed by
+    mathematics: str = field(default_factory=numerics_version)  # version that the runs must be computed by
     flock: Flock | None = None  # instead of a scenario's name
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
@@ -131,9 +131,9 @@ def resolve(name: str) -> Any:
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
     """Make runs one after the other in this process."""
-    if mathematics() != request.mathematics:
+    if numerics_version() != request.mathematics:
         raise SolverError(
-            f"a worker computes with version {mathematics()} of the mathematics, expected {request.mathematics}: "
+            f"a worker computes with version {numerics_version()} of the mathematics, expected {request.mathematics}: "
             "give all machines the same flockana, Python, numpy, scipy and numba, edit none of it meanwhile, and start "
             "the workers anew"
         )

@@ -12,7 +12,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Obstacle, freeze_vector
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 
 

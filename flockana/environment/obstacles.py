@@ -24,7 +24,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.obstacles import ObstacleKernels, lift_obstacle, no_turn, project_ball, turn_ball
 
 

@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Obstacle
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 

@@ -100,7 +100,7 @@ class SimplePolygon:
 
         return bool(shapely.distance(self._shape, shapely.Point(point)) == 0.0)
 
-    def clearance_on_way(
+    def clearance_along(
         self, start: FloatArray, end: FloatArray, ends: tuple[FloatArray, FloatArray] | None = None
     ) -> FloatArray:
         """Return lower bounds of the signed distance along straight paths, exact outside, shape (N,).
@@ -135,12 +135,12 @@ class SimplePolygon:
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
 
 
-def ball_clearance_on_way(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
+def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return least signed distances from a ball along straight paths, exact, shape (N,).
 
     Examples
     --------
-    >>> ball_clearance_on_way(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()
+    >>> ball_clearance_along(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()
     [2.0]
     """
     way, away = end - start, np.array(ball.centre) - start

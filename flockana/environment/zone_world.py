@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
+from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
 from flockana.kernels.zones import World
 
 
@@ -167,9 +167,9 @@ class ZoneWorld:
         for o in self.obstacles:
             found = o.clearance(flat).reshape(at.shape)
             if isinstance(o, Sphere):
-                bound = ball_clearance_on_way(o, start, end)
+                bound = ball_clearance_along(o, start, end)
             else:
-                bound = o.clearance_on_way(start, end, (found[taken].ravel(), found[taken + 1].ravel()))
+                bound = o.clearance_along(start, end, (found[taken].ravel(), found[taken + 1].ravel()))
             at, on_way = np.minimum(at, found), np.minimum(on_way, bound.reshape(on_way.shape))
         return at, on_way
 

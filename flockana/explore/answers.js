@@ -49,13 +49,15 @@ function explorerAnswers(verdicts, poles, strip) {
     row.querySelectorAll("p, ul").forEach((node) => node.remove());
     if (found.summary) make("p", found.summary, row);
     make("p", found.error || found.statement, row, { class: "muted" });
+    const unmet = new Set(found.hypotheses.filter(({ status }) => status === "unmet").map(({ name }) => name));
     const list = (items, words) => {
       if (!items.length) return;
       const all = make("ul", "", row, { "aria-label": words });
-      for (const { status: how, name, detail, margin, rigour, by } of items) {
+      for (const { status: how, name, detail, margin, rigour, by, needs } of items) {
         const item = make("li", "", all);
         make("span", how, item, { class: `status ${how}` });
-        const more = [detail, margin === null || margin === undefined ? "" : `margin ${Number.isFinite(Number(margin)) ? short(margin) : margin}`, rigour || ""];
+        const missed = how === "vacuous" && (needs || []).find((need) => unmet.has(need));
+        const more = [missed && !detail.startsWith(missed) ? `unmet: ${missed}` : "", detail, margin === null || margin === undefined ? "" : `margin ${Number.isFinite(Number(margin)) ? short(margin) : margin}`, rigour || ""];
         const whose = by && by !== found.author ? `${found.bylines[by]}: ` : "";
         item.append(` ${whose}${name}: ${more.filter(Boolean).join("; ")}`);
       }

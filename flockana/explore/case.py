@@ -98,7 +98,7 @@ class Case:
 
 
 def program(parts: Start) -> str:
-    """Python that does the same as a page: simulates, and checks the same theorems.
+    """Return Python code that simulates and checks what a page shows.
 
     Examples
     --------

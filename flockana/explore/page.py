@@ -20,7 +20,7 @@ def _text(name: str) -> str:
 
 
 def page(first: dict[str, Any], nonce: str) -> str:
-    """The page."""
+    """Return the HTML of the page."""
     groups = [{"label": source, "kind": "scenario", "names": names} for source, names in _scenarios().items()]
     groups.append({"label": "Laws, with a flock at random", "kind": "law", "names": dict.fromkeys(law_names(), "")})
     if first["kind"] == "file":

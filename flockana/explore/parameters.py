@@ -65,7 +65,7 @@ def _is_vector(item: Any) -> bool:
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
-    """Changes by path as a tree, each checked to be a value of the kind that it replaces.
+    """Return changes by path as a tree, with values checked against what they replace.
 
     Examples
     --------

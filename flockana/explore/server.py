@@ -37,13 +37,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'
 
 
 class Process:
-    """A worker process, whose messages reach the server's own thread.
-
-    Parameters
-    ----------
-    limit : float
-        Seconds that a run may take.
-    """
+    """A worker process, whose messages reach the server's own thread."""
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")
@@ -74,7 +68,7 @@ class Process:
         self.deliver(message)  # to whoever has it now
 
     def end(self) -> None:
-        """End it at once."""
+        """End the process at once."""
         self.deliver = lambda message: None
         self.process.kill()
 
@@ -90,14 +84,14 @@ class Server:
     spare: Process | None = None
 
     def take(self) -> Process:
-        """A process that is, with luck, ready; another is started to be the next."""
+        """Return a process, ready if possible, and start another for the next page."""
         spare, self.spare = self.spare, None
         taken = spare if spare is not None and spare.process.is_alive() else Process(self.limit)
         asyncio.get_running_loop().call_later(2.0, self.prepare)
         return taken
 
     def prepare(self) -> None:
-        """Have a process ready."""
+        """Start a process in reserve."""
         if self.spare is None or not self.spare.process.is_alive():
             self.spare = Process(self.limit)
 
@@ -122,7 +116,7 @@ class Server:
 
 class _Page(RequestHandler):
     def get(self) -> None:
-        """The page."""
+        """Answer with the page."""
         server: Server = self.application.settings["explorer"]
         if not server.admits(self):
             raise HTTPError(403)
@@ -163,13 +157,13 @@ class _Tab(WebSocketHandler):
     analysing, silent = False, 0
 
     def prepare(self) -> None:
-        """Turn away whoever does not know the token."""
+        """Reject requests without the token."""
         self.server: Server = self.application.settings["explorer"]
         if not self.server.admits(self):
             raise HTTPError(403)
 
     def open(self, *_: Any) -> None:
-        """Take a process."""
+        """Take a process for a new page."""
         if len(self.server.tabs) >= _TABS:
             self.close(4000, f"{_TABS} tabs are open: close one")
             return
@@ -184,7 +178,7 @@ class _Tab(WebSocketHandler):
         return taken
 
     def on_message(self, message: str | bytes) -> None:
-        """Ask the process."""
+        """Send a question to the process."""
         try:
             asked = json.loads(message)
             number, case = int(asked["number"]), asked["case"]
@@ -247,7 +241,7 @@ class _Tab(WebSocketHandler):
             self.on_close()
 
     def on_close(self) -> None:
-        """End the process."""
+        """End the process of a closed page."""
         self.server.tabs.discard(self)
         if self.process is not None:
             self.process.end()

@@ -50,7 +50,7 @@ class Start:
 
 
 def law_names() -> tuple[str, ...]:
-    """Laws that can be tried on a random flock.
+    """Return laws that can be tried on a random flock.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=8)
 def from_scenario(name: str, *, seed: int = 0) -> Start:
-    """A scenario of the catalogue.
+    """Return the case of a scenario of the catalogue.
 
     Examples
     --------
@@ -127,7 +127,7 @@ def from_scenario(name: str, *, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=1)
 def from_file(path: str) -> Start:
-    """A saved run (.nc), or a counterexample (.json)."""
+    """Return the case of a saved run (.nc), or a counterexample (.json)."""
     if Path(path).suffix == ".json":
         found = Counterexample.load(path)
         lines: tuple[str, ...] = (

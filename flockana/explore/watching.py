@@ -83,7 +83,7 @@ def _cost(parts: Start, gone: float, done: float, span: float, limit: float) -> 
 
 
 def _thin(samples: list[Sample], law: Any) -> Trajectory:
-    """Some of the samples so far, as a run."""
+    """Return some of the samples so far, as a run."""
     some = [samples[k] for k in kept(len(samples), _FRAMES)]
     t, q, p, u = (np.array([getattr(sample, name) for sample in some]) for name in "tqpu")
     extra = {key: np.array([sample.extra[key] for sample in some]) for key in some[0].extra}
@@ -91,7 +91,7 @@ def _thin(samples: list[Sample], law: Any) -> Trajectory:
 
 
 def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
-    """A run, shown as a whole: of a long one some samples, as the strip measures each."""
+    """Return a whole run for display, thinned if it is long."""
     most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
     extra = {name: series[most] for name, series in run.extra.items()}
     some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra, between=None)

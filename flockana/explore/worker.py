@@ -15,15 +15,7 @@ from flockana.base.interrupts import defer_sigint, restore_interrupts
 
 
 class Worker:
-    """Questions from a pipe, one after the other; an older one ends where a newer has come.
-
-    Parameters
-    ----------
-    pipe : Connection
-        Gives (number, data), takes (number, kind, content).
-    limit : float
-        Seconds that a run may take.
-    """
+    """Questions from a pipe, one after the other; an older one ends where a newer has come."""
 
     def __init__(self, pipe: Connection, limit: float) -> None:
         self.pipe, self.limit = pipe, limit

@@ -49,7 +49,7 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
     """
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
-    run = simulate(case.law, case.q0, case.p0, case.t_span, **tighter(case.options))
+    run = simulate(case.law, case.q0, case.p0, case.t_span, **tightened_options(case.options))
     if run.status == "interrupted":
         raise KeyboardInterrupt
     statuses = {claim.name: claim.status for claim in judge(run).claims} if run.status == "complete" else {}
@@ -63,12 +63,12 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
     return replace(verdict, claims=tuple(claims))
 
 
-def tighter(options: Mapping[str, Any]) -> dict[str, Any]:
+def tightened_options(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method.
 
     Examples
     --------
-    >>> options = tighter({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
+    >>> options = tightened_options({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
     >>> sorted(options), round(options["rtol"], 14)
     (['rtol', 't_eval'], 1e-11)
     """

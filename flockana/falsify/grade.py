@@ -32,7 +32,7 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
     margin = float("nan") if claim.margin is None else float(claim.margin)
     aid = 0.0 if lead is None else _LEAD * lead
     if claim.status == "vacuous":
-        return _VACUOUS + missing(hypotheses) + aid
+        return _VACUOUS + shortfall(hypotheses) + aid
     if claim.status == "refuted":
         return _REFUTED + (squash(margin / scale) if margin < 0.0 else 0.0)
     if claim.about == "limit" and lead is not None:
@@ -42,12 +42,12 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
     return squash(margin / scale) + aid
 
 
-def missing(hypotheses: Iterable[Hypothesis]) -> float:
+def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
     """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1.
 
     Examples
     --------
-    >>> missing([Hypothesis("a", "unmet", -3.0), Hypothesis("b", "unmet"), Hypothesis("c", "met", 1.0)])
+    >>> shortfall([Hypothesis("a", "unmet", -3.0), Hypothesis("b", "unmet"), Hypothesis("c", "met", 1.0)])
     1.75
     """
     unmet = [h.margin for h in hypotheses if h.status == "unmet"]

@@ -175,7 +175,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def strength(self) -> float:
-        """Unit of force, `contact_force`."""
+        """Unit of force: `contact_force`, the force at the end of repulsion."""
         return self.contact_force
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:

@@ -223,7 +223,7 @@ class FormulaInteraction(PairInteraction):
             values = np.where(lengths.ravel() < self.r, found * line[1:, 0] if times_distance else found, 0.0)
         return float(values[0]) if np.ndim(s) == 0 else values.reshape(lengths.shape)
 
-    def given(self, **parameters: float) -> FormulaInteraction:
+    def with_parameters(self, **parameters: float) -> FormulaInteraction:
         """Return the same formula with other parameter values; nothing is compiled again.
 
         Parameters

@@ -13,6 +13,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
+from flockana.jit import thawed
 from flockana.kernels.lift import PairKernels
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.scalars import sigma_norm
@@ -96,6 +97,12 @@ class PairInteraction(ABC):
         return True
 
     @property
+    def poles(self) -> tuple[float, ...]:
+        """Distances at which the potential is infinite or the force has no limit."""
+        edge = (self.range,) if self.far_potential == inf else ()
+        return edge if self.coincidence else (0.0, *edge)
+
+    @property
     @abstractmethod
     def strength(self) -> float:
         """Unit of forces: about the largest between two agents, or at contact where it is unbounded."""
@@ -140,17 +147,18 @@ class PairInteraction(ABC):
             pᵀL̂p = ½ Σ over ordered pairs of a_ij ‖p_j − p_i‖².
         """
         u = np.zeros_like(q) if out is None else out
-        forces, forces_of = self.kernels.sweeps[q.shape[1] - 1]
-        summed, dissipation = forces(q, p, self.range, self._constants, stiffness, damping, u, np.empty((3, *q.shape)))
+        par = self._constants
+        sums = self.kernels.sums(q.shape[1], par.size)
+        summed, dissipation = sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
         if not summed:  # too sparse for a grid of cells
             for i, j in pair_blocks(q, self.range):
-                dissipation += forces_of(q, p, i, j, self._constants, stiffness, damping, u)
+                dissipation += sums.forces_of(q, p, i, j, par, stiffness, damping, u)
         return u, dissipation
 
     @cached_property
-    def _constants(self) -> tuple[float, ...]:
-        """Return `par` as a tuple, which force kernels keep in registers."""
-        return tuple(self.par.tolist())
+    def _constants(self) -> FloatArray:
+        """Return `par` as kernels take it in the inner loop."""
+        return thawed(self.par)  # type: ignore[no-any-return]
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""

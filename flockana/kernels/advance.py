@@ -6,24 +6,84 @@ checks in the same order. Agents are sorted by cell for the time of a call; what
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.kernels.bodies import guard_signature
-from flockana.kernels.compiling import njit
-from flockana.kernels.copies import put
-from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed
-from flockana.kernels.listed import MOST_TERMS, signatures
+from flockana.jit import njit
+from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest
 from flockana.kernels.paths import bernstein
-from flockana.kernels.runge_kutta import energy_of, error_of, first_step, frame_at, interpolated, rate_of, stages_of
-from flockana.kernels.sums import finite
-from flockana.kernels.sweep import BLOCK
-from flockana.kernels.verlet import empty_list, holds, search_of_pairs, spatial_order
+from flockana.kernels.poles import crossing_listed
+from flockana.kernels.runge_kutta import (
+    System,
+    energy_of,
+    error_of,
+    first_step,
+    frame_at,
+    interpolated,
+    rate_of,
+    stages_of,
+)
+from flockana.kernels.sums import finite, put
+from flockana.kernels.verlet import empty_list, holds, list_pairs, spatial_order
 
-RUNNING, TOO_SMALL, NOT_FINITE, CROWDED = range(4)
+
+class Method(NamedTuple):
+    """`flockana.kernels.tableaus.Tableau`, and the tolerances of a run.
+
+    Attributes
+    ----------
+    a, c, estimates, interpolant, rows, stages, exponent
+        The tableau.
+    rtol, floor, balance : float, (float, float, float), (float, float)
+        Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by.
+    """
+
+    a: Any
+    c: Any
+    estimates: Any
+    interpolant: Any
+    rows: Any
+    stages: Any
+    exponent: Any
+    rtol: Any
+    floor: Any
+    balance: Any
+
+
+class Around(NamedTuple):
+    """What no step may leap over (`flockana.dynamics.encounters.Encounters`).
+
+    Attributes
+    ----------
+    radii, far : ndarray, float
+        Distances at which each agent begins or ceases to feel another, and how far two may go within them.
+    bodies : bool
+        Whether there are obstacles.
+    shell : (float, float)
+        Distance at which their force begins, and how far an agent may go within it.
+    poles : ndarray
+        Distances between agents that no step crosses.
+    """
+
+    radii: Any
+    far: Any
+    bodies: Any
+    shell: Any
+    poles: Any
+
+
+class Kept(NamedTuple):
+    """What is kept from call to call: time, state, rate, next step, and the ledger of the energy's balance."""
+
+    t: Any
+    y: Any
+    f: Any
+    h: Any
+    ledger: Any
+
+
+RUNNING, TOO_SMALL, NOT_FINITE, CROWDED, SINGULAR = range(5)
 _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
 ROUNDINGS = 64.0  # of the time: a step of so few is not made again
 HALVINGS, FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
@@ -32,7 +92,7 @@ PATIENCE = 4  # steps in a row that halving did not mend, after which none is ha
 GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _spacing(t):
     return np.nextafter(abs(t), np.inf) - abs(t)
 
@@ -53,38 +113,42 @@ def _at_rest(t, h, points, view, frame):
 def _met(t, h, y0, f0, y1, f1, encounters, system, pairs, scratch):
     """How much of a step may be taken so that no encounter is leapt over, and room for a list.
 
-    NaN where there are too many pairs to look at.
+    NaN where there are too many pairs to look at; negative where a pair crosses a pole.
     """
-    (n, m), (radii, far, bodies, guards, shell) = system[4], encounters
-    size, share = n * m, 1.0
+    (radii, far, bodies, shell, poles), n, m = encounters, system.order.size, system.frame.shape[1]
+    size, share, law = n * m, 1.0, system.law
     q0, p0, u0 = y0[:size].reshape(n, m), y0[size : 2 * size].reshape(n, m), f0[size : 2 * size].reshape(n, m)
     q1, p1, u1 = y1[:size].reshape(n, m), y1[size : 2 * size].reshape(n, m), f1[size : 2 * size].reshape(n, m)
     if bodies:
         points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
-        seen = _at_rest(t, h, points, system[5], system[11])
-        for k in range(system[10]):
-            share = guards[k](seen, allowance, system[2][k], shell[0], shell[1], share)
+        seen = _at_rest(t, h, points, system.seen_from, system.frame)
+        share = system.guard(seen, allowance, law.numbers, law.starts, shell[0], shell[1], share)
     if not radii.size or n == 1:
         return share, scratch
     common = common_way(h, q0, p0, u0, q1, p1, u1)
     between = band(common, farthest_ways(h, q0, p0, u0, q1, p1, u1, common), radii, far)
     first, second, count, places = pairs
-    reach, skin = system[7]
+    reach, skin = system.reach
     if not (places.size and holds(q0, between[1], reach + skin, places)):  # it may lack a pair so near at the beginning
-        first, second, count = system[9](q0, between[1], scratch[0], scratch[1])
+        first, second, count = list_pairs(q0, between[1], scratch[0], scratch[1])
         scratch = (first, second)
         if count < 0:
             return np.nan, scratch
     first, second = first[:count], second[:count]
+    ends, ways = (q0, p0, u0, q1, p1, u1), farthest_ways(h, q0, p0, u0, q1, p1, u1, common)
+    if poles.size and crossing_listed(h, ends, (steepest(common[1]), ways[0] + ways[1]), poles, first, second):
+        return -0.5, scratch
     return share_of_listed(h, q0, p0, u0, q1, p1, u1, common[0], between, radii, far, first, second, share), scratch
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     """(how much of a step may be taken, halvings so far) by the energy's balance; the ledger is kept."""
     if ledger[0] != t:
         ledger[0], ledger[1] = t, energy_of(t, y, system, pairs)
     first, last = ledger[1], energy_of(at, reached, system, pairs)
+    if np.isfinite(first) and not np.isfinite(last):  # the step ends where the potential is infinite
+        return -0.5, halved
     residual, largest = abs(last - first - (reached[-1] - y[-1])), max(ledger[2], abs(first), abs(last))
     worst = 0.0
     for k in range(halved + 1 - HALVINGS):
@@ -99,7 +163,7 @@ def _balanced(t, at, y, reached, balance, ledger, tried, halved, system, pairs):
     return 1.0, 0
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _moved(vector, order, shape, back, out):
     """The vector in the order given, or from there back."""
     n, m = shape
@@ -111,11 +175,12 @@ def _moved(vector, order, shape, back, out):
     out[2 * n * m] = vector[2 * n * m]
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _record(t, y, f, system, out):
     """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
-    (n, m), view, order, frame = system[4], system[5], system[8], system[11]
-    frame_at(t, view, frame)
+    order, frame = system.order, system.frame
+    n, m = order.size, frame.shape[1]
+    frame_at(t, system.seen_from, frame)
     for i in range(n):
         own = np.int64(order[i])
         for c in range(m):
@@ -152,7 +217,7 @@ def _with_room(kept, due, at):
     return more
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _controlled(h, error, exponent, rejected):
     """(next step, whether this one stands), as scipy's solvers choose."""
     factor = _SAFETY * error**exponent
@@ -162,32 +227,26 @@ def _controlled(h, error, exponent, rejected):
     return h * (factor if factor > _LEAST else _LEAST), False  # of an error that is no number too
 
 
-def _advance(
-    search, act0, act1, act2, act3, act4, act5, act6, act7,
-    energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7,
-    guard0, guard1, guard2, guard3, guard4, guard5, guard6, guard7,
-    numbers, panels, shape, view, moving, terms,
-    tableau_a, tableau_c, estimates, interpolant, rows, stages, exponent,
-    reach, radii, far, bodies, shell, rtol, floor, balance, ledger, t, y, f, h, stops, due, most,
-):  # fmt: skip
+@njit(cache=True, error_model="numpy", nogil=True)
+def advance(system, around, method, kept, stops, due, most):
     """Make up to `most` steps that stand, to the last of `stops`.
 
-    Returns (status, t, y, f, h, evaluations, steps made again, stops and due times passed, times, states and work of
-    the steps, states and work at the due times, NaN where a step ended).
+    The system is one whose agents are in their own order. Returns (status, t, y, f, h, evaluations, steps made again,
+    stops and due times passed, times, states and work of the steps, states and work at the due times, NaN where a step
+    ended).
     """
-    n, m = shape
-    start = y[: n * m].copy().reshape(n, m)
+    (n, m), (t, y, f, h, ledger) = (system.order.size, system.frame.shape[1]), kept
+    rtol, floor, balance, exponent = method.rtol, method.floor, method.balance, method.exponent
+    stages, rows, estimates, interpolant = method.stages, method.rows, method.estimates, method.interpolant
+    shape, start, reach = (n, m), y[: n * m].copy().reshape(n, m), system.reach
     order = spatial_order(start, reach[0] + reach[1]) if reach[0] > 0.0 else np.arange(n).astype(np.uint64)
-    system = (
-        (act0, act1, act2, act3, act4, act5, act6, act7),
-        (energy0, energy1, energy2, energy3, energy4, energy5, energy6, energy7),
-        numbers, panels, shape, view, moving, reach, order, search, terms, np.empty((2, m)),
-        np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)),
+    system = System(
+        system.force, system.energy, system.guard, system.law, system.seen_from, system.moving, reach, order,
+        system.frame, system.near, system.room,
     )  # fmt: skip
-    method, fixed, end = (tableau_a, tableau_c, rows, stages), exponent == 0.0, rows[stages]
-    encounters = (
-        np.empty_like(radii), far, bodies, (guard0, guard1, guard2, guard3, guard4, guard5, guard6, guard7), shell,
-    )  # fmt: skip
+    fixed, end, exact = exponent == 0.0, rows[stages], (method.a, method.c, rows, stages)
+    radii, bodies = around.radii, around.bodies
+    encounters = (np.empty_like(radii), around.far, bodies, around.shell, around.poles)
     for i in range(n):
         put(radii[np.int64(order[i])], encounters[0][i])
     kept = np.int64(0)
@@ -217,7 +276,7 @@ def _advance(
                 break
             at = stops[stop] if h == stops[stop] - t else min(t + h, stops[stop])
             h = at - t
-            pairs = stages_of(t, h, now, rates, reached, trial, method, first, stages + 1, system, pairs)
+            pairs = stages_of(t, h, now, rates, reached, trial, exact, first, stages + 1, system, pairs)
             evaluations += stages
             if pairs[2] < 0:
                 status = CROWDED
@@ -241,8 +300,11 @@ def _advance(
                 break
             if share == 1.0 and balance[0] > 0.0 and ledger[3] < PATIENCE:
                 share, halved = _balanced(t, at, now, reached, balance, ledger, tried, halved, system, pairs)
+            singular, share = share < 0.0, abs(share)
             least = 0.0 if fixed else ROUNDINGS * _spacing(max(abs(t), abs(at)))
             stands = share == 1.0 or (t + share * h == t if fixed else share * h <= least)
+            if stands and singular:
+                status = SINGULAR
             if not stands:
                 h, rejected, redone = h * (max(share, 1.0 / GROWTH) if fixed else share), False, redone + 1
         if status != RUNNING:
@@ -250,7 +312,7 @@ def _advance(
         if sampled < due.size and due[sampled] < at:
             before, between = sampled, _with_room(between, due, at)
             sampled, pairs = _sampled(
-                t, h, at, now, rates, trial, due, sampled, method, interpolant, between, work_between, system, pairs
+                t, h, at, now, rates, trial, due, sampled, exact, interpolant, between, work_between, system, pairs
             )  # fmt: skip
             evaluations += len(rows) - stages - 1 + sampled - before
         while sampled < due.size and due[sampled] == at:
@@ -268,29 +330,3 @@ def _advance(
     between = _with_room(between, due[:sampled], np.inf)  # where steps ended there is nothing in it
     steps, passed = (times[:made], states[:made], work[:made]), (between[:sampled], work_between[:sampled])
     return status, t, last, slope, h, evaluations, redone, stop, sampled, steps, passed
-
-
-@cache
-def advance() -> Callable[..., Any]:
-    """`_advance`, compiled when first asked for: what it is handed functions for, no two laws compile twice."""
-    from numba import boolean, float64, int64, types
-
-    def several(kind: Any, count: int) -> Any:
-        return types.containers.UniTuple(kind, count)
-
-    act, energy, guard = (types.FunctionType(signature) for signature in (*signatures(), guard_signature()))
-    matrix, vector = float64[:, ::1], float64[::1]
-    search = types.FunctionType(search_of_pairs()[1])
-    terms = (kind for each in (act, energy, guard) for kind in (each,) * MOST_TERMS)
-    law = (search, *terms)
-    law = (*law, several(vector, MOST_TERMS), several(matrix, MOST_TERMS))
-    view = (several(int64, 2), types.containers.Tuple((float64, vector, vector)), boolean, int64)
-    method = (matrix, vector, matrix, matrix, int64[::1], int64, float64)
-    around = (several(float64, 2), matrix, float64, boolean, several(float64, 2))
-    limits = (float64, several(float64, 3), several(float64, 2), vector)
-    point = (float64, vector, vector, float64)
-    made = njit(cache=True, error_model="numpy", nogil=True)(_advance)
-    made.compile((*law, *view, *method, *around, *limits, *point, vector, vector, int64))
-    made.disable_compile()
-    compiled: Callable[..., Any] = made.dispatcher
-    return compiled

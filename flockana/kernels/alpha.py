@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.scalars import (
     bump,
     bump_slope,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.grid import sort_into_grid
 
 IndexArray = npt.NDArray[np.int64]
@@ -58,7 +58,7 @@ def sort_into_cells(q, reach):
     return Cells(order.astype(np.int64), start.astype(np.int64), rows.astype(np.int64), cell)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def gather(i, q, reach, cells, near):
     """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are.
 
@@ -93,7 +93,7 @@ def gather(i, q, reach, cells, near):
     return count
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _sort(near, count):
     """Shell's sort: by insertion alone where they are few, as they are in rows that are sorted each."""
     gap = 1

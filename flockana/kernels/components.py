@@ -9,7 +9,7 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 
 
 @njit(cache=True)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.segments import between, cross, foot
 
 FloatArray = npt.NDArray[np.float64]

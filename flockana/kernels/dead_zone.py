@@ -12,7 +12,7 @@ from math import inf, log, log1p, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
+from flockana.jit import njit, register_jitable
 from flockana.kernels.scalars import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3

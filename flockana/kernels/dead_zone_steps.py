@@ -6,9 +6,9 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.copies import put
+from flockana.jit import njit, register_jitable
 from flockana.kernels.dead_zone import D_1, D_2, K_1, R, pair_dead_zone
+from flockana.kernels.sums import put
 
 _AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
 

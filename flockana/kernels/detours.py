@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
+from flockana.jit import njit, register_jitable
 from flockana.kernels.paths import polygon
 
 

@@ -6,8 +6,8 @@ from math import sqrt
 
 import numpy as np
 
+from flockana.jit import njit
 from flockana.kernels.alpha import EPS, R_ALPHA, H, pair_alpha
-from flockana.kernels.compiling import njit
 from flockana.kernels.scalars import sigma_norm, taper
 
 

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
-from flockana.kernels.copies import put
+from flockana.jit import njit
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
-from flockana.kernels.sums import column_mean, slope_along
+from flockana.kernels.sums import column_mean, put, slope_along
 
 _WIDER = 1.0 + 1e-9  # for the rounding of bounds
 _STEEP = 0.5  # a slope from which on the common way says too little of how near two agents come
 SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _load(points, i, j, curve):
     """The pair's relative control points into `curve`; the largest distance from the first of them."""
     way = 0.0
@@ -32,7 +31,7 @@ def _load(points, i, j, curve):
     return np.sqrt(way)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _ahead(points, i, j, s, far, room):
     """How much of the step lies between s and the pair's next closest approach, or a way of `far`; -1 if it parts.
 
@@ -54,7 +53,7 @@ def _ahead(points, i, j, s, far, room):
     return min(closing / speed2, far / np.sqrt(speed2))
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _visit(points, i, j, edge, far, stack, spans):
     """Share of the step at which a pair that starts beyond `edge` is first well within it; 1 if it ends so.
 
@@ -70,14 +69,14 @@ def _visit(points, i, j, edge, far, stack, spans):
     return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _apart2(points, i, j, k):
     """Squared distance of the pair's control points k."""
     x, y, z = points[j, k, 0] - points[i, k, 0], points[j, k, 1] - points[i, k, 1], points[j, k, 2] - points[i, k, 2]
     return x * x + y * y + z * z
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _share(points, reach, allowance, radii, far, i, j, share, stack, spans):
     """The share of the step that one pair allows, if less than `share`."""
     s2, travel, slack = _apart2(points, i, j, 0), reach[i] + reach[j], allowance[i] + allowance[j]
@@ -139,7 +138,7 @@ def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
     return share
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def steepest(slope):
     """The largest of all slopes."""
     most = 0.0
@@ -171,7 +170,7 @@ def common_way(h, q0, p0, u0, q1, p1, u1):
     return mean, slope, centre
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
     """(the longest way of an agent beside the common one, the largest allowance): of `control_points`, to rounding."""
     (n, m), (mean, slope, centre) = q0.shape, common
@@ -194,7 +193,7 @@ def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
     return far, blur
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share, room):
     """The share that the pairs allow whose squared distance is in a band where the step begins."""
     (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own) = ends, room
@@ -217,7 +216,7 @@ def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share,
     return share
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def band(common, farthest, radii, far):
     """(low, high): between which distances, where a step begins, a pair may cut it short.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most: a sparser box is left to the search by hashed cells

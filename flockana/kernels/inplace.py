@@ -1,18 +1,11 @@
-"""One step of a map that moves the agents one after the other, each seeing those before it already moved.
-
-The loop closes over a digest of the pair law's source for the reason given in `flockana.kernels.lift`.
-"""
+"""One step of a map that moves the agents one after the other, each seeing those before it already moved."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
+from flockana.jit import njit
 from flockana.kernels.alpha import pair_alpha
-from flockana.kernels.compiling import njit
-from flockana.kernels.lift import source_digest
 
 
 @njit(cache=True)
@@ -35,31 +28,23 @@ def neighbour_lists(n, first, second):
     return start, neighbour
 
 
-def _compile(pair: Callable[..., Any]) -> Callable[..., None]:
-    digest = source_digest(pair)
-
-    @njit(cache=True)
-    def advance(q, p, u, start, neighbour, par, c1, c2, pull, drag, q_r, p_r, dt, position_factor):
-        """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i."""
-        m = q.shape[1]
-        total = np.empty(m)
-        for i in range(q.shape[0]):
+@njit(cache=True)
+def advance_alpha(q, p, u, start, neighbour, par, c1, c2, pull, drag, q_r, p_r, dt, position_factor):
+    """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i."""
+    m = q.shape[1]
+    total = np.empty(m)
+    for i in range(q.shape[0]):
+        for c in range(m):
+            total[c] = -pull * (q[i, c] - q_r[c]) - drag * (p[i, c] - p_r[c])
+        for k in range(start[i], start[i + 1]):
+            j = neighbour[k]
+            s2 = 0.0
             for c in range(m):
-                total[c] = 0.0 * digest - pull * (q[i, c] - q_r[c]) - drag * (p[i, c] - p_r[c])
-            for k in range(start[i], start[i + 1]):
-                j = neighbour[k]
-                s2 = 0.0
-                for c in range(m):
-                    s2 += (q[j, c] - q[i, c]) ** 2
-                w, rho = pair(s2, par)
-                for c in range(m):
-                    total[c] += c1 * w * (q[j, c] - q[i, c]) + c2 * rho * (p[j, c] - p[i, c])
+                s2 += (q[j, c] - q[i, c]) ** 2
+            w, rho = pair_alpha(s2, par)
             for c in range(m):
-                u[i, c] = total[c]
-                q[i, c] += p[i, c] * dt + position_factor * total[c] * dt * dt
-                p[i, c] += total[c] * dt
-
-    return advance
-
-
-advance_alpha = _compile(pair_alpha)
+                total[c] += c1 * w * (q[j, c] - q[i, c]) + c2 * rho * (p[j, c] - p[i, c])
+        for c in range(m):
+            u[i, c] = total[c]
+            q[i, c] += p[i, c] * dt + position_factor * total[c] * dt * dt
+            p[i, c] += total[c] * dt

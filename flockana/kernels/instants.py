@@ -6,7 +6,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.sums import column_mean
 
 
@@ -36,7 +36,7 @@ def least_distances(q):
     return distances
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _square(x, i, place):
     total = 0.0
     for c in range(place.size):
@@ -44,7 +44,7 @@ def _square(x, i, place):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _farthest(x, place):
     """(agent, squared distance) of who is farthest from a place."""
     agent, most = 0, 0.0

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 
 IndexArray = npt.NDArray[np.int64]
 LinkArray = npt.NDArray[np.int32]

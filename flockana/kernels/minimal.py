@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.neighbours import DENSE_MAX, FloatArray, pair_blocks
 
 AT_ONCE = DENSE_MAX  # up to so many agents `semi_implicit_steps` is the same to the bit: pairs come in the same order

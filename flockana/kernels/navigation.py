@@ -6,19 +6,17 @@ of gains (1, or one per agent), ω, f and then a, b, c, s, e; p_r = f dq_r/dt + 
 
 from __future__ import annotations
 
-from functools import cache
 from math import cos, sin, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.listed import CompiledFunction, term_functions
+from flockana.jit import njit, register_jitable
 from flockana.kernels.sums import pull_to, squared_deviations
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
     """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power.
 
@@ -50,7 +48,7 @@ def _place(t, co, si, path, k):
     return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _follow(t, x, v, u, frame, numbers, order, target):
     """`navigate` to the path that the numbers are of; `target` is room for it, three rows of m numbers or more."""
     m, omega, gains = x.shape[1], numbers[_OMEGA], np.int64(numbers[_GAINS])
@@ -71,12 +69,14 @@ def follow(t, x, v, u, numbers):
     return _follow(t, x, v, u, np.zeros((2, m)), numbers, order, np.empty((3, m)))
 
 
-def act(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
-    """`follow` for compiled integrators."""
-    return _follow(t, x, v, u, frame, numbers, order, room)
+@njit(cache=True, error_model="numpy", nogil=True)
+def act(t, x, v, u, numbers, panels, listed):
+    """`follow` as a term of a law."""
+    return _follow(t, x, v, u, listed.frame, numbers, listed.order, listed.room)
 
 
-def energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, v, numbers, panels, listed):
     """½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1)."""
     (n, m), unit, gains = x.shape, numbers[_UNIT], numbers[_GAINS]
     path, c1, total = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :], 0.0
@@ -86,13 +86,7 @@ def energy(t, x, v, frame, numbers, panels, first, second, size, order, near, ro
     for i in range(n):
         square = 0.0
         for k in range(m):
-            square += (x[i, k] - (_place(t, co, si, path, k) - frame[0, k])) ** 2
+            square += (x[i, k] - (_place(t, co, si, path, k) - listed.frame[0, k])) ** 2
         bend = sqrt(1.0 + square / (unit * unit)) if unit > 0.0 else 1.0
-        total += c1[np.int64(order[i]) if gains > 1.0 else 0] * square / (bend + 1.0)
+        total += c1[np.int64(listed.order[i]) if gains > 1.0 else 0] * square / (bend + 1.0)
     return total
-
-
-@cache
-def compiled() -> tuple[CompiledFunction, CompiledFunction]:
-    """Force and energy, compiled when first asked for."""
-    return term_functions(act, energy, allocates=False)

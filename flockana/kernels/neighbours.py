@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.grid import sort_into_grid
 
 FloatArray = npt.NDArray[np.float64]

@@ -6,20 +6,18 @@ on all agents alike does no work and a drag works on the differences of velocity
 
 from __future__ import annotations
 
-from functools import cache
 from math import cos, sin
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
-from flockana.kernels.listed import CompiledFunction, term_functions
+from flockana.jit import njit
 from flockana.kernels.sums import column_mean, column_squares
 
 _MOVING, _THRUST, _BRAKE = range(3)
 _OMEGA, _PATH = 1, 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _push_along(v, u, velocity, thrust, brake, moving, centre):
     """`push_along`; `centre` is room for m numbers."""
     (n, m), power = v.shape, 0.0
@@ -47,7 +45,7 @@ def push_along(v, u, velocity, thrust, brake, moving):
     return _push_along(v, u, velocity, thrust, brake, moving, np.empty(v.shape[1]))
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def push_all(v, u, velocity, push, moving):
     """Add one acceleration to all, and return its power: 0 in the moving frame."""
     (n, m), power = v.shape, 0.0
@@ -58,29 +56,18 @@ def push_all(v, u, velocity, push, moving):
     return 0.0 if moving else power
 
 
-def _act_along(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
-    return _push_along(v, u, frame[1], numbers[_THRUST], numbers[_BRAKE], numbers[_MOVING] != 0.0, room[0])
+@njit(cache=True, error_model="numpy", nogil=True)
+def act_along(t, x, v, u, numbers, panels, listed):
+    """`push_along` as a term of a law."""
+    moving, room = numbers[_MOVING] != 0.0, listed.room[0]
+    return _push_along(v, u, listed.frame[1], numbers[_THRUST], numbers[_BRAKE], moving, room)
 
 
-def _act_all(t, x, v, u, frame, numbers, panels, first, second, size, order, near, room):
+@njit(cache=True, error_model="numpy", nogil=True)
+def act_all(t, x, v, u, numbers, panels, listed):
+    """`push_all` as a term of a law."""
     m, omega = x.shape[1], numbers[_OMEGA]
-    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), room[0]
+    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), listed.room[0]
     for k in range(m):
         push[k] = -omega * omega * (path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t))
-    return push_all(v, u, frame[1], push, numbers[_MOVING] != 0.0)
-
-
-def _no_energy(t, x, v, frame, numbers, panels, first, second, size, order, near, room):
-    return 0.0
-
-
-@cache
-def along() -> tuple[CompiledFunction, CompiledFunction]:
-    """Force of `push_along` and no energy, compiled when first asked for."""
-    return term_functions(_act_along, _no_energy, allocates=False)
-
-
-@cache
-def on_all() -> tuple[CompiledFunction, CompiledFunction]:
-    """Force of `push_all` and no energy, compiled when first asked for."""
-    return term_functions(_act_all, _no_energy, allocates=False)
+    return push_all(v, u, listed.frame[1], push, numbers[_MOVING] != 0.0)

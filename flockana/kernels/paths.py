@@ -16,14 +16,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.copies import put
+from flockana.jit import njit, register_jitable
+from flockana.kernels.sums import put
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _norm(x):
     return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
 
@@ -34,7 +34,7 @@ def polygon(a, b, out, back, bend0, bend1):
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def quintic(h, a, p0, u0, b, p1, u1, out):
     """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
     off2, off3 = 0.0, 0.0
@@ -63,7 +63,7 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def reach_of(c):
     """How far a curve's control points (6, 3) get from the first: a bound for the curve."""
     s2 = 0.0
@@ -100,7 +100,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _start(points, reach, i, j, stop, stack):
     """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
     s2 = 0.0
@@ -114,7 +114,7 @@ def _start(points, reach, i, j, stop, stack):
     return True
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _hull_bound(c):
     """A lower bound of the curve's distance to 0: its control points projected on their mean direction."""
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
@@ -129,7 +129,7 @@ def _hull_bound(c):
     return bound
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _halve(stack, spans, top):
     """De Casteljau: the left half of the curve stack[top] goes on top of it, the right half remains in place."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
@@ -143,7 +143,7 @@ def _halve(stack, spans, top):
     spans[top + 1, 0], spans[top + 1, 1] = left, middle
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _least_distance(stack, spans, stop, tol):
     """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
 
@@ -169,7 +169,7 @@ def _least_distance(stack, spans, stop, tol):
     return proven, best, where
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _first_touch(stack, spans, tol):
     """The first parameter at which the curve stack[0] is within tol of 0, -1 if it never is (work space as above)."""
     spans[0, 0], spans[0, 1] = 0.0, 1.0
@@ -225,7 +225,7 @@ def touching_pairs(points, reach, first, second, tol, out):
         out[k] = _first_touch(stack, spans, tol)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _largest_distance(stack, spans, enough, tol):
     """(upper bound, parameter) of how far the curve stack[0] gets from 0: within tol, or no more than `enough`."""
     proven, best, where = 0.0, 0.0, -1.0

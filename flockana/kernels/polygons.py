@@ -10,7 +10,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.segments import UNSURE, meet, turn
 
 _ROUNDING = 1e-12  # of the lengths that are compared, some thousand times what a distance is off by

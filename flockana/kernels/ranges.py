@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.paths import control_points
 
 NEVER, UNSURE, ENTERS = 0, 1, 2

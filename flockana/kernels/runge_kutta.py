@@ -8,17 +8,53 @@ interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in ro
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 from flockana.kernels.sums import column_squares, squared_deviations
 from flockana.kernels.verlet import listed_anew, outdated
+
+
+class System(NamedTuple):
+    """A law as steps take it: its functions and numbers, how the state is seen, and room.
+
+    Attributes
+    ----------
+    force, energy, guard : callable
+        `flockana.kernels.laws.LawFunctions`.
+    law : LawNumbers
+        What they read.
+    seen_from : (float, ndarray, ndarray)
+        Start, origin and drift of the frame that vectors are seen from.
+    moving : bool
+        Whether the energy is that in the moving frame.
+    reach : (float, float)
+        Within which all pairs are needed, and the skin of a list.
+    order : ndarray of uint64, shape (n,)
+        Every agent's own number.
+    frame, near, room : ndarray
+        Room (`flockana.kernels.listed.Listed`).
+    """
+
+    force: Any
+    energy: Any
+    guard: Any
+    law: Any
+    seen_from: Any
+    moving: Any
+    reach: Any
+    order: Any
+    frame: Any
+    near: Any
+    room: Any
+
 
 _STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)  # it allocates nothing: no reference is counted
+@njit(cache=True, error_model="numpy", nogil=True)
 def combine(y, h, weights, rates, rows, count, out):
     """y + h Σ weights_j K_j over the first `count` stages."""
     for begin in range(0, y.size, _STRIP):
@@ -35,7 +71,7 @@ def combine(y, h, weights, rates, rows, count, out):
             total[k] = start[k] + h * total[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def frame_at(t, view, frame):
     """Write place and velocity of the frame that the vectors are seen from."""
     start, origin, drift = view
@@ -54,47 +90,55 @@ def rate_of(t, y, f, system, pairs):
 @njit(cache=True, error_model="numpy", nogil=True)
 def _kept_up(y, system, pairs):
     """The list itself while it holds every pair within reach, or else a new one."""
-    (n, m), (reach, skin) = system[4], system[7]
+    (reach, skin), m = system.reach, system.frame.shape[1]
+    n = system.order.size
     q = y[: n * m].reshape(n, m)
-    return listed_anew(q, reach + skin, pairs, system[9]) if reach > 0.0 and outdated(q, reach, skin, pairs) else pairs
+    return listed_anew(q, reach + skin, pairs) if reach > 0.0 and outdated(q, reach, skin, pairs) else pairs
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _act(t, y, f, system, pairs):
     """The rate of y into f, its pairs being listed."""
-    acts, _, numbers, panels, (n, m), view, _, _, order, _, terms, frame, near, room = system
-    (first, second, count, _), size, power = pairs, n * m, 0.0
+    (first, second, count, _), n, m = pairs, system.order.size, system.frame.shape[1]
+    size, law, frame = n * m, system.law, system.frame
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
-    frame_at(t, view, frame)
+    frame_at(t, system.seen_from, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
-    for k in range(terms):
-        power += acts[k](t, x, v, u, frame, numbers[k], panels[k], first, second, count, order, near, room)
-    f[2 * size] = power
+    f[2 * size] = system.force(
+        t, x, v, u, frame, law.numbers, law.panels, law.starts, first, second, count, system.order, system.near,
+        system.room,
+    )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    _, energies, numbers, panels, (n, m), view, moving, _, order, _, terms, frame, near, room = system
-    x, v = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m)
-    (first, second, count, _), total = pairs, 0.0
-    frame_at(t, view, frame)
-    if moving:
+    (first, second, count, _), n, m = pairs, system.order.size, system.frame.shape[1]
+    x, v, law, frame, total = (
+        y[: n * m].reshape(n, m),
+        y[n * m : 2 * n * m].reshape(n, m),
+        system.law,
+        system.frame,
+        0.0,
+    )
+    frame_at(t, system.seen_from, frame)
+    if system.moving:
         total = 0.5 * squared_deviations(v)
     else:
         for c in range(m):
             total += 0.5 * column_squares(v, c, -frame[1, c])
-    for k in range(terms):
-        total += energies[k](t, x, v, frame, numbers[k], panels[k], first, second, count, order, near, room)
-    return total
+    return total + system.energy(
+        t, x, v, frame, law.numbers, law.panels, law.starts, first, second, count, system.order, system.near,
+        system.room,
+    )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
     """Stages up to `end`, or to one for which the list is outdated; returns which, combined but not evaluated."""
     a, c, rows, stages = method
-    (n, m), (reach, skin) = system[4], system[7]
+    (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
     for s in range(begin, end):
         into = reached if s == stages else trial
         combine(y, h, a[s], rates, rows, s, into)
@@ -126,13 +170,13 @@ def interpolated(theta, h, y, rates, rows, interpolant, trial):
     combine(y, h, weights, rates, rows, count, trial)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def allowed(k, size, floor):
     """The absolute tolerance of component k: a position, a velocity, or the work."""
     return floor[0] if k < size else (floor[1] if k < 2 * size else floor[2])
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _estimate(weights, y, reached, rates, rows, size, rtol, floor, strip):
     """The sum of squares of one estimate of a step's error over what is allowed; `strip` is room."""
     total = 0.0
@@ -151,7 +195,7 @@ def _estimate(weights, y, reached, rates, rows, size, rtol, floor, strip):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor, strip):
     """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
     square = _estimate(estimates[0], y, reached, rates, rows, size, rtol, floor, strip)
@@ -163,7 +207,7 @@ def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor, strip):
     return abs(h) * square / sqrt((square + 0.01 * other) * y.size)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _weighed(a, b, y, size, rtol, floor):
     """The root mean square of a − b over what is allowed."""
     total = 0.0

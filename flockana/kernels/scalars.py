@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import factorial, inf, pi, sin, sqrt
 
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 
 _FLAT = 1e140  # from here on φ is its limit, and squares would overflow
 _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8, _S9, _S10 = ((-1.0) ** k / factorial(2 * k + 1) for k in range(1, 11))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 
 UNSURE = 2
 _TURN = 3.5 * 2.0**-53  # Shewchuk's bounds are (3 + 16u)u and (7 + 56u)u; the rest is slack for subnormal products

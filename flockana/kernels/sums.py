@@ -1,18 +1,15 @@
-"""Sums over agents, coordinate by coordinate, in four lanes: quick, and the same to the bit on every processor.
-
-They allocate nothing, so they are compiled without counting references, which would take longer than a small sum.
-"""
+"""Sums over agents, coordinate by coordinate, in four lanes: quick, and the same to the bit on every processor."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
+from flockana.jit import njit, register_jitable
 
 _SAMPLE = 256  # agents whose slope is told from noise well enough
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def finite(x):
     """Whether all numbers are."""
     known = True
@@ -21,7 +18,7 @@ def finite(x):
     return known
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def column_mean(x, c):
     """The mean over agents of coordinate c."""
     n = x.shape[0]
@@ -33,7 +30,7 @@ def column_mean(x, c):
     return ((a + b) + (d + e)) / n
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def column_squares(x, c, centre):
     """Σ_i (x_ic − centre)²."""
     n = x.shape[0]
@@ -46,7 +43,7 @@ def column_squares(x, c, centre):
     return (a + b) + (d + e)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def squared_deviations(x):
     """Σ_i ‖x_i − mean‖²."""
     total = 0.0
@@ -55,7 +52,7 @@ def squared_deviations(x):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def slope_along(x, y, c, flat):
     """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where that is no number."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
@@ -78,10 +75,21 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
             u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def pull_to(u, x, v, place, velocity, c1, c2):
     """u −= c1 (x − place) + c2 (v − velocity)."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
         _pull_to(u, x, v, place, velocity, c1, c2, 2)
     else:
         _pull_to(u, x, v, place, velocity, c1, c2, x.shape[1])
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def put(values, into):
+    """Write an array to the front of another; both are contiguous.
+
+    numba's own assignment also compiles the text of an error, for a second or two.
+    """
+    source, target = values.reshape(values.size), into.reshape(into.size)
+    for k in range(source.size):
+        target[k] = source[k]

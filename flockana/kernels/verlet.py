@@ -6,16 +6,12 @@ memory.
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 
-from flockana.kernels.compiling import njit, register_jitable
-from flockana.kernels.copies import put
+from flockana.jit import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
-from flockana.kernels.sums import slope_along
+from flockana.kernels.sums import put, slope_along
 
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
@@ -109,7 +105,7 @@ def _widened(low, high, way):
     return way if way < low else low, way if way > high else high
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _spreads(q, reference, c, d, along_c, along_d):
     """How far apart the agents' ways are in coordinates c and d, beside a stretch of each: two wait less than one."""
     low_c = high_c = q[0, c] - along_c * reference[0, c]
@@ -120,7 +116,7 @@ def _spreads(q, reference, c, d, along_c, along_d):
     return high_c - low_c, high_d - low_d
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _diagonal(q, reference, stretched):
     """(diagonal of the box of all agents' ways, least stretch), beside how the flock is stretched, or beside none."""
     m, square, least = q.shape[1], 0.0, np.inf
@@ -134,7 +130,7 @@ def _diagonal(q, reference, stretched):
     return np.sqrt(square), least
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def holds(q, within, made, reference):
     """Whether a list of all pairs closer than `made` at the places `reference` lacks none closer than `within` now.
 
@@ -156,26 +152,14 @@ def empty_list(n):
     return first, second, np.int64(0), np.empty((0, 0))
 
 
-@njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+@njit(cache=True, error_model="numpy", nogil=True)
 def outdated(q, reach, skin, pairs):
     """Whether a list may lack a pair that is within reach now."""
     return not (pairs[3].size and holds(q, reach, reach + skin, pairs[3]))
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def listed_anew(q, reach, pairs, search):
-    """A new list in the room of an old one, by `search`: `list_pairs`, handed in so that it is compiled once."""
-    first, second, count = search(q, reach, pairs[0], pairs[1])
+def listed_anew(q, reach, pairs):
+    """A new list in the room of an old one."""
+    first, second, count = list_pairs(q, reach, pairs[0], pairs[1])
     return first, second, count, q.copy()
-
-
-@cache
-def search_of_pairs() -> tuple[Any, Any]:
-    """`list_pairs`, compiled so that compiled code may be handed it, and its signature."""
-    from numba import float64, int64, types, uint32
-
-    indices = uint32[::1]
-    found = types.containers.Tuple((indices, indices, int64))
-    signature = found(float64[:, ::1], float64, indices, indices)
-    list_pairs.compile(signature)
-    return list_pairs.dispatcher, signature

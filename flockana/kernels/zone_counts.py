@@ -6,11 +6,11 @@ from math import sqrt
 
 import numpy as np
 
+from flockana.jit import njit
 from flockana.kernels.candidates import gather, sort_into_cells
-from flockana.kernels.compiling import njit
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _count_neighbours(q, r, c, a, cells, near, shares):
     """Add to (3,) shares how many agents are in the zones of repulsion, conflict and attraction of one, on average."""
     n, m = q.shape
@@ -34,7 +34,7 @@ def populations(q, r, c, a):
     return shares
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _count_fragments(q, a, reach, cells, near, seen, stack):
     """(components, agents in the largest); `seen` and `stack` are room."""
     (n, m), components, largest = q.shape, 0, 0

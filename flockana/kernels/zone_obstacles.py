@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from flockana.kernels.compiling import njit
+from flockana.jit import njit
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _cross(ax, ay, bx, by, x, y):
     return (bx - ax) * (y - ay) - (by - ay) * (x - ax)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _between(ax, ay, bx, by, x, y):
     return min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     """Whether two closed segments of the plane share a point; touching counts."""
     o1, o2 = _cross(ax, ay, bx, by, cx, cy), _cross(ax, ay, bx, by, dx, dy)
@@ -38,7 +38,7 @@ def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     return o4 == 0.0 and _between(cx, cy, dx, dy, bx, by)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def to_segment(x, y, ax, ay, bx, by):
     """Vector from a point to the closest point of a segment, which may be a point."""
     sx, sy = bx - ax, by - ay
@@ -49,7 +49,7 @@ def to_segment(x, y, ax, ay, bx, by):
     return ax + share * sx - x, ay + share * sy - y
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def to_boundary(x, y, edges, first, last):
     """(vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
     best, gx, gy, inside = inf, 0.0, 0.0, False
@@ -64,7 +64,7 @@ def to_boundary(x, y, edges, first, last):
     return gx, gy, inside
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def zone_meets_edge(x, y, hx, hy, depth, half, cx, cy, dx, dy, literal):
     """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets the segment from (cx, cy) to (dx, dy).
 
@@ -84,7 +84,7 @@ def zone_meets_edge(x, y, hx, hy, depth, half, cx, cy, dx, dy, literal):
     )
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out):
     """Add one term for each edge of a polygon that the zone meets."""
     outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
@@ -100,7 +100,7 @@ def _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out):
             out[1] += factor * gy
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def zone_meets_polygon(x, y, hx, hy, depth, half, edges, first, last, literal):
     """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets a polygon.
 
@@ -127,7 +127,7 @@ def zone_meets_polygon(x, y, hx, hy, depth, half, edges, first, last, literal):
     return (along >= 0.0 and along / depth + across / half <= 1.0) or to_boundary(x, y, edges, first, last)[2]
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def zone_meets_ball(along, across, depth, half, radius, literal):
     """As `zone_meets_polygon` for a ball whose centre has these coordinates along and across (>= 0) the heading."""
     bx, by = to_segment(along, across, 0.0, 0.0, 0.0, half)
@@ -139,7 +139,7 @@ def zone_meets_ball(along, across, depth, half, radius, literal):
     return min(bx * bx + by * by, side2) <= radius * radius
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def push(distance, c, inside, outward, repulsive):
     """Factor of the unit vector b from the agent to the closest boundary point, for one obstacle or wall."""
     if inside and outward:
@@ -147,7 +147,7 @@ def push(distance, c, inside, outward, repulsive):
     return min(0.0, distance - c) if repulsive else distance - c
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`.
 
@@ -198,7 +198,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     _walls(x, h, moving, depth, half, c, world.box, choices, out)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one term for each wall that the zone reaches, or for the nearest of them."""
     buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from flockana.jit import njit
 from flockana.kernels.candidates import gather, sort_into_cells
-from flockana.kernels.compiling import njit
 from flockana.kernels.noise import noise
 from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
 
@@ -87,14 +87,14 @@ class World(NamedTuple):
     pace: FloatArray
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def saturation(norm, bound):
     """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
     x = norm / bound
     return 1.0 - x * x / 3.0 if x < _NEAR_ZERO else tanh(x) / x
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _length(x):
     s2 = 0.0
     for k in range(x.size):
@@ -102,13 +102,13 @@ def _length(x):
     return sqrt(s2)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _weight(table, i, j):
     """That of a pair in a table, which is one number if all are equal."""
     return table[0, 0] if table.size == 1 else table[i, j]
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _trembling(settings, step, i, j, behaviour):
     """Factor of a weight in this step."""
     if settings.weight_noise == 0.0:
@@ -116,7 +116,7 @@ def _trembling(settings, step, i, j, behaviour):
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
 
 
-@njit(cache=True, _nrt=False, forceinline=True)  # a call would hand over a hundred numbers
+@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
 def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
     """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
 
@@ -170,7 +170,7 @@ def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
     return nearest
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _aliens(i, q, alien, step, zones, settings, annulus, out):
     """Strategic separation (7) of agent i from the aliens that it watches."""
     m = q.shape[1]
@@ -185,7 +185,7 @@ def _aliens(i, q, alien, step, zones, settings, annulus, out):
                 out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def altitude(speed, r, c, a, settings, choices):
     """Length of the obstacle zone along the heading: c, a, or from r at rest to a at the greatest speed."""
     if choices.zone_length == 2:
@@ -193,7 +193,7 @@ def altitude(speed, r, c, a, settings, choices):
     return a if choices.zone_length == 1 else c
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _grown(reach, a, nearest, settings):
     """Radius of attraction in the next step: a with one who attracts within a, as it is with one beyond, else more."""
     if nearest <= a:
@@ -201,7 +201,7 @@ def _grown(reach, a, nearest, settings):
     return reach if nearest <= reach else reach + settings.dt * settings.growth
 
 
-@njit(cache=True, _nrt=False, forceinline=True)  # a call would hand over a hundred numbers
+@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
 def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, choices, world, out):
     """Write the six behaviours of agent i, who has `near` about it and is attracted up to a, into out (6, m).
 
@@ -253,7 +253,7 @@ def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, cho
     return components
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _move(i, q, p, u, step, settings, literal):
     """(j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
     m = q.shape[1]
@@ -268,7 +268,7 @@ def _move(i, q, p, u, step, settings, literal):
         q[i, k] += settings.dt * p[i, k]
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _hunt(alien, q, dt, world):
     """Every alien goes for the nearest agent that it detects, and stays in its territory."""
     m = q.shape[1]
@@ -293,7 +293,7 @@ def _hunt(alien, q, dt, world):
                 alien[e, 1] += gy
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True)
 def _take_step(
     q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
 ):  # fmt: skip

@@ -67,7 +67,7 @@ def _rescaled(target: RescaledVelocity) -> Formulas | None:
 
 
 def _number(x: float) -> str:
-    """A number that may stand after an operator."""
+    """Return a number as text that may follow an operator."""
     return repr(x) if x >= 0.0 else f"({x!r})"
 
 

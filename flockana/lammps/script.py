@@ -69,7 +69,7 @@ def _is_empty(term: object) -> bool:
 
 
 def _translate_consensus(term: PairTerm, m: int, told: Translation, *, nearest: bool) -> None:
-    """Velocity consensus: dpd/ext/tstat at temperature 0 damps relative velocities with constant weight."""
+    """Translate velocity consensus to dpd/ext/tstat at temperature 0."""
     if term.damping == 0.0:
         return
     exponent, off = nearest_weight(term, m)
@@ -88,7 +88,7 @@ def _translate_consensus(term: PairTerm, m: int, told: Translation, *, nearest: 
 
 
 def nearest_weight(term: PairTerm, m: int) -> tuple[float, float]:
-    """(s, largest error) of the weight (1 − r/range)^2s that is nearest to the adjacency, among evenly spread agents.
+    """Return (s, largest error) of the weight (1 − r/range)^2s nearest to the adjacency.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def nearest_weight(term: PairTerm, m: int) -> tuple[float, float]:
 
 
 def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
-    """The data file: header, box, one mass, positions and velocities in space."""
+    """Return the data file: header, box, one mass, positions and velocities."""
     n, m = q.shape
     low, high = np.full(3, -0.5), np.full(3, 0.5)
     low[:m], high[:m] = q.min(axis=0) - reach, q.max(axis=0) + reach
@@ -131,7 +131,7 @@ def _row(values: list[float]) -> str:
 
 
 def script_text(title: str, m: int, table: PairTable, clock: Clock, told: Translation) -> str:
-    """The input script: units lj with masses of 1, so that forces are accelerations."""
+    """Return the input script, in units lj with masses of 1."""
     points, reach = len(table.r), float(table.r[-1])
     columns = " ".join([*AXES[:m], *(f"v{x}" for x in AXES[:m]), *(f"f{x}" for x in AXES[:m])])
     boundary = ("s f p", "s s p", "s s s")[m - 1]

@@ -33,7 +33,7 @@ class PairTable:
     jumps: tuple[float, ...]
 
     def text(self) -> str:
-        """The file for `pair_coeff`: a comment, the keyword, the parameters, and a line for each distance."""
+        """Return the file for `pair_coeff`: comment, keyword, parameters, and a line for each distance."""
         n, (inner, outer) = len(self.r), (float(self.r[0]), float(self.r[-1]))
         head = f"# UNITS: lj CONTRIBUTOR: flockana\n\n{KEYWORD}\nN {n} RSQ {inner!r} {outer!r}\n\n"
         rows = zip(self.r.tolist(), self.energy.tolist(), self.force.tolist(), strict=True)
@@ -75,7 +75,7 @@ def _jumps(term: PairTerm, x: float, largest: float) -> bool:
 
 
 def inner_cutoff(term: PairTerm) -> float:
-    """The first distance of a table: next to nothing, or a quarter of the law's length if the force is infinite at 0.
+    """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular.
 
     Examples
     --------
@@ -88,14 +88,14 @@ def inner_cutoff(term: PairTerm) -> float:
 
 
 def energy_and_force(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Energy, 0 at the range, and force, positive where it repels, of a pair at each distance up to the range."""
+    """Return energy, 0 at the range, and force, positive for repulsion, of a pair at each distance."""
     pair = term.pair
     energy = term.stiffness * (pair.energy_at(r) - pair.far_potential)
     return energy, -term.stiffness * _pull_and_adjacency(term, r)[0]
 
 
 def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
-    """a(r) of the term's velocity consensus at each distance up to the range."""
+    """Return the weight a(r) of the velocity consensus at each distance up to the range."""
     return _pull_and_adjacency(term, r)[1]
 
 

@@ -1,1 +1,1 @@
-"""Laws of motion: `law.py` says what a law is; each family is one file."""
+"""Laws of motion: the base class in `law.py`, and one file for each family."""

@@ -172,7 +172,7 @@ class ZoneFlocking(DiscreteLaw):
 
     @classmethod
     def printed(cls, radii: ZoneRadii | None = None, weights: ZoneWeights | None = None, **options: Any) -> Self:
-        """The law by the letter of the paper, with gains 1; what is given goes before the letter.
+        """Return the law exactly as printed in the paper, with gains 1; keywords override.
 
         Its form is (14)-(21), unless another is given: (21) sums over walls and edges, (8) takes the closest point.
 
@@ -230,14 +230,9 @@ class ZoneFlocking(DiscreteLaw):
         self.world.check_start(q)
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """Headings along the velocities (none at rest), velocity estimates that are right, aliens where they begin.
+        """Return the initial memory: headings along velocities, exact velocity estimates, aliens at their starts.
 
         With `growth` the radii of attraction as given, with `noise` step 0.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
         """
         speed = np.linalg.norm(p, axis=1, keepdims=True)
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
@@ -246,14 +241,14 @@ class ZoneFlocking(DiscreteLaw):
         return memory | self._kept(radii, np.array(0.0), self.world.alien_starts)
 
     def _kept(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
-        """What is remembered only where it is needed."""
+        """Return the memory without parts that are not needed."""
         needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
 
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step (Algorithm 1 of the paper), unchecked.
+        """Return the state after one step (Algorithm 1 of the paper), unchecked.
 
         Parameters
         ----------
@@ -277,12 +272,10 @@ class ZoneFlocking(DiscreteLaw):
         return qs, ps, us, {"heading": headings, "estimate": estimates} | self._kept(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
-        """The six accelerations at one instant by name, each of shape (n, m), before the bound (9).
+        """Return the six accelerations at one instant by name, each (n, m), before the bound (9).
 
         Parameters
         ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
         memory : mapping of str to array_like, optional
             As `step` takes it; by default that of a start.
 
@@ -323,7 +316,7 @@ class ZoneFlocking(DiscreteLaw):
         return series
 
     def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, Any]]:
-        """Clearance at the samples, and its bound on the straight way from each sample to the next; when asked for."""
+        """Return clearances at the samples, and bounds on the straight path between them."""
 
         @cache
         def measured() -> tuple[FloatArray, FloatArray]:
@@ -340,12 +333,7 @@ class ZoneFlocking(DiscreteLaw):
         }
 
     def altitudes(self, p: Any) -> FloatArray:
-        """Length of each agent's obstacle zone along its heading, shape (n,).
-
-        Parameters
-        ----------
-        p : array_like, shape (n, m)
-            Velocities.
+        """Return the length of each agent's obstacle zone along its heading, shape (n,).
 
         Examples
         --------
@@ -359,7 +347,7 @@ class ZoneFlocking(DiscreteLaw):
         return lengths[self.zone_length]
 
     def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[Any, ...]:
-        """Fresh copies of (heading, estimate, reach, alien), and the number of the next step."""
+        """Return copies of (heading, estimate, reach, alien), and the number of the next step."""
         whole: dict[str, Any] = {
             "reach": self.radii.arrays(len(q))[2],
             "alien": np.empty((0, q.shape[1])),
@@ -372,7 +360,7 @@ class ZoneFlocking(DiscreteLaw):
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
 
     def _constants(self, n: int, m: int) -> tuple[compiled.Zones, compiled.Settings, compiled.Choices, compiled.World]:
-        """What the compiled step reads beside the state."""
+        """Return the constants of the compiled step."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
         chance = self.noise.weights, self.noise.velocities
         own = self.dt, self.desired_speed, self.u_max, self.v_max

@@ -1,4 +1,4 @@
-"""The law of Cucker and Smale: every agent heeds every other, the less the farther it is."""
+"""The law of Cucker and Smale: velocity consensus of all agents, weighted by distance."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class CuckerSmale(SumOfTerms):
 
 
 def spread(x: FloatArray) -> FloatArray:
-    """√Σ‖x_i − x̄‖² of each sample, shape (T,).
+    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,).
 
     Examples
     --------

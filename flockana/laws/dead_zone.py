@@ -80,25 +80,17 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if two agents coincide: their force has no direction and their potential is infinite.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Raise if two agents coincide: their force has no direction and their potential is infinite."""
         ensure_apart(q)
         super().check_start(q, p)
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
-        """Control input u(q, p).
+        """Return the control input u(q, p).
 
         Parameters
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
 
         Raises
         ------
@@ -120,25 +112,17 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
-        """The energy of neighbours only: it jumps by ψ(r) whenever a pair comes into range (erratum L5).
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
-        """
+        """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""
         q, p = ensure_state(q, p)
         n = len(q)
         apart = n * (n - 1) // 2 - len(links(q, self.interaction.r))
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
 
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
-        """Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
+        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
 
         Parameters
         ----------
-        q : array_like, shape (n, m)
-            Positions.
         t : float
             Time (it does not depend on it).
         """
@@ -157,12 +141,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Semi-implicit Euler steps in one compiled loop: q, p after each step kept and u before, shape (S, n, m).
+        """Return q, p after each step kept and u before, by semi-implicit Euler in one compiled loop.
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         dt : float
             Step.
         steps : int
@@ -178,22 +160,16 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @property
     def located(self) -> bool:
-        """Whether the force jumps at the dead zone, so that every switch is located: there is no ramp."""
+        """Whether the force jumps at the dead zone (no ramp), so that switches are located."""
         return self.interaction.ramp == 0.0
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the zone of every pair: 0 repulsion, 1 dead zone, 2 attraction, 3 out of range."""
         pieces: Pieces = zones(q, self.interaction.par)
         return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `flow`, every pair held in its zone.
+        """Return `flow` with every pair held in its zone.
 
         Parameters
         ----------
@@ -201,26 +177,22 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
             Zones.
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros_like(q)
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
 
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """How far each pair is inside its zone.
+        """Return how far each pair is inside its zone.
 
         Parameters
         ----------
         pieces : ndarray of int8
             Zones.
-        q : ndarray, shape (n, m)
-            Positions.
         """
         return Margins(*zone_margins(q, pieces, self.interaction.par))
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """The zones after every pair with a negative margin has gone to the next.
+        """Return the zones after every pair with a negative margin has moved to the next one.
 
         Parameters
         ----------
@@ -236,14 +208,12 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return after.astype(np.int8)
 
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """The pairs that both sides of the edge just crossed drive back, if they swing by less than 1e-6 d₁.
+        """Return the pairs that slide along the edge just crossed, driven back from both sides.
 
         Parameters
         ----------
         before, after : ndarray of int8
             Zones on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """
@@ -269,7 +239,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
 
 def contact_scales(interaction: DeadZoneInteraction) -> Scales:
-    """d₁, and the time in which the force of a contact moves an agent by it."""
+    """Return d₁, and the time in which the force of a contact moves an agent by d₁."""
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 

@@ -17,22 +17,10 @@ if TYPE_CHECKING:
 
 
 def law_derivation(law: Any, m: int = 2) -> EnergyIdentity:
-    """Potential, force, energy and dH/dt of a law, with the residual of the identity; prints as LaTeX.
+    """Return the derivation of a law's potential, force, energy and dH/dt, with LaTeX output.
 
     The sums are over n agents, whatever n is: the identity is derived from one generic pair and one generic agent, in
     the σ-norm z_ij, of which every function of a pair's distance is one.
-
-    Parameters
-    ----------
-    law : Law
-        A sum of a pair term and, if any, the linear pull of a γ-agent with gains common to all.
-    m : int
-        Dimension, 1, 2 or 3.
-
-    Raises
-    ------
-    ArgumentError
-        If the law has other terms, or a pair law without a formula.
 
     Examples
     --------

@@ -111,12 +111,12 @@ class DirectedNet(Law):
 
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
-        """What the law's agents keep off."""
+        """Obstacles of the underlying law."""
         return self.law.obstacles
 
     @property
     def obstacle_field(self) -> ObstacleField | None:
-        """How they do."""
+        """β-interaction with the obstacles."""
         return self.law.obstacle_field
 
     @property
@@ -125,7 +125,7 @@ class DirectedNet(Law):
 
     @property
     def lattice(self) -> None:
-        """None: which links there are is not the same for both of their ends."""
+        """None, as links are not mutual."""
         return
 
     @property
@@ -157,15 +157,7 @@ class DirectedNet(Law):
         return float((_SLOW * self.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """The input, and NaN: no energy is known.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """Return the input, and NaN as no energy is known."""
         u, reach = np.zeros(q.shape), self._reach(len(q))
         for term in self.law.terms:
             if isinstance(term, PairTerm):
@@ -177,12 +169,7 @@ class DirectedNet(Law):
         return u, float("nan")
 
     def perceived(self, q: Any, p: Any) -> Edges:
-        """The directed edges (j, i) of a state: i sees j.
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
+        """Return the directed edges (j, i) of a state, where i sees j.
 
         Examples
         --------

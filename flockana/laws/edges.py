@@ -1,4 +1,4 @@
-"""Directed edges of the minimal model, with the weights and lengths that its parameters give them."""
+"""Directed edges of the minimal model, with their weights and lengths."""
 
 from __future__ import annotations
 
@@ -15,15 +15,7 @@ PerPair = float | tuple[tuple[float, ...], ...]
 
 
 class EdgeData(NamedTuple):
-    """What acts along each directed edge, arrays of shape (M,).
-
-    Parameters
-    ----------
-    head, tail : int64 arrays
-        The agent i that perceives and the agent j that it perceives.
-    mu, rho, align : ndarray
-        Weight μ_ij of the spring, its length ρ_i = α_i r_i, and the weight of v_j − v_i.
-    """
+    """Weights and spacings of the directed edges, arrays of shape (M,)."""
 
     head: npt.NDArray[np.int64]
     tail: npt.NDArray[np.int64]
@@ -33,14 +25,14 @@ class EdgeData(NamedTuple):
 
 
 def per_agent(name: str, value: Any) -> PerAgent:
-    """One number > 0, or one for each agent."""
+    """Return one validated number > 0, or one for each agent."""
     if np.ndim(value) == 0:
         return ensure_positive(name, value)
     return tuple(ensure_positive(f"{name}[{k}]", one) for k, one in enumerate(value))
 
 
 def per_pair(name: str, value: Any) -> PerPair:
-    """One number >= 0, or a square table of them."""
+    """Return one validated number >= 0, or a square table of them."""
     if np.ndim(value) == 0:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)
@@ -52,7 +44,7 @@ def per_pair(name: str, value: Any) -> PerPair:
 
 
 def weighed_edges(law: Any, head: npt.NDArray[np.int64], tail: npt.NDArray[np.int64]) -> EdgeData:
-    """What acts along each edge by the parameters of a `MinimalFlocking`, means taken over these edges."""
+    """Return the weights and spacings of edges from the parameters of a `MinimalFlocking`."""
 
     def of_agent(value: PerAgent) -> Any:
         return value if isinstance(value, float) else np.array(value)[head]

@@ -1,4 +1,4 @@
-"""What Algorithms 1 to 3 and every composition share: gains, and how they change with the units."""
+"""Base class of Algorithms 1 to 3 and compositions: gains and their conversion of units."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class GainedLaw(SumOfTerms):
     gains: Gains
 
     def in_units(self, length: float, time: float) -> Self:
-        """The same law in other units, see `flockana.rescale`.
+        """Return the law in other units (`flockana.rescale`).
 
         Parameters
         ----------
@@ -33,7 +33,7 @@ class GainedLaw(SumOfTerms):
 
 
 def timed(pair: PairInteraction | Weight | None) -> bool:
-    """Whether what a pair law or a weight gives has a time in it already, as one is among its parameters' units.
+    """Return whether a pair law or a weight depends on the unit of time.
 
     Examples
     --------

@@ -146,6 +146,19 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         """
         return () if self.pair is None else self.pair.surfaces
 
+    @property
+    def poles(self) -> tuple[float, ...]:
+        """Distances between agents at which their potential is infinite or their force has no limit: none is crossed.
+
+        Those of the law's pair interaction, if it has one. A run that meets one ends as failed.
+        """
+        return () if self.pair is None else self.pair.poles
+
+    @property
+    def pole_pairs(self) -> tuple[tuple[int, int], ...] | None:
+        """The pairs that poles concern; None: all."""
+        return None
+
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
         """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one.
 

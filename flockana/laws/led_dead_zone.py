@@ -113,17 +113,11 @@ class LedDeadZoneFlocking(SumOfTerms):
 
     @property
     def scales(self) -> Scales:
-        """As those of `DeadZoneFlocking`."""
+        """Length and time scales of `DeadZoneFlocking`."""
         return contact_scales(self.interaction)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if two agents coincide, or there are others than `group` has.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Raise if two agents coincide, or there are others than `group` has."""
         super().check_start(q, p)
         ensure_apart(q)
 

@@ -27,22 +27,6 @@ class LinkKeeping(SumOfTerms):
     The tension is that of Ji and Egerstedt (2007), the second-order law that of Zavlanos, Jadbabaie and Pappas (2007).
     Both let links arise, with hysteresis; here the net is that of the start and does not change. H = Σ ψ + ½ Σ‖p_i‖².
 
-    Parameters
-    ----------
-    links : tuple of (int, int)
-        The net, each link once.
-    r : float
-        Range r > 0 that no link may reach.
-    k : float
-        Strength k > 0 of the tension, a length per time².
-    c : float
-        Gain c ≥ 0 of the velocity consensus, per time.
-
-    Raises
-    ------
-    ArgumentError
-        On numbers out of range, and links that are no pairs of agents or come twice.
-
     Examples
     --------
     >>> law = LinkKeeping(((0, 1),), r=2.0)
@@ -79,7 +63,7 @@ class LinkKeeping(SumOfTerms):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """The links alone."""
+        """The term of the links."""
         return (LinkTerm(self.tension, self.links, 1.0, self.c),)
 
     @property
@@ -89,63 +73,50 @@ class LinkKeeping(SumOfTerms):
 
     @property
     def pair(self) -> None:  # type: ignore[override]
-        """None: who interacts is the net's matter, not the distance's."""
+        """None, as the net and not the distance decides which agents interact."""
         return
 
     @property
     def lattice(self) -> None:
-        """None: links hold at no length."""
+        """None, as links have no preferred length."""
         return
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """None: no force begins or ends."""
+        """Empty, as no force begins or ends at a distance."""
         return ()
 
-    def check_agents(self, n: int) -> None:
-        """Raise if a link is of an agent that is not there.
+    @property
+    def poles(self) -> tuple[float, ...]:
+        """r, which no link may reach."""
+        return (self.r,)
 
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+    @property
+    def pole_pairs(self) -> tuple[tuple[int, int], ...]:
+        """The links."""
+        return self.links
+
+    def check_agents(self, n: int) -> None:
+        """Raise if a link is of an agent that is not there."""
         last = max((j for _, j in self.links), default=0)
         if last >= n:
             raise ArgumentError(f"links name agent {last}, and there are {n}: expected links among agents 0 to {n - 1}")
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if a link is as long as r, where the tension has its pole.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Raise if a link is as long as r, where the tension has its pole."""
         super().check_start(q, p)
         for (i, j), length in zip(self.links, self.lengths(q), strict=True):
             if length >= self.r:
                 raise ArgumentError(f"link ({i}, {j}) is {length:g} long: expected links shorter than r = {self.r:g}")
 
     def lengths(self, q: FloatArray) -> FloatArray:
-        """Length of each link.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the length of each link."""
         ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
         lengths: FloatArray = np.linalg.norm(q[ends[:, 1]] - q[ends[:, 0]], axis=1)
         return lengths
 
     def longest(self, energy: float) -> float:
-        """The length s < r at which one link alone has an energy: k s²/(r − s) = H.
-
-        Parameters
-        ----------
-        energy : float
-            H ≥ 0.
+        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
 
         Examples
         --------

@@ -109,7 +109,7 @@ class MinimalFlocking(Law):
         return (self.radius,) if self.edges is None else ()
 
     def in_units(self, length: float, time: float) -> MinimalFlocking:
-        """The same law in other units (`flockana.rescale`).
+        """Return the law in other units (`flockana.rescale`).
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class MinimalFlocking(Law):
             raise ArgumentError(f"edges name agent {last}: expected agents below {min(sizes.values())}, as in {sizes}")
 
     def _check_means(self) -> None:
-        """A weighted mean over agents whose weights are all zero is no mean; σ = 0 throughout is asked for."""
+        """Raise where the weights of a mean over agents are all zero."""
         if not isinstance(self.sigma, tuple) or not self.normalised:
             return
         sigma = np.array(self.sigma)
@@ -179,24 +179,13 @@ class MinimalFlocking(Law):
         return weighed_edges(self, pairs[:, 1].copy(), pairs[:, 0].copy())
 
     def edge_data(self, q: FloatArray) -> EdgeData:
-        """Directed edges of a state with their weights and spacings, unchecked.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return directed edges of a state with their weights and spacings, unchecked."""
         if self.edges is not None:
             return self._frozen
         return weighed_edges(self, *perceived_edges(q, np.full(len(q), self.radius)))
 
     def perceived(self, q: Any) -> Edges:
-        """The directed edges (j, i) of a state: i perceives j.
-
-        Parameters
-        ----------
-        q : array_like, shape (n, m)
-            Positions.
+        """Return the directed edges (j, i) of a state, where i perceives j.
 
         Examples
         --------
@@ -222,37 +211,29 @@ class MinimalFlocking(Law):
 
     @property
     def _one_weight(self) -> bool:
-        """Whether all that are perceived are heeded alike."""
+        """Whether all perceived agents have the same weight."""
         return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
 
     def _alike(self, n: int) -> tuple[FloatArray, FloatArray, bool, Any, Any, bool]:
-        """What the kernels of such a law read: radius, spacing, whether it is shared, μ, σ, whether normalised."""
+        """Parameters of the kernels for equal weights: radius, spacing, sharing, μ, σ, normalisation."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
         lengths = np.full(n, 1.0 if spacing is None else spacing)
         return radius, lengths, self.spacing is None, self.mu, self.sigma, self.normalised
 
     def steps_many(self, n: int) -> bool:
-        """Whether `semi_implicit` steps a flock of this size: a small one, all heeded alike, by the law's own `flow`.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+        """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`."""
         return self._one_weight and n <= AT_ONCE and overrides_consistently(type(self), "semi_implicit", ("flow",))
 
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Semi-implicit Euler steps in one compiled loop: q, p after each step and u before, shape (steps, n, m).
+        """Return q, p after each step kept and u before, by semi-implicit Euler in one compiled loop.
 
         Only where `steps_many` says so.
 
         Parameters
         ----------
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         dt : float
             Step.
         steps : int
@@ -261,14 +242,12 @@ class MinimalFlocking(Law):
         return semi_implicit_steps(q, p, *self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """(u, dH/dt), unchecked, with dH/dt = −Σ σ ‖v_i − v_j‖² over links if the law is `reciprocal`, else NaN.
+        """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN.
 
         Parameters
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros_like(q)
         if self._one_weight:
@@ -278,14 +257,12 @@ class MinimalFlocking(Law):
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links, if the law is `reciprocal`; else NaN. Unchecked.
+        """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked.
 
         Parameters
         ----------
         t : float
             Time (H does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         if not self.reciprocal:
             return float("nan")
@@ -305,7 +282,7 @@ class MinimalFlocking(Law):
         return self._net_series(q) | _profile(q)
 
     def _net_series(self, q: FloatArray) -> dict[str, Any]:
-        """Connectivity of who perceives whom, and the share of the largest component."""
+        """Return connectivity of the perception graph and share of its largest component over time."""
         labels = [components(q.shape[1], np.column_stack(self.edge_data(one)[:2])) for one in q]
         parts, largest = (np.array([f(np.bincount(one)) for one in labels], float) for f in (np.size, np.max))
         n = q.shape[1]
@@ -315,7 +292,7 @@ class MinimalFlocking(Law):
         }
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
-        """(∂u/∂q, ∂u/∂p), sparse, with the graph as it is at q, unchecked.
+        """Return (∂u/∂q, ∂u/∂p), sparse, with the graph frozen at q, unchecked.
 
         ∂u_i/∂q_j = μ ((1 − ρ/‖x‖) I + ρ/‖x‖ b bᵀ) with the bearing b = x/‖x‖, and ∂u_i/∂p_j = a I; the blocks of an
         agent sum to zero. Where an agent comes or goes the law jumps and has no derivative: that is not seen here.
@@ -324,8 +301,6 @@ class MinimalFlocking(Law):
         ----------
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
 
         Raises
         ------
@@ -348,7 +323,7 @@ class MinimalFlocking(Law):
         own = (m * head[:, None] + np.arange(m))[:, None, :]
 
         def summed(blocks: FloatArray) -> Any:
-            """Σ over edges of a block at (i, j) and its opposite at (i, i)."""
+            """Return Σ over edges of a block at (i, j) and its negative at (i, i)."""
             entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
             at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, own)]
             indices = np.concatenate(at[:2]), np.concatenate(at[2:])
@@ -357,7 +332,7 @@ class MinimalFlocking(Law):
         return summed(stiffness), summed(align[:, None, None] * identity)
 
     def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
-        """The same law in steps, as the paper simulates it.
+        """Return the law in steps, as the paper simulates it.
 
         Parameters
         ----------
@@ -368,7 +343,7 @@ class MinimalFlocking(Law):
 
 
 def _profile(q: FloatArray) -> dict[str, Any]:
-    """Of the distances of all pairs, as Fig. 10 shows them: their median and the largest."""
+    """Return median and largest distance of all pairs, as in Fig. 10."""
     middle, largest = pair_distance_profile(q, (0.5, 1.0)).T
     return {
         "median_distance": ("median distance of two agents (length)", middle),
@@ -382,8 +357,6 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
 
     Parameters
     ----------
-    law : MinimalFlocking
-        What gives u.
     dt : float
         Step δ; 0.1 in the paper.
 

@@ -30,22 +30,6 @@ class MSNDiscretisation(DiscreteLaw):
     the end of the previous iteration, and the γ-agent has already moved on to the end of this one. The project sums
     in single precision, which is not imitated.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law whose input u is applied.
-    dt : float
-        Step, in time units.
-    in_place : bool
-        True as written; False evaluates every u before any agent moves.
-    position_factor : float
-        f: 3/2 as written, 1/2 for what a constant u does.
-
-    Raises
-    ------
-    ArgumentError
-        On another law (a variant's extra terms would be left out unnoticed), or a step that is not positive.
-
     Examples
     --------
     >>> from flockana.environment.targets import StaticTarget
@@ -90,7 +74,7 @@ class MSNDiscretisation(DiscreteLaw):
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One iteration, unchecked; it needs no memory, since the previous net is that of the q it is given."""
+        """Return the state after one iteration, unchecked; no memory, as the net follows from q."""
         later, h = t + self.dt, self.dt
         if not self.in_place:
             u, _ = self.law.flow(later, q, p)

@@ -25,7 +25,7 @@ MIN_DISTANCE, FACTOR = 0.05, 10.0
 
 
 def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, factor: float) -> FloatArray:
-    """What the push adds to Σ_j φ_α n_ij: φ_α (σ_ε(factor Δ) − σ_ε(Δ)) for each pair with ‖Δ‖ < min_distance.
+    """Return the push's part of Σ_j φ_α n_ij, for each pair closer than min_distance.
 
     Returns ndarray, shape (n, m) It sums to zero over the agents.
 
@@ -51,18 +51,7 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 
 @dataclass(frozen=True)
 class PushTerm(Term):
-    """What the push adds to the gradient of the pairs: no gradient itself, as energy is not counted of it.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    stiffness : float
-        c1α.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there.
+    """Term of the push near contact, which is not a gradient and has no energy.
 
     Examples
     --------
@@ -84,7 +73,7 @@ class PushTerm(Term):
         return float(np.sum(f * p))  # the same in the moving frame, for the pushes cancel
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Zero where it does not act; raise where it does."""
+        """Return zero where the push does not act; raise where it does."""
         if any(i.size for i, _ in pair_blocks(q, self.min_distance)):
             raise ArgumentError(
                 f"agents are closer than min_distance = {self.min_distance:g}: expected them farther apart, where the "
@@ -117,12 +106,12 @@ class _Push:
 
     @property
     def surfaces(self) -> tuple[Any, ...]:
-        """Those of the law without the push, and where the push begins."""
+        """Switching distances of the law without the push, and where the push begins."""
         return (self.min_distance, *super().surfaces)  # type: ignore[misc]
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Those of the law without the push, and the push."""
+        """Terms of the law without the push, and the push."""
         push = PushTerm(self.alpha, self.gains.c1_alpha, self.min_distance, self.factor)
         return (*super().terms, push)  # type: ignore[misc]
 
@@ -133,17 +122,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
 
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
     wherever no pair is closer than `min_distance`.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    gains : Gains
-        Only c1_alpha and c2_alpha are used.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there, at least 1.
 
     Examples
     --------
@@ -168,19 +146,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Push, Algorithm2):
     """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push.
-
-    Parameters
-    ----------
-    alpha : AlphaInteraction
-        The pair law.
-    gains : Gains
-        c1 and c2 of α and γ are used.
-    target : Target
-        The γ-agent.
-    min_distance : float
-        Distance below which a pair is pushed.
-    factor : float
-        By what q_j − q_i is multiplied there, at least 1.
 
     Examples
     --------

@@ -19,8 +19,6 @@ class Scheme(DiscreteLaw):
 
     Parameters
     ----------
-    law : Law
-        The continuous law.
     dt : float
         Step.
 

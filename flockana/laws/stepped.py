@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil, isclose
 from typing import Any, ClassVar
 
@@ -94,11 +95,11 @@ class Stepped(DiscreteLaw):
         """Whether chance has a part in it."""
         return any(one.noisy for one in self._wrappers)
 
-    @property
+    @cached_property
     def _wrappers(self) -> tuple[Wrapper, ...]:
         return tuple(self.law.wrappers) if isinstance(self.law, Wrapper) else ()
 
-    @property
+    @cached_property
     def past_steps(self) -> int:
         """Steps of the past that are kept, the present one among them."""
         longest = sum(one.memory for one in self._wrappers)

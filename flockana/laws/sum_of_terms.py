@@ -9,7 +9,6 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.overrides import overrides_consistently
-from flockana.kernels.listed import MOST_TERMS
 from flockana.laws.law import Law, block_diagonal
 from flockana.laws.terms.term import Compiled, Term, TermKernel
 from flockana.measures.frame import moving_frame
@@ -64,7 +63,7 @@ class SumOfTerms(Law):
         return u, rate
 
     def compiled(self, m: int) -> Compiled | None:
-        """The terms for integrators that are compiled too; None if one has no such form, or there are too many.
+        """The terms for integrators that are compiled too; None if one has no such form.
 
         Parameters
         ----------
@@ -79,7 +78,7 @@ class SumOfTerms(Law):
             if known is None:
                 return None
             kernels += [known] if isinstance(known, TermKernel) else known
-        return Compiled(tuple(kernels), self.moving) if len(kernels) <= MOST_TERMS else None
+        return Compiled(tuple(kernels), self.moving)
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
         """Σ U^T, unchecked.

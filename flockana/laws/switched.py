@@ -15,7 +15,7 @@ Pieces = npt.NDArray[np.int8]
 
 
 class Margins(NamedTuple):
-    """Per pair: how far inside its piece it is, negative beyond, and whether the nearer edge is the upper one."""
+    """Distances of pairs to the edges of their pieces, negative beyond, and the side of the nearer edge."""
 
     inside: FloatArray
     upper: npt.NDArray[np.bool_]
@@ -36,43 +36,31 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def pieces(self, q: FloatArray) -> Pieces:
-        """Which piece each pair is in.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the piece of every pair."""
 
     @abstractmethod
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `flow`, with every pair's piece continued smoothly beyond its edges.
+        """Return `flow` with every pair's piece continued smoothly beyond its edges.
 
         Parameters
         ----------
         pieces : ndarray of int8
             From `pieces`.
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
 
     @abstractmethod
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """How far each pair is from leaving its piece.
+        """Return how far each pair is from leaving its piece.
 
         Parameters
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        q : ndarray, shape (n, m)
-            Positions.
         """
 
     @abstractmethod
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """The pieces after every pair with a negative margin has gone over its edge.
+        """Return the pieces after every pair with a negative margin has crossed its edge.
 
         Parameters
         ----------
@@ -84,14 +72,12 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """What holds at the surface that was just crossed, in words; None if nothing does.
+        """Return a description of what slides along the surface just crossed; None if nothing does.
 
         Parameters
         ----------
         before, after : ndarray of int8
             Pieces on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """

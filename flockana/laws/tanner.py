@@ -65,7 +65,7 @@ class FixedNetFlocking(Law):
 
     @property
     def scales(self) -> Scales:
-        """d and d/√k."""
+        """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
 
     @property
@@ -103,7 +103,7 @@ class FixedNetFlocking(Law):
 
 @dataclass(frozen=True)
 class ProximityFlocking(SwitchedLaw):
-    """As `FixedNetFlocking`, along the net of all pairs nearer than R: V is constant from there on.
+    """Law of `FixedNetFlocking` on the net of all pairs nearer than R, beyond which V is constant.
 
     Where a pair comes within R its pull and its share of the consensus begin at once: the right-hand side jumps, and
     solutions are Filippov's. `simulate` stops at each switch. The jump is a pull, and consensus vanishes along a pair
@@ -147,7 +147,7 @@ class ProximityFlocking(SwitchedLaw):
 
     @property
     def scales(self) -> Scales:
-        """d and d/√k."""
+        """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
 
     @property
@@ -161,7 +161,7 @@ class ProximityFlocking(SwitchedLaw):
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """R."""
+        """Switching distance R."""
         return (self.r,)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
@@ -169,18 +169,12 @@ class ProximityFlocking(SwitchedLaw):
         ensure_apart(q, "the force of the logarithmic potential")
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Of every pair, 0 within R and 1 beyond.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return 0 for every pair within R and 1 beyond."""
         pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
         return pieces
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """As `flow`, every pair held within R or beyond.
+        """Return `flow` with every pair held within R or beyond.
 
         Parameters
         ----------
@@ -188,8 +182,6 @@ class ProximityFlocking(SwitchedLaw):
             Where each pair is held.
         t : float
             Time (the law does not depend on it).
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         """
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)
@@ -198,20 +190,18 @@ class ProximityFlocking(SwitchedLaw):
         return self.piece_flow(self.pieces(q), t, q, p)
 
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """How far each pair is inside its piece.
+        """Return how far each pair is inside its piece.
 
         Parameters
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        q : ndarray, shape (n, m)
-            Positions.
         """
         inside = self.r - _distances(q)
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
 
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """The other piece for every pair with a negative margin.
+        """Return the other piece for every pair with a negative margin.
 
         Parameters
         ----------
@@ -224,14 +214,12 @@ class ProximityFlocking(SwitchedLaw):
         return after
 
     def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """The pair that both sides drive back, if several switch at once; by itself none is.
+        """Return the pair that both sides drive back, if several switch at once; else None.
 
         Parameters
         ----------
         before, after : ndarray of int8
             Pieces on the two sides.
-        t : float
-            Time.
         q, p : ndarray, shape (n, m)
             Positions and velocities at the switch.
         """
@@ -263,7 +251,7 @@ def _ensure_potential(potential: Any) -> None:
 
 
 def _edges(given: Any) -> tuple[tuple[int, int], ...]:
-    """Edges (i, j), i < j, each once."""
+    """Return edges (i, j), i < j, each once."""
     try:
         pairs = [(a, b) for a, b in given]
     except (TypeError, ValueError):
@@ -281,14 +269,14 @@ def _edges(given: Any) -> tuple[tuple[int, int], ...]:
 
 
 def _held(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """The pairs that are held within R."""
+    """Return the pairs that are held within R."""
     i, j = np.triu_indices(n, 1)
     near = pieces == _NEAR
     return i[near], j[near]
 
 
 def _distances(q: FloatArray) -> FloatArray:
-    """Of every pair i < j, in the order of `numpy.triu_indices`."""
+    """Return the distance of every pair i < j, in the order of `numpy.triu_indices`."""
     i, j = np.triu_indices(len(q), 1)
     distances: FloatArray = np.sqrt(np.sum((q[j] - q[i]) ** 2, axis=1))
     return distances

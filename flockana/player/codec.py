@@ -32,7 +32,7 @@ class Packed:
 
 
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
-    """A header and arrays as bytes.
+    """Return a header and arrays as bytes.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
 
 
 def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
-    """(header, arrays by name) of what `encode` gave; the page does the same in decode.js."""
+    """Return (header, arrays by name) from the bytes of `encode`, as decode.js does in the page."""
     try:
         if data[:4] != _MAGIC:
             raise ValueError("its first bytes are not FLK1")

@@ -18,18 +18,18 @@ SCRIPTS = ("decode.js", "drawing.js", "strip.js", "player.js")
 
 @cache
 def script() -> str:
-    """All of the player's JavaScript but what binds it to a page; it defines ``flockanaPlayer(element, bytes)``."""
+    """Return the player's JavaScript, which defines ``flockanaPlayer(element, bytes)``."""
     return "".join((files("flockana.player") / name).read_text(encoding="utf-8") for name in SCRIPTS)
 
 
 @cache
 def style() -> str:
-    """The player's CSS."""
+    """Return the player's CSS."""
     return (files("flockana.player") / "player.css").read_text(encoding="utf-8")
 
 
 def text_of(data: bytes) -> str:
-    """Bytes as text that a page can hold.
+    """Return bytes as text that a page can hold.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def text_of(data: bytes) -> str:
 
 
 def page(data: bytes, *, title: str = "A run") -> str:
-    """A page that holds the player and one run, and needs nothing else."""
+    """Return a self-contained page with the player and one run."""
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'

@@ -119,7 +119,7 @@ def scene(
     title: str = "",
     marks: Iterable[tuple[float, str]] = (),
 ) -> bytes:
-    """A run as the player reads it."""
+    """Return a run in the player's format."""
     frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
     around = world(run.law.continuous or run.law, run, frames)
     q, p = run.q[frames], run.p[frames]
@@ -155,7 +155,7 @@ def scene(
 
 
 def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
-    """Which of so many samples are kept: first and last, and others evenly between, at most so many.
+    """Return which samples to keep: first and last, and others evenly between.
 
     Examples
     --------
@@ -186,7 +186,7 @@ def _finite(value: Any) -> float | None:
 
 
 def _paths(targets: Iterable[Any], times: FloatArray) -> FloatArray:
-    """Places of targets, shape (T, K, m)."""
+    """Return positions of targets, shape (T, K, m)."""
     return np.array([[target.position(t) for target in targets] for t in times.tolist()])
 
 

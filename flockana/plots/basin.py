@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, head
+from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, write_title
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -38,6 +38,6 @@ def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None
     ax.set_xlim(left=0.0)
     ax.set_xlabel("distance from the orbit, over all coordinates, in d")
     ax.set_ylabel("share that returns")
-    head(ax, f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
+    write_title(ax, f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
     ax.legend(loc="lower left", **LEGEND)
     return ax

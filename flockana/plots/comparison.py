@@ -20,9 +20,9 @@ from flockana.plots.style import (
     VERMILLION,
     ensure_axes,
     finish_over_time,
-    head,
     lines,
     subplots,
+    write_title,
 )
 from flockana.plots.symbols import typeset
 from flockana.scenarios.one_start import RANGE
@@ -78,7 +78,7 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     middle, half = 0.5 * (low + high), 0.54 * float((high - low).max())
     for outcome, panel in zip(outcomes, panels, strict=True):
         _paths(panel, outcome.run)
-        head(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
+        write_title(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
         panel.set(xlabel=typeset("x (length)"), ylabel=typeset("y (length)"), box_aspect=1.0)
         panel.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     return panels

@@ -23,8 +23,8 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
-    head,
     in_plane,
+    write_title,
 )
 from flockana.plots.symbols import typeset
 
@@ -70,7 +70,7 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
         ax.axvline(place, color=MUTED, linewidth=0.8, linestyle=":")
         ax.annotate(typeset(name), (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
     ax.set_xlim(0.0, far)
-    head(ax, "below 0 it repels", color=MUTED, fontsize=8)
+    write_title(ax, "below 0 it repels", color=MUTED, fontsize=8)
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.dynamics.predicates import ensure_run
 from flockana.measures.windows import windows_of
-from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, head
+from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, ensure_axes, finish_over_time, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,5 +66,5 @@ def joint_windows(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
         axes.axvspan(rest, t[-1], facecolor="none", edgecolor=FAINT, hatch="//", linewidth=0, zorder=0)
     axes.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="-", drawstyle="steps-post")
     axes.set_ylim(-0.03, 1.05)
-    head(axes, f"{len(windows)} windows of joint connectivity", fontsize=9)
+    write_title(axes, f"{len(windows)} windows of joint connectivity", fontsize=9)
     return finish_over_time(axes, t, "C, relative connectivity")

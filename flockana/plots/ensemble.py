@@ -11,7 +11,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.checks import FloatArray, ensure_known
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, head
+from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, write_title
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -284,7 +284,7 @@ def phase_diagram(
         **LEGEND,
     )
     if title:
-        head(axes, title, pad=26)
+        write_title(axes, title, pad=26)
     return axes  # type: ignore[no-any-return]
 
 
@@ -318,5 +318,5 @@ def _finish(axes: Any, title: str) -> Axes:
     columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, **LEGEND)
     if title:
-        head(axes, title, pad=10 + 14 * -(-len(labels) // columns))
+        write_title(axes, title, pad=10 + 14 * -(-len(labels) // columns))
     return axes  # type: ignore[no-any-return]

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, head
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ def search_history(
     axes.set_xlim(0.5, values.size + 0.5)
     axes.yaxis.get_offset_text().set(x=-0.09, ha="center")  # a power of ten, which would lie under the legend
     if title:
-        head(axes, title, pad=28)
+        write_title(axes, title, pad=28)
     y = f"margin of {label}" if label else "margin"
     return finish(axes, "run of the search; the first is the scenario's own start", y)
 

@@ -9,7 +9,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.binomial import clopper_pearson
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, head, place_legend
+from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, place_legend, write_title
 
 if TYPE_CHECKING:
     import xarray
@@ -63,6 +63,6 @@ def informed_shares(
     axes.set_ylim(-0.03, 1.03)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(PercentFormatter(1.0))
-    head(axes, title)
+    write_title(axes, title)
     place_legend(axes)
     return finish(axes, "share of agents that are informed", "share")

@@ -25,9 +25,9 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
-    head,
     in_plane,
     lines,
+    write_title,
 )
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def defect_map(
         edge: dict[str, Any] = {"edgecolors": INK, "linewidths": 0.5 if size > 10.0 else 0.0}
         edge |= {"depthshade": False} if m == 3 else {}
         axes.scatter(*these.T, s=size, marker=marker, color=colour, label=label, zorder=3, rasterized=raster, **edge)
-    head(axes, title)
+    write_title(axes, title)
     look = LEGEND | {"borderaxespad": 0.0, "handletextpad": 0.2, "columnspacing": 1.0}
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=2, **look)  # wider, it would squeeze the axes
     return frame_space(axes, x, m)

@@ -40,9 +40,9 @@ from flockana.plots.style import (
     colour_bar,
     ensure_axes,
     frame_space,
-    head,
     in_plane,
     lines,
+    write_title,
 )
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ def configuration(
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
         if beta is not None:
             _beta_agents(axes, points, ObstacleField(tuple(obstacles), beta), size)
-    head(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
+    write_title(axes, title + ("" if p is None else velocity_arrows(axes, points, p)), fontsize=9)
     return frame_space(axes, seen, m)
 
 

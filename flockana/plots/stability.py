@@ -23,9 +23,9 @@ from flockana.plots.style import (
     ensure_axes,
     finish,
     frame_space,
-    head,
     in_plane,
     lines,
+    write_title,
 )
 from flockana.plots.symbols import typeset
 from flockana.stability.modes import Mode
@@ -149,7 +149,7 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
         mark[0, :m] = target
         axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
         seen = np.vstack([seen, mark])
-    head(axes, title)
+    write_title(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
         axes.update_datalim(seen)
         axes.autoscale_view()

@@ -209,7 +209,7 @@ def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     return finish(ax, y=y)
 
 
-def head(ax: Any, title: str, **look: Any) -> None:
+def write_title(ax: Any, title: str, **look: Any) -> None:
     """Write the title at the left above the axes."""
     look = {"fontsize": _STYLE["axes.titlesize"], "color": INK} | look
     ax.set_title(typeset(title), loc="left", **look)

@@ -34,11 +34,11 @@ from flockana.plots.style import (
     curves,
     ensure_axes,
     frame_space,
-    head,
     levels,
     line_width_and_opacity,
     lines,
     over_time,
+    write_title,
 )
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def zones(
         seen.append(aliens)
         axes.scatter(*aliens.T, s=70, marker="X", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4)
     fastest = velocity_arrows(axes, q, trajectory.p[k]) if velocities else ""
-    head(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
+    write_title(axes, f"t = {trajectory.t[k]:.4g}{fastest}", fontsize=9)
     return frame_space(axes, np.vstack(seen), m)
 
 

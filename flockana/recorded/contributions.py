@@ -25,7 +25,7 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class Contribution:
-    """A part of a law: its gain, what it is in words, its value in the law, and its acceleration for a gain of 1."""
+    """Part of a law: its gain, name, value, and its acceleration for a gain of 1."""
 
     name: str
     symbol: str
@@ -65,7 +65,7 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
 
 
 def remainder(law: Any) -> Part | None:
-    """Return what a law with gains gives when all of them are 0, such as drag; None if nothing."""
+    """Return the acceleration of a law with all gains 0, such as drag; None if it is 0."""
     if not isinstance(getattr(law, "gains", None), Gains) or not any(
         getattr(law, name, 0.0) for name in ("thrust", "brake", "told")
     ):

@@ -1,4 +1,4 @@
-"""What differs between a law and a recording: gains and forms by regression, each said in a sentence."""
+"""Differences between a law and a recording, found by regression: gains and forms, each as a sentence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which scheme steps a recording: told by positions and velocities alone, or by the law."""
+"""Recognition of the integration scheme behind a recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BETTER = 0.02  # of the error of the law's flow, which a scheme's must be below
 
 
 class Found(NamedTuple):
-    """A scheme: its name in words, its step, and whether positions and velocities alone tell it."""
+    """Scheme found: its name, its step, and whether positions and velocities alone determine it."""
 
     name: str
     dt: float

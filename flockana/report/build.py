@@ -27,6 +27,7 @@ from flockana.report.comparison import ComparisonSection
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import anchors, scenario_id, verdict_id
 from flockana.report.figures import Picture
+from flockana.report.front import front_findings
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
@@ -203,6 +204,7 @@ def _html(
             foreword=FOREWORD,
             checked=_checked(pages),
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
+            front=front_findings(pages) if run["of"] is None else (),
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_surprises(pages),
             sources=sorted({source_name(f.references[0]) for f in findings if f.references}),

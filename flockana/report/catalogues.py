@@ -69,7 +69,7 @@ def _first(references: Sequence[str]) -> str:
 def select(
     entries: Iterable[dict[str, Any]], words: Sequence[str] = (), *, source: str = "", status: str = ""
 ) -> list[dict[str, Any]]:
-    """Return the entries with all words, of one source, with one expected status; whatever the case.
+    """Return the entries that contain all words, of one source, with one expected status.
 
     Examples
     --------

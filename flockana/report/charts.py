@@ -39,7 +39,7 @@ class Chart:
     levels: Sequence[tuple[float, str]] = ()  # horizontal lines, with their names
 
     def svg(self) -> str:
-        """The chart as an ``<svg>`` element."""
+        """Return the chart as an ``<svg>`` element."""
         shown = [np.asarray(curve.values, dtype=np.float64) for curve in self.curves]
         logarithmic = self.logarithmic and any((values > 0.0).any() for values in shown)
         low, high = _limits([*shown, np.array([level for level, _ in self.levels])], logarithmic)
@@ -82,12 +82,12 @@ class Chart:
 
 
 def panels(charts: Sequence[Chart]) -> str:
-    """Charts side by side, as HTML."""
+    """Return charts side by side, as HTML."""
     return f'<div class="panels">{"".join(chart.svg() for chart in charts)}</div>'
 
 
 def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
-    """Samples through which a curve is drawn: in each of so many spans of time the first, least and greatest."""
+    """Return samples that represent a curve: first, least and greatest in each span of time."""
     samples = len(values)
     if samples <= 2 * _SPANS:
         return np.arange(samples)
@@ -115,7 +115,7 @@ def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, flo
 
 
 def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Round numbers between two, at most so many steps apart, and how each is written.
+    """Return round numbers between two as tick marks, with their texts.
 
     Examples
     --------

@@ -104,7 +104,7 @@ def details(verdict: Verdict) -> Group:
         if c.by != whose:
             table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
-        table.add_row(Text(name), _status(c.status), Text(c.detail + margin))
+        table.add_row(Text(name), _status(c.status), Text(c.account + margin))
     return Group(title, *(Padding(Text(line), (0, 0, 0, 2)) for line in lines), Padding(table, (0, 0, 1, 2)))
 
 

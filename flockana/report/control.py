@@ -34,7 +34,7 @@ class Download:
 
 
 def control_pictures() -> tuple[Picture, ...]:
-    """Step response and root locus of the centre of mass under the paper's gains, and norms against size."""
+    """Return step response and root locus of the centre of mass, and norms against size, as pictures."""
     gains = Gains()
     centre = CentreOfMass(gains)
     t = np.linspace(0.0, 12.0 * pi / centre.natural_frequency / 2.0, 300)

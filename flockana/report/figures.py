@@ -1,4 +1,4 @@
-"""The figures of one scenario: the flock at some instants and curves over time, as SVG that a page holds."""
+"""Figures of one scenario as SVG: the flock at some instants, and curves over time."""
 
 from __future__ import annotations
 
@@ -84,12 +84,12 @@ def measured(run: Trajectory, name: str) -> Chart:
 
 
 def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
-    """Greatest, mean and least speed of an agent over time."""
+    """Return the chart of greatest, mean and least speed over time."""
     return _spread("speeds (length/time)", run.t, lengths(run.p), levels)
 
 
 def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
-    """Greatest and mean control effort ‖u‖ of an agent over time."""
+    """Return the chart of greatest and mean control effort ‖u‖ over time."""
     size = lengths(run.u)
     curves = Curve(size.max(axis=1), "greatest"), Curve(size.mean(axis=1), "mean")
     return Chart("control effort ‖u‖ (length/time²)", run.t, curves, levels=levels)

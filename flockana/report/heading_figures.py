@@ -45,7 +45,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def _until(run: Trajectory) -> float:
-    """The time until which headings differ visibly, and the first few windows end."""
+    """Return the time until which headings differ visibly and the first windows end."""
     span = run.metric("heading_spread")
     late = np.flatnonzero(span > _SETTLED * span[0])
     windows = windows_of(run)[:4]

@@ -37,7 +37,7 @@ IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its pl
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
-    """A figure in flockana's look as an ``<svg>`` element."""
+    """Return a figure in flockana's style as an ``<svg>`` element."""
     with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
@@ -47,7 +47,7 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
 
 
 def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
-    """The canvas of a figure in flockana's look, of a size in inches, drawn."""
+    """Return the drawn canvas of a figure in flockana's style."""
     with plots.style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
         canvas = _placed(draw, size, dpi)
         canvas.draw()
@@ -64,7 +64,7 @@ def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: floa
 
 
 def _page_s_own(text: str) -> str:
-    """Adapt matplotlib's SVG to the page: no prologue, own ids, named colours, fewer digits."""
+    """Adapt matplotlib's SVG to the page: no prologue, unique ids, named colours, fewer digits."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)
     box = re.search(r'viewBox="[^"]*"', text)

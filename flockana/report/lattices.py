@@ -24,7 +24,7 @@ _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
 
 @dataclass(frozen=True)
 class EndState:
-    """The net of one run's last state."""
+    """Net of a run's last state."""
 
     scenario: str
     kind: str  # α-lattice, quasi-α-lattice or neither, with its strain
@@ -46,7 +46,7 @@ class LatticeSection:
 
 
 def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
-    """Gather the section from the verdicts; None if none of them is about lattices or equilibria."""
+    """Return the section on lattices and equilibria from the verdicts; None without any."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
     verdicts = [(name, verdict) for name, verdict in verdicts if verdict.theorem in _TOPICS]
     if not verdicts:

@@ -61,7 +61,7 @@ def _place(ax: Any) -> _Place:
 
 
 def _around(ax: Any, renderer: Any, scales: Scales) -> tuple[float, ...]:
-    """Inches that numbers, names, title, legend and colour bar take left, right, below and above."""
+    """Return the inches that numbers, names, title, legend and colour bar take on each side."""
     figure = ax.get_figure()
     inner = ax.get_position(original=True).transformed(figure.transFigure)
     ax.apply_aspect()

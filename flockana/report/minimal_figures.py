@@ -1,4 +1,4 @@
-"""Figures of a run of the minimal model: those of any flock, and the profiles of Jond's Fig. 10."""
+"""Figures of a run of the minimal model: the common ones, and the profiles of Jond's Fig. 10."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.discrete import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from flockana.report.figures import Picture
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
+_FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight lines; so many it gets then
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class Finding:
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """Return plain data for JSON."""
         return self.verdict.to_dict() | {
             "title": self.title,
             "expected": dict(self.expected),
@@ -103,7 +105,7 @@ class FixedPage:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The one verdict."""
+        """The single verdict."""
         return (self.finding,)
 
     @property
@@ -148,10 +150,22 @@ def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) ->
     """
     named = marks_of(run, verdicts, scenario.instants)
     try:
-        played = scene(run, values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named)
+        played = scene(
+            _dense(run), values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named
+        )
     except ArgumentError:
         return ""
     return text_of(played)
+
+
+def _dense(run: Trajectory) -> Trajectory:
+    """Return a run with enough samples to play: between few of them, cubics that match places and velocities."""
+    few = 1 < len(run.t) < _FEW_SAMPLES and not isinstance(run.law, DiscreteLaw)
+    if not few:
+        return run
+    from flockana.plots.animation import equal_times
+
+    return equal_times(run, _ENOUGH)
 
 
 def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:

@@ -33,7 +33,7 @@ function filter() {
   for (const body of document.querySelectorAll(".summary tbody")) {
     let any = false;
     for (const row of body.querySelectorAll("tr[data-status]")) {
-      const text = `${body.dataset.name} ${row.textContent}`.toLowerCase(), data = row.dataset;
+      const text = `${body.dataset.name} ${row.textContent} ${row.dataset.words}`.toLowerCase(), data = row.dataset;
       const fits = (!source || data.source === source) && (!status || data.status === status)
         && (!rigour || data.rigour === rigour) && wanted.every((word) => text.includes(word));
       row.hidden = !fits;
@@ -50,6 +50,21 @@ form.hidden = false;
 form.addEventListener("input", filter);
 form.addEventListener("submit", (event) => event.preventDefault());
 filter();
+
+function reachable() {  // what scrolls in itself can have the focus
+  for (const box of document.querySelectorAll(".wide, figure"))
+    if (box.scrollWidth > box.clientWidth + 1) box.tabIndex = 0; else box.removeAttribute("tabindex");
+}
+reachable();
+addEventListener("resize", reachable);
+document.addEventListener("toggle", reachable, true);
+
+let closed = [];  // on paper everything is open
+addEventListener("beforeprint", () => {
+  closed = [...document.querySelectorAll("details:not([open])")];
+  closed.forEach((details) => { details.open = true; });
+});
+addEventListener("afterprint", () => { closed.forEach((details) => { details.open = false; }); closed = []; });
 
 const openAll = document.getElementById("open-all");
 if (openAll) {

@@ -1,4 +1,4 @@
-"""The report's section on linearised stability; rates, ranges and margins are those of the verdicts."""
+"""The report's section on linearised stability."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
 
 _DECAYS = ("linearised-decay", "linearised-decay-terminal")
-_MARGINS = ("delay-margin", "heterogeneous-gains")
+_MARGINS = ("delay-margin", "sampling-margins", "heterogeneous-gains")
 _LONGER = (
     "At n = 30 a longer search than this report's (module flockana.stability.design) gave 1.740 alike and 2.061 per "
     "agent with the rotation counted, 18 % faster, and 2.236 and 2.247 with it apart, 0.5 %"
@@ -80,7 +80,7 @@ class StabilitySection:
 
 
 def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = None) -> StabilitySection | None:
-    """Gather the section from the verdicts; None if none of them is about the linearisation."""
+    """Return the section on linearised stability from the verdicts; None without any."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
     decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]
@@ -99,7 +99,7 @@ def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = N
 
 
 def linearised_flocks() -> LinearisedFlocks:
-    """Find the equilibria, linearise and draw."""
+    """Return the linearised flocks of the section, with drawings."""
     flocks = _flocks()
     return LinearisedFlocks(
         flock_pictures(flocks),
@@ -134,7 +134,7 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
 
 
 def _flocks() -> list[tuple[str, Linearisation]]:
-    """A hexagon of 19 agents under both algorithms, linearised."""
+    """Return a hexagon of 19 agents under both algorithms, linearised."""
     laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
     return [
         (

@@ -83,7 +83,7 @@ class StatisticsSection:
     picture: Picture | None = None  # all shares
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """Return plain data for JSON."""
         return {"level": self.level, "scenarios": [asdict(entry) for entry in self.entries]}
 
 

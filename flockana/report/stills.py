@@ -20,7 +20,7 @@ _MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are 
 
 
 def stills(run: Trajectory, times: Sequence[float]) -> str:
-    """The samples nearest to some times, side by side, as HTML; all on one scale."""
+    """Return the samples nearest to some times, side by side on one scale, as HTML."""
     samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
     around = world(run.law.continuous or run.law, run, samples)
     places = [_flat(run.q[k]) for k in samples]
@@ -73,7 +73,7 @@ def _dots(points: FloatArray, size: float) -> str:
 
 
 def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
-    """Links in three colours: shorter than desired, about as desired, longer."""
+    """Return links in three colours: shorter than desired, about as desired, longer."""
     kinds: Any
     if around.edges:
         pairs: Any = around.edges[j if len(around.edges) > 1 else 0]

@@ -14,7 +14,7 @@ _AT_ONCE = 10  # runs in one survey: about a second at most, so that all process
 
 @dataclass(frozen=True)
 class Survey:
-    """Runs of one scenario to judge by its source's reports; names and numbers only, so it can be sent."""
+    """Runs of one scenario over seeds, judged by its source's reports."""
 
     scenario: str
     seeds: tuple[int, ...]  # which runs
@@ -39,7 +39,7 @@ class SurveyResult:
 
 
 def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
-    """The surveys that the section on many seeds needs.
+    """Return the surveys of the section on many seeds.
 
     Examples
     --------

@@ -96,12 +96,12 @@ def _hang(text: Text) -> int:
 
 
 def _longest_piece(text: Text) -> int:
-    """The width without which a word would be broken elsewhere than after a hyphen."""
+    """Return the width of the longest part of a word between hyphens."""
     return max((len(piece) + _hang(text) for piece in _PIECE.findall(text.plain)), default=0)
 
 
 def _broken(text: Text, room: int) -> Text:
-    """The text with line breaks in the words that are longer than a line, after hyphens."""
+    """Return the text with line breaks after hyphens in words longer than a line."""
     ends = []
     for word in re.finditer(r"\S+", text.plain):
         if len(word[0]) + _indent(text) <= room:
@@ -116,7 +116,7 @@ def _broken(text: Text, room: int) -> Text:
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:
-    """A table with a line under its headings.
+    """Return a table with a line under its headings.
 
     Examples
     --------

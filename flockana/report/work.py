@@ -125,7 +125,7 @@ def _begun_apart(tasks: Sequence[Work]) -> list[Work]:
     """Return tasks in the order of execution: one flow first, then maps, then the others.
 
     Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
-    the other the loops of maps, and do not wait for each other (`flockana.kernels.turns`).
+    the other the loops of maps, and seldom wait for each other (`flockana.jit`).
     """
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())
     of_maps = {subject for subject in subjects if isinstance(scenario(subject).law, DiscreteLaw)}

@@ -57,7 +57,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
-    """Greatest, median and least distance of two agents over time."""
+    """Return the chart of greatest, median and least distance of two agents over time."""
     profile = pair_distance_profile(run.q)
     return tuple(
         Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))

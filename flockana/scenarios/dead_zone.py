@@ -28,12 +28,14 @@ _SAMPLES = 401
 _FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: Fig. 3 (a)-(h) are eight, times ours
 
 
-def ours(law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False) -> str:
+def describe_choices(
+    law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False
+) -> str:
     """Return a description of every parameter not printed in the paper.
 
     Examples
     --------
-    >>> ours(DeadZoneFlocking(), 40.0, 200.0)[:34]
+    >>> describe_choices(DeadZoneFlocking(), 40.0, 200.0)[:34]
     'Ours: r_b = 8 (d1 = 3.5, d2 = 12.5'
     """
     pair = law.interaction
@@ -139,7 +141,9 @@ def _scenario(
 ) -> Scenario:
     generator = np.random.default_rng(seed)
     box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
-    told = f"{source} {ours(law, box, t_end, flow=flow)}" + ("" if flow else " The eight instants shown are ours.")
+    told = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
+        "" if flow else " The eight instants shown are ours."
+    )
     options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
     return Scenario(
         name,

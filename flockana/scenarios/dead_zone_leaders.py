@@ -9,7 +9,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.scenarios.dead_zone import DT, ours
+from flockana.scenarios.dead_zone import DT, describe_choices
 from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -115,7 +115,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
         "fraction is enough where the leaders' acceleration is known. Equation (9) has neither; the three terms are "
         f"ours, and so are: {_N} agents, every other one with the second leader, {where}, {_PINNED} pinned with c1 = 2 "
         f"and c2 = 3, leaders that start in the middle and part at {_SPEED:g} each way. r = 15, δ = 4.5, k_δ = 1.3 as "
-        f"printed. {ours(law, _BOX, _END)}",
+        f"printed. {describe_choices(law, _BOX, _END)}",
         SemiImplicitEuler(law, DT),
         q,
         p,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flockana.base.errors import SolverError
-from flockana.base.seals import changed
+from flockana.base.seals import replace_sealed
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems import Tolerances, Verdict, verify
@@ -47,7 +47,7 @@ class Enclosure:
         span = (float(run.t[0]), float(run.t[-1]))
         tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
         if unit != 1.0:
-            tube = changed(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
+            tube = replace_sealed(tube, message=f"{tube.message} (the run in lengths of ℓ, rounded)".strip())
         if not self.limit:
             return tube, None
         try:

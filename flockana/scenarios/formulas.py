@@ -13,7 +13,10 @@ from flockana.scenarios.scenario import Scenario
 from flockana.theorems.theorem import Status
 
 _CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
-_VERIFIED: dict[str, Status] = {"any-potential": "verified", **{f"any-potential:{claim}": "verified" for claim in _CLAIMS}}
+_VERIFIED: dict[str, Status] = {
+    "any-potential": "verified",
+    **{f"any-potential:{claim}": "verified" for claim in _CLAIMS},
+}
 
 
 def _morse() -> FormulaInteraction:

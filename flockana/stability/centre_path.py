@@ -50,7 +50,7 @@ class Motion:
 
 
 def motion(target: Target) -> Motion:
-    """A γ-agent's motion as a line plus a harmonic.
+    """Return a γ-agent's motion as a line plus a harmonic.
 
     Examples
     --------

@@ -75,7 +75,7 @@ class Decay:
 
 
 def slowest_seen(flock: Linearisation) -> Mode:
-    """The slowest mode that shows in velocities relative to the centre of mass.
+    """Return the slowest mode that shows in velocities relative to the centre of mass.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
 def decay_table(
     flocks: Mapping[str, Linearisation], *, amplitude: float = AMPLITUDE, seed: int = 0
 ) -> tuple[Decay, ...]:
-    """`decay` of several flocks: a table of predicted and measured rates.
+    """Return predicted and measured decay rates of several flocks as a table (`decay`).
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ class LinearRange:
         return slope, float(np.sqrt(left / (x.size - 2) / spread)) if x.size > 2 else inf
 
     def limit(self, deviation: float) -> float:
-        """Largest amplitude, in units of d, up to which the deviation stays below a share; interpolated.
+        """Return the largest amplitude, in units of d, whose deviation stays below a share; interpolated.
 
         Parameters
         ----------
@@ -266,13 +266,13 @@ def linear_range(
 
 
 def _length(flock: Linearisation) -> float:
-    """The law's own length, d, else the size of the flock."""
+    """Return the law's own length d, else the size of the flock."""
     own = flock.law.scales
     return own.length if own else float(np.linalg.norm(flock.q - flock.q.mean(axis=0), axis=1).max()) or 1.0
 
 
 def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities of the nonlinear flock, in the frame that moves with the equilibrium."""
+    """Return positions and velocities of the nonlinear flock, in the frame of the equilibrium."""
     times = flock.t + t
     span = float(times[0]), float(times[-1])
     run = simulate(flock.law, flock.q + dq, flock.p + dp, span, t_eval=times, rtol=_RTOL)
@@ -280,7 +280,7 @@ def _run(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) ->
 
 
 def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """δq, δp of the linear flock at equally spaced times."""
+    """Return δq, δp of the linear flock at equally spaced times."""
     from scipy.linalg import expm
 
     step, state = expm(flock.A * (t[1] - t[0])), np.concatenate([dq.ravel(), dp.ravel()])
@@ -298,14 +298,14 @@ def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
 
 
 def velocity_mismatch(p: FloatArray) -> FloatArray:
-    """K̃ at every sample."""
+    """Return K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
     mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
     return mismatch
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
-    """Slope of the logarithm of sums over half periods, each against the next."""
+    """Return slopes of the logarithm of sums over half periods, each against the next."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
     with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope
         slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half

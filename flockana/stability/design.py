@@ -83,12 +83,12 @@ class GainProblem:
         return np.vstack([top, -velocities.T @ np.hstack(forces)])
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
-        """Eigenvalues of `matrix`, largest real part first."""
+        """Return the eigenvalues of `matrix`, largest real part first."""
         values: ComplexArray = np.linalg.eigvals(self.matrix(gains)).astype(np.complex128)
         return values[np.lexsort((values.imag, -values.real))]
 
     def abscissa(self, gains: FloatArray) -> float:
-        """Largest real part: minus the decay rate of the slowest mode."""
+        """Return the largest real part, minus the decay rate of the slowest mode."""
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
@@ -147,7 +147,7 @@ class GainDesign:
         return self.rate_heterogeneous / self.rate_homogeneous
 
     def gains(self, base: Gains, *, heterogeneous: bool = True) -> Gains:
-        """`base` with the designed c1γ and c2γ.
+        """Gains `base` with the designed c1γ and c2γ.
 
         Parameters
         ----------
@@ -168,12 +168,10 @@ class GainDesign:
 def gain_problem(
     q: Any, *, alpha: AlphaInteraction, gains: Gains, form: str = "full", rotation: str = "apart"
 ) -> GainProblem:
-    """The design problem at a configuration.
+    """Return the gain design problem at a configuration.
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
-        A quasi-lattice.
     gains : Gains
         c1α and c2α are used.
     form : {"full", "simplified"}
@@ -274,7 +272,7 @@ def _bounds(bounds: Any) -> tuple[float, float]:
 
 
 def _homogeneous(problem: GainProblem, low: float, high: float) -> FloatArray:
-    """The best pair of gains: grid, then a simplex search that folds back at the bounds."""
+    """Return the best pair of gains, by a grid and a simplex search."""
     from scipy.optimize import minimize
 
     def spread(pair: Any) -> FloatArray:
@@ -330,7 +328,7 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
 def _evolve(
     problem: GainProblem, gains: FloatArray, low: float, high: float, generations: int, seed: int
 ) -> FloatArray:
-    """CMA-ES about a point where slopes mislead."""
+    """Search by CMA-ES about a point where slopes mislead."""
     from cmaes import SepCMA
 
     box = np.tile([low, high], (gains.size, 1))

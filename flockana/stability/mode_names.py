@@ -13,7 +13,7 @@ _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found 
 
 
 def translations(n: int, m: int) -> FloatArray:
-    """Unit translations along the axes, one per column, shape (n m, m).
+    """Return unit translations along the axes, one per column, shape (n m, m).
 
     Examples
     --------
@@ -25,7 +25,7 @@ def translations(n: int, m: int) -> FloatArray:
 
 
 def normalised(vector: Any, *, real: bool) -> Any:
-    """Unit length, turned so that the real part is as large as can be; the first large component positive."""
+    """Return a mode of unit length in standard phase: real part largest, first large component positive."""
     vector = vector / np.linalg.norm(vector)
     vector = vector * np.exp(-0.5j * np.angle(np.sum(vector**2)))
     size = np.abs(vector.real)
@@ -35,7 +35,7 @@ def normalised(vector: Any, *, real: bool) -> Any:
 
 
 def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
-    """Infinitesimal rotations about the centre, by axis, not normalised."""
+    """Return infinitesimal rotations about the centre, by axis, not normalised."""
     x, m = q - q.mean(axis=0), q.shape[1]
     turns = []
     for name, (a, b) in {"rotation x": (1, 2), "rotation y": (2, 0), "rotation z": (0, 1)}.items():

@@ -143,15 +143,6 @@ class Invariant(NamedTuple):
 class SecondOrder:
     """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    stiffness, damping : sparse array, shape (n m, n m)
-        K and D, symmetric or not.
-    zero : float
-        What counts as zero, relative to the largest row sum of K (of D, for damping).
-
     Examples
     --------
     >>> from scipy.sparse import csr_array
@@ -212,14 +203,14 @@ class SecondOrder:
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
-        """All modes off the zero modes, slowest first, one for each real eigenvalue or conjugate pair (dense)."""
+        """Return all modes off the zero modes, slowest first, one for each real eigenvalue or conjugate pair."""
         values, vectors, errors = self._others
         kept = values.imag >= 0.0
         return self.named(values[kept], vectors[:, kept], errors[kept], self.invariant.translational)
 
     @cached_property
     def eigenvalues(self) -> npt.NDArray[np.complex128]:
-        """All 2nm eigenvalues, the largest real part first; zeros exact."""
+        """Return all 2nm eigenvalues, the largest real part first; zeros exact."""
         whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
         ordered: npt.NDArray[np.complex128] = whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
         return ordered
@@ -255,7 +246,7 @@ class SecondOrder:
         return tuple(mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1))
 
     def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
-        """Chains of generalised eigenvectors at 0 from the kernels of K and Kᵀ, and the centre's own motion."""
+        """Return generalised eigenvectors at 0 and the centre's own motion."""
         k = kernel.shape[1]
         names, kernel = name_kernel(kernel, self.q)
         drag = cokernel.T @ (self.damping @ kernel)  # a zero mode is semisimple iff D pushes it out of the range of K
@@ -310,7 +301,7 @@ class SecondOrder:
         )
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
-        """x with K x = −D motion (Kᵀ x = −Dᵀ motion), which has a solution; 0 where D motion is."""
+        """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 where D motion is 0."""
         matrix, damping = (self.stiffness.T, self.damping.T) if transposed else (self.stiffness, self.damping)
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
@@ -338,7 +329,7 @@ def _turn(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:
-    """Both roots of λ² + damping λ + stiffness; one at zero comes first, a double one to rounding is exactly double."""
+    """Return both roots of λ² + damping λ + stiffness; zero first, double roots exactly double."""
     if stiffness == 0.0:
         return [0j, complex(0.0 - damping)]
     square = damping**2 - 4.0 * stiffness

@@ -25,7 +25,7 @@ def mode_motion(
     damped: bool = True,
     samples: int = 121,
 ) -> Trajectory:
-    """The linear motion q + Re(a · shape · exp(λt)) of one mode, in the frame that moves with the equilibrium.
+    """Return the linear motion q + Re(a · shape · exp(λt)) of one mode, in the frame of the equilibrium.
 
     Parameters
     ----------

@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_positive
-from flockana.base.errors import SolverError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_kind,
+    ensure_known,
+    ensure_nonnegative,
+    ensure_positive,
+)
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
@@ -66,7 +73,7 @@ def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | 
 
 
 def _dimension(flock: Blocks) -> int:
-    """m, from the translations, which are the rigid motions that move all agents alike."""
+    """Return m, from the translations among the rigid motions."""
     for m in (3, 2, 1):
         n, rest = divmod(len(flock.stiffness), m)
         moves = np.tile(np.eye(m), (n, 1))
@@ -76,7 +83,7 @@ def _dimension(flock: Blocks) -> int:
 
 
 def h2_norm(system: StateSpace) -> float:
-    """Square root of the power of the output under white noise of unit intensity in every input.
+    """Return the H₂ norm, from white noise of unit intensity in every input to the output.
 
     The controllability Gramian by Bartels and Stewart's method (scipy); infinite unless the system is stable.
 
@@ -104,8 +111,44 @@ def h2_norm(system: StateSpace) -> float:
     return sqrt(max(0.0, float(np.trace(system.C @ gramian @ system.C.T))))
 
 
+def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
+    """Covariance of the outputs under white noise of one intensity in every input, from the Lyapunov equation.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Strictly proper and stable.
+    intensity : float
+        Of the noise, as `flockana.Disturbed` takes it; the trace is then (intensity · H₂ norm)².
+
+    Returns
+    -------
+    ndarray, shape (outputs, outputs)
+
+    Raises
+    ------
+    ArgumentError
+        If the system is not stable: then there is no stationary covariance.
+
+    Examples
+    --------
+    >>> import control
+    >>> swing = control.ss([[0, 1], [-8, -1]], [[0], [1]], np.eye(2), 0)
+    >>> stationary_covariance(swing, 2.0).round(12).tolist()
+    [[0.25, 0.0], [0.0, 2.0]]
+    """
+    from scipy.linalg import solve_continuous_lyapunov
+
+    intensity = ensure_nonnegative("intensity", intensity)
+    if not _stable(system.A):
+        raise ArgumentError("the system is not stable: expected one whose modes all decay, such as disturbance_system")
+    gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
+    covariance: FloatArray = intensity**2 * (system.C @ gramian @ system.C.T)
+    return 0.5 * (covariance + covariance.T)
+
+
 def h2_bounds(flock: Blocks) -> tuple[float, float]:
-    """Closed-form bounds of the H₂ norm to the shape: √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)), K⁺ on shapes.
+    """Return closed-form bounds √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)) of the H₂ norm to the shape.
 
     With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
     d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
@@ -131,7 +174,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
 
 
 def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
-    """(H∞ norm, frequency of the peak): the largest gain over all harmonic disturbances.
+    """Return (H∞ norm, frequency of the peak), the largest gain over all harmonic disturbances.
 
     Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
     between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
@@ -214,7 +257,7 @@ class NormTable:
 
 
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
-    """H₂ and H∞ of the equilibria that hexagonal spirals of these sizes relax to (in the plane).
+    """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 
     Parameters
     ----------

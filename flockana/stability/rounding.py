@@ -25,7 +25,7 @@ _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 
 
 def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """(eigenvalues, right eigenvectors, how far rounding may have moved each eigenvalue) of a square matrix.
+    """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's rounding error.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
 
 
 def _together(values: ComplexArray, size: float) -> FloatArray:
-    """Largest move of each eigenvalue as one of m that coincide; infinite of one that stands alone.
+    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one.
 
     Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     """
@@ -96,7 +96,7 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
 
 
 def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
-    """Order of eigenvalues by decay rate, then by frequency, then as given; what rounding may have parted is equal.
+    """Return the order of eigenvalues by decay rate, then frequency, equal up to rounding.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
 
 
 def _levels(indices: Iterable[int], sizes: FloatArray, errors: FloatArray) -> list[list[int]]:
-    """Indices by rising size, in runs within which each is within the errors of the one before."""
+    """Return indices by rising size, grouped where they agree within errors."""
     levels: list[list[int]] = []
     for k in sorted(indices, key=lambda k: float(sizes[k])):
         if levels and sizes[k] - sizes[levels[-1][-1]] <= errors[k] + errors[levels[-1][-1]]:

@@ -145,7 +145,7 @@ def _start(size: int) -> FloatArray:
 
 
 def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
-    """Eigenvalues and displacements nearest to zero off the invariant subspace, and the radius they fill."""
+    """Return eigenvalues and displacements nearest to zero off the invariant subspace, with their radius."""
     from scipy.sparse import csc_array, eye_array
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, splu
 
@@ -160,7 +160,7 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         return z - right @ np.linalg.solve(gram, left.T @ z) if right.shape[1] else z
 
     def inverse(z: FloatArray) -> FloatArray:
-        """(A − shift)⁻¹ z by one solve of half the size."""
+        """Return (A − shift)⁻¹ z by one solve of half the size."""
         z = off(z.ravel())
         q, p = z[:size], z[size:]
         dq = solve(-p - damping @ q)

@@ -42,7 +42,7 @@ class Sweep:
 
 
 def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, follow: bool = True) -> Sweep:
-    """Eigenvalues of Algorithm 1 or 2 about an equilibrium as one gain varies.
+    """Return eigenvalues of Algorithm 1 or 2 about an equilibrium as one gain varies.
 
     Equilibria of Algorithm 2 move with c1γ/c1α: they are followed, each found from the last; with ``follow=False`` the
     configuration stays, and at what is then no equilibrium rotations need not be neutral.
@@ -53,8 +53,6 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
         The law; its other gains stay.
     q : array_like, shape (n, m)
         Equilibrium at the first value, or near it.
-    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
     follow : bool
@@ -91,7 +89,7 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
 
 
 def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferFunction]:
-    """Root locus of the centre of mass over c1γ or c2γ, and the open loop L(s) with 1 + gain L(s) = 0.
+    """Return the root locus of the centre of mass over c1γ or c2γ, and the open loop L(s).
 
     L = 1/(s² + c2γ s) for c1γ and s/(s² + c1γ) for c2γ: what `control.root_locus` takes.
 
@@ -99,8 +97,6 @@ def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferF
     ----------
     gains : Gains
         The other gain of the two is used.
-    name : {"c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
 
@@ -138,7 +134,7 @@ def _rising(values: Any) -> FloatArray:
 
 
 def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
-    """`after` in the order that continues each branch of `before`: the assignment with the least sum of squares."""
+    """Return `after` reordered to continue each branch of `before`, with the least sum of squares."""
     from scipy.optimize import linear_sum_assignment
 
     return after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]) ** 2)[1]]
@@ -158,7 +154,7 @@ class MarginSweep:
 
 
 def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all") -> MarginSweep:
-    """Delay margin of the followed equilibrium as one gain varies.
+    """Return the delay margin of the followed equilibrium as one gain varies.
 
     Parameters
     ----------
@@ -166,8 +162,6 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
         The law; its other gains stay.
     q : array_like, shape (n, m)
         Equilibrium at the first value, or near it.
-    name : {"c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma"}
-        The gain.
     values : array_like, shape (L,)
         Its values, rising.
     delayed : {"all", "pairs", "neighbours"}

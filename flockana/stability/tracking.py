@@ -45,7 +45,7 @@ def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray
 
 
 def _swings(run: Trajectory) -> tuple[ComplexArray, ComplexArray, float]:
-    """Complex amplitudes of the flock and the γ-agent over the last whole periods, and the error of the fit."""
+    """Return amplitudes of the flock and the γ-agent over the last whole periods, and the error of the fit."""
     path, _ = path_and_factor(run.law.target)
     if not isinstance(path, SineTarget | CircleTarget):
         raise ArgumentError(f"target = {path!r}: expected a SineTarget or a CircleTarget")
@@ -154,13 +154,7 @@ class Tracking:
     quantities: tuple[Quantity, ...]
 
     def quantity(self, name: str) -> Quantity:
-        """The quantity whose name begins with `name`.
-
-        Parameters
-        ----------
-        name : str
-            Beginning of a name.
-        """
+        """Return the quantity whose name begins with `name`."""
         return next(item for item in self.quantities if item.name.startswith(name))
 
     def __str__(self) -> str:
@@ -259,7 +253,7 @@ def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
 
 
 def _rest(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[float, float]:
-    """Time and place between two steps at which the velocity vanishes, on the quintic through x, v and a."""
+    """Return time and place between two steps at which the velocity vanishes, on the quintic path."""
     from scipy.interpolate import BPoly
     from scipy.optimize import brentq
 

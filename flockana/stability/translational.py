@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CentreOfMass:
-    """From q_r to q_c, for a γ-agent with p_r = factor dq_r/dt: G(s) = (factor c2γ s + c1γ)/(s² + c2γ s + c1γ).
+    """Transfer function G(s) = (factor c2γ s + c1γ)/(s² + c2γ s + c1γ) from q_r to q_c, with p_r = factor dq_r/dt.
 
     Parameters
     ----------
@@ -92,14 +92,14 @@ class CentreOfMass:
         return 2.0 * pi / sqrt(-self.discriminant) if self.discriminant < 0.0 else inf
 
     def system(self) -> TransferFunction:
-        """G(s) as a `control.TransferFunction`."""
+        """Return G(s) as a `control.TransferFunction`."""
         import control
 
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return control.TransferFunction([self.factor * c2, c1], [1.0, c2, c1], inputs="q_r", outputs="q_c")
 
     def response(self, omega: Any) -> Any:
-        """G(jω), complex, of the shape of `omega`.
+        """Return G(jω), complex, in the shape of `omega`.
 
         Parameters
         ----------
@@ -114,7 +114,7 @@ class CentreOfMass:
         return (self.factor * c2 * s + c1) / (s * s + c2 * s + c1)
 
     def step_response(self, t: Any) -> TimeResponseData:
-        """q_c after q_r has jumped by 1, by python-control (a jump has no velocity that a γ-agent could hand over).
+        """Return q_c after a unit step of q_r, by python-control.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class CentreOfMass:
         return control.step_response(CentreOfMass(self.gains, 0.0).system(), ensure_series("t", t))
 
     def frequency_response(self, omega: Any) -> FrequencyResponseData:
-        """Magnitude and phase over frequency, by python-control.
+        """Return magnitude and phase over frequency, by python-control.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class CentreOfMass:
 
 
 def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
-    """Return |G(jω)|, the size of the flock's circle or sine over that of the γ-agent's.
+    """Return |G(jω)|, the ratio of the flock's amplitude to the γ-agent's on a circle or sine.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
 
 
 def map_system(law: MSNDiscretisation) -> StateSpace:
-    """The MSN project's map of the centre of mass from (q_r, p_r) to q_c as a discrete `control.StateSpace`.
+    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`.
 
     Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
     agents obeys no equation of its own.
@@ -187,7 +187,7 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
 
 
 def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> float:
-    """`predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|.
+    """Return `predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|.
 
     Examples
     --------

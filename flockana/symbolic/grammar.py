@@ -66,17 +66,17 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
     return _with_pieces(value, where)
 
 
-def measured(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
+def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
     """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers.
 
     Examples
     --------
     >>> s = sp.Symbol("s")
-    >>> measured(sp.exp(sp.exp(s)) + s**8, {})
+    >>> expression_size(sp.exp(sp.exp(s)) + s**8, {})
     (7, 2, 8)
     """
     if value not in known:
-        rows = [measured(each, known) for each in value.args] or [(0, 0, 1)]
+        rows = [expression_size(each, known) for each in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)
         tower, degree = (max(row[k] for row in rows) for k in (1, 2))
         if isinstance(value, sp.Pow) and value.exp.is_number:
@@ -220,7 +220,7 @@ class _Reader:
 
     def _ensure_small(self, value: sp.Expr) -> None:
         """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
-        nodes, tower, degree = measured(value, self._sizes)
+        nodes, tower, degree = expression_size(value, self._sizes)
         for found, most, what in ((nodes, NODES, "parts"), (tower, TOWER, "exponentials within each other"),
                                   (degree, DEGREE, "as its degree")):  # fmt: skip
             if found > most:

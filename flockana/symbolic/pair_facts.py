@@ -11,7 +11,7 @@ from math import inf, isfinite, sqrt
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.base.facts import Fact, FactStatus, PairFacts, together
+from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
 from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
 from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
 from flockana.symbolic.germs import Germ, germ
@@ -58,7 +58,7 @@ class _Decided:
         lowest = (min(each.low for each in rest), min(each.high for each in rest))
         if weight.status == "met":
             lowest = (max(lowest[0], 0.0), lowest[1])
-        smooth = together([*self._inner(), *self._joints(), *self._end()], _PROOF)
+        smooth = conjunction([*self._inner(), *self._joints(), *self._end()], _PROOF)
         return PairFacts(smooth, weight, inside, least, contact, lowest)
 
     @property
@@ -192,7 +192,7 @@ class _Decided:
                 region = region._replace(left=width)
             found.append(sign_on(region, "the adjacency"))
             found += [(Fact("met"), fact) for fact in self._zeros(region)]
-        return together([one for one, _ in found], "its sign is enclosed at every distance"), together(
+        return conjunction([one for one, _ in found], "its sign is enclosed at every distance"), conjunction(
             [two for _, two in found], "its sign is enclosed at every distance below the range"
         )
 

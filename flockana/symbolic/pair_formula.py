@@ -15,7 +15,7 @@ import mpmath  # type: ignore[import-untyped]
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic.grammar import FUNCTIONS, measured, read_formula
+from flockana.symbolic.grammar import FUNCTIONS, expression_size, read_formula
 
 DIGITS = 160  # of values that decide something: they are asked for where a formula cancels almost all of them
 S, Z = sp.Symbol("s", positive=True), sp.Symbol("z", positive=True)
@@ -118,7 +118,7 @@ def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forc
 
 def _ensure_derived(derivative: sp.Expr, most: int) -> None:
     """Raise on a formula whose derivatives are too large to compile."""
-    nodes = measured(derivative, {})[0]
+    nodes = expression_size(derivative, {})[0]
     if nodes > most:
         raise ArgumentError(
             f"a derivative of the formula has {nodes} parts: expected at most {most}, a simpler formula"

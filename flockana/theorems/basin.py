@@ -42,7 +42,7 @@ _GROWTH = 10.0  # factor by which the energy of a map of steps may rise
 
 @dataclass(frozen=True)
 class Basin:
-    """The basin of the strict minimum beside a state, as far as it is known, and the state's energy above that minimum.
+    """Basin of the strict minimum beside a state, with the state's energy above the minimum.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class Basin:
 
     @property
     def reach(self) -> float:
-        """How far from here, over all coordinates and but for rigid motions, the flock ever gets while it is caught."""
+        """Bound of the distance, over all coordinates up to rigid motions, that the flock can move while trapped."""
         return self.distance + 2.0 * sqrt(self.excess / self.curvature)
 
     @property
     def certificate(self) -> Certificate:
-        """That the energy above the minimum is less than the barrier; of a map of steps, than a tenth of it."""
+        """Certificate that the energy above the minimum is below the barrier (a tenth of it for maps)."""
         if not self.barrier > 0.0:
             return Certificate(-1.0, "no basin of a strict minimum is certified here")
         if self.stability <= 0.0:
@@ -86,7 +86,7 @@ ALONE = Basin(0.0, inf, 0.0, inf)  # of one agent, which has no relative motion
 
 
 def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
-    """(least eigenvalue off some rigid motions, less its rounding, and the largest); NaN and 0 where there is none."""
+    """Return the least eigenvalue off some rigid motions, less its rounding, and the largest; NaN and 0 if none."""
     free = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
     if free.shape[1] == 0:
         return nan, 0.0
@@ -108,7 +108,7 @@ def kinetic(p: FloatArray, off: float = 0.0) -> float:
 
 
 def gyration(q: FloatArray) -> float:
-    """Least size of a unit rotation's motion, over all coordinates; ∞ on a line.
+    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line.
 
     Examples
     --------
@@ -127,7 +127,7 @@ def gyration(q: FloatArray) -> float:
 
 
 def connected_within(q: FloatArray, reach: float) -> bool:
-    """Whether the net of all pairs nearer than a reach is connected."""
+    """Return whether the net of all pairs nearer than a reach is connected."""
     return reach > 0.0 and not components(len(q), links(q, reach)).any()
 
 
@@ -143,17 +143,6 @@ def barrier(
 
     A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
     with L = 0 they were no better.
-
-    Parameters
-    ----------
-    curvature, distance : float
-        λ and δ.
-    windows : iterable of float
-        Choices of w.
-    lipschitz_within : callable
-        L within a distance of x.
-    off : float
-        Δ, how far from x the state may be.
 
     Examples
     --------
@@ -178,29 +167,13 @@ def barrier(
 def excess(
     p: FloatArray, p_off: float, force: float, curvature: float, off: float, stiffest: float, lipschitz: float
 ) -> float:
-    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`.
-
-    Parameters
-    ----------
-    p : ndarray, shape (n, m)
-        Velocities.
-    p_off : float
-        How far these may be off, over all coordinates.
-    force, curvature : float
-        |g| and λ.
-    off : float
-        Δ.
-    stiffest : float
-        Λ.
-    lipschitz : float
-        L within Δ of x.
-    """
+    """Return the energy above the minimum at most, of a state known to the distances `off` and `p_off`."""
     height = kinetic(p, p_off) + force**2 / curvature
     return height if off == 0.0 else height + force * off + 0.5 * (stiffest + lipschitz * off) * off**2
 
 
 def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
-    """Lipschitz constant L of ∇²U from a bound T of the third derivatives of each pair's potential.
+    """Return a Lipschitz constant L of ∇²U from bounds T of the pair potentials' third derivatives.
 
     A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length by
     at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T,

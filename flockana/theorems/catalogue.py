@@ -239,8 +239,8 @@ def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subj
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
     detail = f"the run is of the law within {around}; the theorem is about the law itself"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
-    claims = tuple(Claim(name, "vacuous", detail=detail) for name in item.claims)
-    return Verdict(item.id, (missed,), claims, tolerances, subject)
+    claims = tuple(Claim(name, "vacuous", detail=detail, needs=(missed,), by=item.by(name)) for name in item.claims)
+    return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)
 
 
 def _is_tube(run: Any) -> bool:
@@ -270,7 +270,7 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     ensure_sealed("trajectory", run, _RUN, _REMEDY)
-    if wrappers_of(run.law) and not item.wrapped:
+    if wrappers_of(run.law) and not (item.wrapped and run.law is run.law.continuous):
         return _of_another_law(item, run, tolerances, subject)
     ensure_fits(run)
     seen = Observed.of(run)

@@ -24,16 +24,6 @@ class Enclosure:
     All operations round outwards, so that a formula on enclosures encloses the formula. An end that is NaN, such as
     ∞ − ∞, becomes infinite. Sums and differences that are exactly 0 stay 0.
 
-    Parameters
-    ----------
-    lo, mid, hi : array_like
-        Least, best and greatest value, of one shape.
-
-    Raises
-    ------
-    ArgumentError
-        If a lower end lies above an upper one.
-
     Examples
     --------
     >>> x = Enclosure.around(2.0, 0.5)
@@ -98,7 +88,7 @@ class Enclosure:
 
     @property
     def worst_index(self) -> int:
-        """Flat index of that entry: the most certainly negative one, else the one nearest to being so."""
+        """Flat index of the most certainly negative entry, else of the one nearest to being so."""
         return int(np.argmin(self.hi if (self.hi < 0.0).any() else self.lo))
 
     def __getitem__(self, index: Any) -> Enclosure:
@@ -221,14 +211,14 @@ def stacked(enclosures: Any) -> Enclosure:
 
 
 def _product(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Product with 0 times ∞ as 0: an end that is infinite stands for arbitrarily large numbers."""
+    """Return the product with 0 times ∞ as 0, as infinite ends stand for arbitrarily large numbers."""
     with np.errstate(invalid="ignore", over="ignore", under="ignore"):
         product: FloatArray = a * b
     return np.where((a == 0.0) | (b == 0.0), 0.0, product)
 
 
 def _outward(lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True) -> Enclosure:
-    """Enclosure of computed ends, moved outwards by their rounding; ends that are exact, or exactly 0, stay."""
+    """Return computed ends moved outwards by their rounding; exact ends stay."""
     lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
     down, up = lo, hi
     for _ in range(ulps):

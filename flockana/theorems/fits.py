@@ -1,4 +1,4 @@
-"""Check that the samples of a run are those of its law, before a theorem is judged on it."""
+"""Consistency of a run's samples with its law, checked before a theorem is judged."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FLOOR = 300.0  # and how often the relative tolerance, where the two agree by ch
 
 
 def ensure_fits(run: Trajectory) -> None:
-    """Raise unless the samples of a run are those of its law: the inputs, and some steps, are computed anew."""
+    """Raise unless recomputed inputs and some recomputed steps agree with the run's samples."""
     run.cached("fits", lambda: _ensure_fits(run))
 
 
@@ -44,7 +44,7 @@ def _ensure_fits(run: Trajectory) -> bool:
 
 
 def _rounded_input(run: Trajectory, k: int) -> float:
-    """How much of a force comes from the rounding of a sample: compiled runs compute it in a frame of their own."""
+    """Return the part of a force that rounding of a sample explains."""
     if run.law.compiled(run.m) is None:
         return 0.0
     try:
@@ -56,7 +56,7 @@ def _rounded_input(run: Trajectory, k: int) -> float:
 
 
 def _at_switches(law: SwitchedLaw, run: Trajectory) -> list[bool]:
-    """Samples at which the distance of a pair is one where the force jumps: there the input has two values."""
+    """Return the samples at which a pair is at a jump of the force, where the input has two values."""
     tiny = 1e-9 * run.scales.length
     return [bool((law.margins(law.pieces(q), q).inside < tiny).any()) for q in run.q]
 

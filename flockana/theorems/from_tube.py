@@ -153,7 +153,7 @@ def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proo
         margin,
         list(needs),
         computed=least.lower,
-        stated=f"distance > 0 between any two agents, {when}",
+        stated=f"no two agents meet, {when}",
         witness={"pair": pair, "time": certain.get(pair, least.time)},
         proof=proof,
         detail=text,

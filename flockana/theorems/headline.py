@@ -50,8 +50,23 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
     needs = [need for claim in silent for need in (*claim.needs, *verdict.hypotheses) if need.status == "unmet"]
     if not needs:
         return f": {silent[0].detail}" if silent[0].detail else ""
-    name = needs[0].name
-    return f": {name if re.search('[<>=≤≥]', name) else repr(name)} does not hold"
+    return f": {does_not_hold(needs[0].name)}"
+
+
+def does_not_hold(need: str) -> str:
+    """Say of a hypothesis that it does not hold; a name in words is quoted.
+
+    Parameters
+    ----------
+    need : str
+        Name of the hypothesis.
+
+    Examples
+    --------
+    >>> does_not_hold("H(0) < c*"), does_not_hold("connected")
+    ('H(0) < c* does not hold', "'connected' does not hold")
+    """
+    return f"{need if re.search('[<>=≤≥]', need) else repr(need)} does not hold"
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:

@@ -22,12 +22,10 @@ _MEMBERS = {"alpha": AlphaInteraction, "beta": BetaInteraction, "gains": Gains}
 def condition(
     name: str, holds: bool, margin: float | None = None, detail: str = "", *, error: float | None = None
 ) -> Hypothesis:
-    """A hypothesis that is met or not, and never merely assumed.
+    """Return a hypothesis that is met or unmet, never assumed.
 
     Parameters
     ----------
-    name : str
-        The condition.
     holds : bool
         Whether it is met.
     margin : float, optional
@@ -46,7 +44,7 @@ def condition(
 
 
 def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
-    """The hypothesis that a run is of one of these laws, to be declared as a theorem's `law`.
+    """Return the hypothesis that a run is of one of these laws; a theorem's `law`.
 
     Parameters
     ----------
@@ -71,7 +69,7 @@ def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed
 
 
 def law_is_or_composed(name: str, *laws: type) -> Callable[[Observed], Hypothesis]:
-    """As `law_is`, or of a composition of their terms (`flockana.compose`), or with the pair law of a formula.
+    """Return `law_is`, also met by a composition of the laws' terms, or with a pair law from a formula.
 
     Parameters
     ----------
@@ -97,7 +95,7 @@ def law_is_or_composed(name: str, *laws: type) -> Callable[[Observed], Hypothesi
 
 
 def law_with_common_gains(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
-    """As `law_is`, and one c1γ and one c2γ for all agents.
+    """Return `law_is`, with one c1γ and one c2γ for all agents.
 
     Parameters
     ----------
@@ -123,7 +121,7 @@ def law_with_common_gains(name: str, *laws: type, formulas: bool = False) -> Cal
 
 
 def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
-    """The hypothesis that a run is of one of these laws, and not of a class derived from one, which may push otherwise.
+    """Return the hypothesis that a run is of one of these laws itself, and not of a derived class.
 
     Parameters
     ----------
@@ -151,8 +149,6 @@ def by_fact(name: str, fact: Fact) -> Hypothesis:
 
     Parameters
     ----------
-    name : str
-        Of the hypothesis.
     fact : Fact
         What is decided.
 
@@ -166,7 +162,7 @@ def by_fact(name: str, fact: Fact) -> Hypothesis:
 
 
 def smooth_pair(run: Observed) -> Hypothesis:
-    """The hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
+    """Return the hypothesis that the pair law is C¹ wherever pairs stay apart, and ends smoothly at its range.
 
     A force without a limit where two agents meet is no fault here: runs that come to that point end.
 
@@ -180,7 +176,7 @@ def smooth_pair(run: Observed) -> Hypothesis:
 
 
 def weight_nonnegative(run: Observed) -> Hypothesis:
-    """The hypothesis that velocity consensus never drives velocities apart: no adjacency of the law is negative.
+    """Return the hypothesis that no adjacency is negative, so that consensus never drives velocities apart.
 
     Parameters
     ----------
@@ -195,7 +191,7 @@ def weight_nonnegative(run: Observed) -> Hypothesis:
 
 
 def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
-    """The hypothesis that some gains are positive.
+    """Return the hypothesis that some gains are positive.
 
     Parameters
     ----------
@@ -211,7 +207,7 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
 
 
 def common_gains(run: Observed) -> Hypothesis:
-    """The hypothesis that all agents have the same c1γ and c2γ: else the shape does not separate from the centre.
+    """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple.
 
     Parameters
     ----------
@@ -224,7 +220,7 @@ def common_gains(run: Observed) -> Hypothesis:
 
 
 def has_lattice(run: Observed) -> Hypothesis:
-    """The hypothesis that the law has a lattice scale d and an interaction range r.
+    """Return the hypothesis that the law has a lattice scale d and an interaction range r.
 
     Parameters
     ----------
@@ -236,7 +232,7 @@ def has_lattice(run: Observed) -> Hypothesis:
 
 
 def alpha_gain(run: Observed) -> list[Hypothesis]:
-    """c1α > 0, and common gains where the law has a γ-agent.
+    """Return the hypotheses c1α > 0, and common gains where the law has a γ-agent.
 
     Parameters
     ----------
@@ -251,8 +247,6 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
 
     Parameters
     ----------
-    name : str
-        The condition.
     room : Enclosure
         The number, such as a bound less what lies below it.
     detail : str

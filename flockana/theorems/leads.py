@@ -1,4 +1,4 @@
-"""Surrogates that lead a search for a counterexample where a margin gives no slope: a count, or equal on all runs."""
+"""Surrogate objectives for counterexample searches where a claim's margin has no slope."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 
 
 def squash(x: float) -> float:
-    """x/(1 + |x|): keeps the order, and has a place for infinity.
+    """Return x/(1 + |x|), increasing and finite at infinity.
 
     Examples
     --------
@@ -25,7 +25,7 @@ def squash(x: float) -> float:
 
 
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
-    """Lead for a count of pairs that meet: distance of the nearest pair that has not met, over d."""
+    """Return the surrogate for a count of meeting pairs: the distance of the nearest pair that has not met, over d."""
     i, j = np.triu_indices(run.n, 1)
     apart = lengths(run.q[:, i] - run.q[:, j]).min(axis=0)
     touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
@@ -34,7 +34,7 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
-    """Lead for a count of components: how far the longest link that connects the flock stays below r."""
+    """Return the surrogate for a count of components: how far the longest connecting link stays below r."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
@@ -43,7 +43,7 @@ def bridge(run: Trajectory, claim: Claim) -> float:
 
 
 def strained(run: Trajectory, claim: Claim) -> float:
-    """Lead for the lattice as a limit: 1 less the mean over time of the largest strain.
+    """Return the surrogate for a lattice as a limit: 1 less the mean over time of the largest strain.
 
     Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
     """

@@ -70,7 +70,7 @@ class ObservedRecording(Observed):
         return super().series(observable, floor=floor + self.sensitivity(observable))
 
     @property
-    def residual(self) -> Enclosure:  # type: ignore[override]  # not cached
+    def residual(self) -> Enclosure:
         """Energy balance of the law's solution: a recording has no work of its own."""
         return replace_class(self, Observed).residual
 
@@ -156,7 +156,7 @@ def verify_recording(
     name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
     named = f"{name}: {rec.accuracy}"
     if follow.status == "unmet":
-        text = f"{first.name}: {first.detail}"
+        text = "the samples do not follow the law"
         claims = tuple(Claim(each, "vacuous", detail=text, needs=(first,), by=item.by(each)) for each in _names(item))
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))

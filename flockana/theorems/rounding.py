@@ -24,7 +24,7 @@ _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alph
 
 
 def frame_error(x: FloatArray) -> float:
-    """Bound of the rounding of each coordinate of x_i − x_c, x_c a mean of n numbers.
+    """Return a bound of the rounding of each coordinate of x_i − x_c, x_c a mean of n numbers.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def frame_error(x: FloatArray) -> float:
 
 
 def spread_error(x: FloatArray) -> FloatArray:
-    """Bound of the rounding of ½ Σ‖x_i − x_c‖², by instant.
+    """Return a bound of the rounding of ½ Σ‖x_i − x_c‖², by instant.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def spread_error(x: FloatArray) -> FloatArray:
 
 
 def pair_force_error(alpha: AlphaInteraction) -> float:
-    """Bound of the rounding of φ_α(‖x‖_σ) x/√(1 + εx²), c1α left out, at any distance up to r.
+    """Return a bound of the rounding of φ_α(‖x‖_σ) x/√(1 + εx²) at any distance up to r.
 
     φ loses nothing to cancellation, but its argument (‖x‖_σ − d_α)/ℓ² does: by a few ε of both terms, times its slope.
 
@@ -67,7 +67,7 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
 
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
-    """Bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition of their terms, by instant.
+    """Return a bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition, by instant.
 
     All terms of the three are >= 0; those of another pair law may cancel, and count by their own size.
 
@@ -100,7 +100,7 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
 
 
 def deepest_of(pair: PairInteraction) -> float:
-    """The size of a pair's potential: c* of the paper's, else the largest of those at 0, d and the range.
+    """Return the size of a pair's potential: c* of the paper's, else the largest at 0, d and the range.
 
     A potential that has no bound at 0 counts by what it is at a tenth of d.
 
@@ -117,7 +117,7 @@ def deepest_of(pair: PairInteraction) -> float:
 
 
 def energy_rounding(run: Trajectory) -> FloatArray:
-    """Bound of the rounding of a run's energy by instant: by its formula where that is known, else by its size.
+    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size.
 
     Examples
     --------

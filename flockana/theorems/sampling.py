@@ -27,7 +27,7 @@ from flockana.theorems.rounding import EPS
 
 
 def _motion(seen: Observed) -> FloatArray:
-    """Largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and how far the paths may be off, shape (3, T − 1)."""
+    """Return the largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and the paths' error, shape (3, T − 1)."""
     path = seen.run.path
     bounds = np.empty((3, len(path.t) - 1))
     for k, (points, off) in enumerate(_polygons(seen)):
@@ -138,26 +138,19 @@ def spread_over(seen: Observed) -> Enclosure:
 
 
 def _ends(at_samples: Enclosure) -> Enclosure:
-    """Larger of the values at both ends of each interval; the value itself of one sample."""
+    """Return the larger of the values at both ends of each interval."""
     if len(at_samples.mid) == 1:
         return at_samples
     return stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
 
 
 def _with_bound(at_ends: Enclosure, bound: FloatArray) -> Enclosure:
-    """What is at least its largest value at the ends, and at most a bound."""
+    """Return an enclosure from the largest value at the ends to a bound."""
     return Enclosure(at_ends.lo, at_ends.mid, np.maximum(at_ends.hi, bound))
 
 
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
     """Return the least distance of some pairs over the run: reached at a sample, bounded by control points between.
-
-    Parameters
-    ----------
-    seen : Observed
-        The run.
-    i, j : int array
-        The pairs, one at least.
 
     Examples
     --------
@@ -184,7 +177,7 @@ def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
 
 
 def _polygons(seen: Observed) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Control points of the agents' paths in each step, (n, 6, 3), and how far a path may be off each."""
+    """Return control points of the agents' paths in each step, (n, 6, 3), and the error of each path."""
     path = seen.run.path
     for k, h in enumerate(np.diff(path.t).tolist()):
         points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
@@ -264,20 +257,20 @@ def _nets_between(seen: Observed) -> Nets:
 
 
 def _unknown_nets(seen: Observed, count: int) -> Nets:
-    """Nets of which nothing is known."""
+    """Return nets of which nothing is known."""
     n = seen.n
     return _nets([(n, 1, 1, n, 0, n * (n - 1) // 2)] * count)
 
 
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
-    """How far a distance, `low` at the nearer end, may go beyond its ends, at relative speeds and accelerations."""
+    """Return how far a distance may go beyond its end values, given relative speeds and accelerations."""
     straight, bent = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
     slack: FloatArray = np.where(low - straight >= 0.5 * r, np.minimum(straight, bent), straight)
     return slack
 
 
 def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
-    """Largest relative speed and acceleration of some pairs on their paths over some steps."""
+    """Return the largest relative speed and acceleration of some pairs over some steps."""
     speed, force = np.zeros((2, len(pairs)))
     for k in steps:
         h = float(path.t[k + 1] - path.t[k])
@@ -289,12 +282,12 @@ def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray,
 
 
 def _rounding(seen: Observed) -> float:
-    """Rounding of a distance of two agents, compared with r."""
+    """Return the rounding of a distance of two agents, relative to r."""
     return float(16.0 * EPS * (np.abs(seen.run.q).max() + reach(seen)))
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
-    """A row of `Nets` from the pairs that may be linked, and those among them that certainly are, near sample k."""
+    """Return a row of `Nets` from the possible and the certain links near sample k."""
     count = int(certain.sum())
     if count == len(pairs):
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)

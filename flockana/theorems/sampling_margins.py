@@ -104,6 +104,7 @@ THEOREM = Theorem(
     source="ours, on the steps of the MSN project, the R² notebook and the bearing-distance paper",
     kind="fixed",
     check=_check,
+    author="flockana",
     references=("isola-2024", "notebook-r2", "jond-2025"),
     expected={
         "sampling-margins:msn-few": "verified",

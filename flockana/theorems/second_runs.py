@@ -39,9 +39,9 @@ class Errors(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two runs of one start at the same samples, their half widths, and why nothing is known, or an empty text."""
+    """Two runs of one start at the same samples, their half widths, and the reason if these are unknown."""
 
-    tighter: Trajectory
+    tightened_options: Trajectory
     looser: Trajectory
     errors: Errors
     doubt: str = ""
@@ -56,7 +56,7 @@ def paired(run: Trajectory) -> Pair:
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
     again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
     if again.status != "complete" or len(again.t) != len(steps):
-        kind = "tighter" if tight else "looser"
+        kind = "tightened_options" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
         return Pair(run, run, _nothing_known(run), doubt)
     thinned = _at_samples_of(again, run.t)
@@ -83,7 +83,7 @@ def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *,
 
 
 def _scaled(atol: Any, factor: float) -> Any:
-    """An absolute tolerance, one number or several, multiplied by a factor; None stays None."""
+    """Return an absolute tolerance, or several, times a factor; None stays None."""
     return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
 
 
@@ -95,7 +95,7 @@ def doubt_of(run: Trajectory) -> str:
 
 
 def failure(run: Trajectory) -> str:
-    """Return why a run is none of its law, or an empty text: it failed, or a state is outside the law's domain."""
+    """Return why a run is not one of its law (it failed, or left the law's domain); empty if it is."""
     if run.status == "failed":
         return f"the run failed: {run.message}"
     if isinstance(run.law, DiscreteLaw):  # a step may lead anywhere
@@ -116,7 +116,7 @@ def _nothing_known(run: Trajectory) -> Errors:
 
 
 def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Times at which the two runs are compared, samples and steps of the first, and its states there."""
+    """Return the times at which the two runs are compared, and the first run's states there."""
     path = run.path
     stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
     keep = np.isin(path.t, run.t)
@@ -125,14 +125,14 @@ def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, Flo
 
 
 def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
-    """Half widths from the difference of two runs at their common times."""
+    """Return half widths from the difference of two runs at their common times."""
     apart = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
     (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in apart)
     return Errors(again.t, shape, speed, centre, drift)
 
 
 def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
-    """The run at some of its samples, the others kept as steps between them."""
+    """Return the run at some of its samples, with the others as steps between."""
     if len(t) == len(run.t):
         return run
     keep, path = np.isin(run.t, t), run.path

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import BYLINES, headline, merged
+from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged
 from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
@@ -121,6 +121,14 @@ class Claim:
             )
 
     @property
+    def account(self) -> str:
+        """The detail, of a vacuous claim after the need that does not hold."""
+        missed = unmet(self.needs) if self.status == "vacuous" else None
+        if missed is None or self.detail.startswith(missed.name):
+            return self.detail
+        return f"{does_not_hold(missed.name)}; {self.detail}"
+
+    @property
     def cited(self) -> str:
         """What its proof takes from the literature, in words, or an empty text."""
         return f" [proof cites {', '.join(self.cites)}]" if self.cites else ""
@@ -221,7 +229,7 @@ class Verdict:
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
         for name, c in merged((*self.main_claims, *self.further_claims)):
             whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
-            lines.append(f"  {name:>14} {c.status:12} {whose}{c.detail}{c.cited}")
+            lines.append(f"  {name:>14} {c.status:12} {whose}{c.account}{c.cited}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:

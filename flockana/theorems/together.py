@@ -21,7 +21,7 @@ class Verdicts(tuple[Verdict, ...]):
     --------
     >>> print(Verdicts([verify("E8")]))
     theorem  status     rigour  decided by  title
-    E8       ✗ refuted  smt     printed     Connectivity is the rank of the Laplacian
+    E8       ✗ refuted  smt     printed     Rank(A)/n is 1 on a connected net (as printed)
     """
 
     __slots__ = ()
@@ -55,7 +55,9 @@ class Verdicts(tuple[Verdict, ...]):
 def _deciding(verdict: Verdict) -> str:
     """Return the name of the first claim with the verdict's own status; of a vacuous one, the unmet hypothesis."""
     missed = unmet(verdict.hypotheses) if verdict.status == "vacuous" else None
-    return next((c.name for c in verdict.claims if c.status == verdict.status), "") if missed is None else missed.name
+    return (
+        next((c.name for c in verdict.main_claims if c.status == verdict.status), "") if missed is None else missed.name
+    )
 
 
 def _title(name: str) -> str:

@@ -1,7 +1,5 @@
 """Links that a tension keeps: chains and stars thrown apart in any unit, and nets in several parts."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,6 +1,6 @@
 """What once went wrong, one case each, as it was reported: a verdict that was false, a run that should not count."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,18 +8,13 @@ import pytest
 
 from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
-from flockana.environment.target import Target
 from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
     RescaledVelocity,
     StaticTarget,
 )
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios import scenario
 from tests.adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
@@ -185,101 +180,6 @@ def test_time_runs_forwards():
 # --- hypotheses -----------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Pushed1(Algorithm1):
-    def flow(self, t, q, p):
-        return super().flow(t, q, p)[0] + 1.0, 1.0
-
-
-@dataclass(frozen=True)
-class Pushed2(Algorithm2):
-    def flow(self, t, q, p):
-        return 2.0 * super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class Pushed3(Algorithm3):
-    def flow(self, t, q, p):
-        return 2.0 * super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class PushedDeadZone(DeadZoneFlocking):
-    def flow(self, t, q, p):
-        return -super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class PushedMinimal(MinimalFlocking):
-    def flow(self, t, q, p):
-        return -super().flow(t, q, p)[0], 1.0
-
-
-PUSHED = {
-    Pushed1(): ("os-1", "energy", "collision-energy", "lattice-limit-printed", "linearised-decay-terminal"),
-    Pushed2(target=ORIGIN): ("os-3", "E11", "E12", "E13", "energy", "collision-energy", "linearised-decay-terminal"),
-    Pushed3(target=ORIGIN): ("os-6", "energy", "energy-printed", "linearised-decay-terminal"),
-    PushedDeadZone(): ("dead-zone-1-printed", "dead-zone-1-corrected"),
-    PushedMinimal(edges=((0, 1),), spacing=7.0): ("zone-1-printed", "zone-1-corrected"),
-}
-
-
-@cache
-def ran(law, factor=1.0, until=0.5):
-    """A case and its run, which remembers its second run for every theorem that asks."""
-    case = Case(law, factor * APART, STILL, until)
-    return case, case.run()
-
-
-@pytest.mark.parametrize(("law", "name"), [(law, name) for law, names in PUSHED.items() for name in names])
-def test_a_law_with_another_force_is_another_law(law, name):
-    case, run = ran(law)
-    for claim in hold(name, case, {}, run=run).claims:
-        assert claim.status == "vacuous", claim
-
-
-@dataclass(frozen=True)
-class Boastful(Target):
-    """A γ-agent at rest that says it moves, and says that this is its rate."""
-
-    def position(self, t):
-        return np.zeros(2)
-
-    def rate(self, t):
-        return np.array([5.0, 0.0])
-
-    def state(self, t):
-        return np.zeros(2), np.array([5.0, 0.0])
-
-
-def consistency(target, until=2.0, time=1.0):
-    gains = Gains(30.0 / time**2, 10.0 / time, c1_gamma=1.1 / time**2, c2_gamma=2.0 / time)
-    run = Case(Algorithm2(gains=gains, target=target), APART, STILL, until).run()
-    return next(h.status for h in verify("os-3", run).hypotheses if "dq_r/dt" in h.name)
-
-
-def test_what_a_target_declares_of_itself_is_checked():
-    assert consistency(Boastful()) == "unmet"
-    assert consistency(CallableTarget(lambda t: ((np.sin(40.0 * t), 0.0), (0.0, 0.0)))) == "unmet"
-    assert consistency(LinearTarget((0.0, 0.0), (3.0, 0.0))) == "met"
-    assert consistency(RescaledVelocity(CircleTarget((0.0, 0.0), 3.0, 0.2), 0.5)) == "unmet"
-
-
-@pytest.mark.parametrize("time", [1e-6, 1.0, 1e6])
-def test_a_smooth_target_is_consistent_in_any_unit_of_time(time):
-    """Differences over 10⁻⁵ max(1, |t|) time units see a swing of a microsecond as noise."""
-    w = 2.0 / time
-
-    def honest(t):
-        return (np.sin(w * t), np.cos(w * t)), (w * np.cos(w * t), -w * np.sin(w * t))
-
-    def lying(t):
-        return honest(t)[0], tuple(0.9 * x for x in honest(t)[1])
-
-    assert consistency(CallableTarget(honest, time), 3.0 * time, time) == "met"
-    assert consistency(CallableTarget(lying, time), 3.0 * time, time) == "unmet"
-
-
 def test_without_links_there_is_no_lattice_to_call_one():
     """E11: at rest, out of range, nothing pulls: `the limit is a quasi-α-lattice` has nothing to stand on."""
     law = Algorithm2(gains=Gains(c1_gamma=0.0), target=ORIGIN)
@@ -336,32 +236,6 @@ def test_the_dead_zone_reads_alike_in_metres_and_millimetres(unit):
 
 
 # --- crashes and arguments ------------------------------------------------------------------------------------------
-
-ODD = {
-    "c1α = 0": Algorithm1(gains=Gains(c1_alpha=0.0)),
-    "c1α = 0 under a γ-agent": Algorithm2(gains=Gains(c1_alpha=0.0), target=ORIGIN),
-    "all gains 0": Algorithm2(gains=Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), target=ORIGIN),
-    "per agent": Algorithm2(gains=Gains(c1_gamma=(1.0, 2.0), c2_gamma=(1.0, 0.0)), target=ORIGIN),
-    "a = b = 5e4": Algorithm2(AlphaInteraction(a=5e4, b=5e4), Gains(1.0, 1.0, 0.0, 0.0, 0.01, 0.01), ORIGIN),
-    "no α": DeadZoneFlocking(),
-    "a tree": MinimalFlocking(edges=((0, 1),), spacing=1.0),
-    "perceived": MinimalFlocking(),
-    "a map": MinimalFlocking().discrete(0.1),
-    "no obstacles": Algorithm3(gains=Gains(c1_alpha=0.0), target=ORIGIN),
-}
-SLOW = {(law, "E11") for law in ODD if ODD[law].__class__ is Algorithm2}
-
-
-@pytest.mark.parametrize(
-    ("law", "name"),
-    [pytest.param(x, n, marks=pytest.mark.attack if (x, n) in SLOW else ()) for x in ODD for n in ON_RUNS],
-)
-def test_every_theorem_has_an_answer_for_every_law(law, name):
-    for factor in (1.0, 3.0, 0.0):
-        if "no α" in law and factor == 0.0:
-            continue  # coincident agents are refused at the start there
-        case, run = ran(ODD[law], factor, 1.0)
-        hold(name, case, {}, run=run)
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, "tight", None])

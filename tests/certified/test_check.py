@@ -41,7 +41,7 @@ def value(text):
     return Fraction(float.fromhex(text)) if "0x" in str(text) else Fraction(str(text))
 
 
-def changed(data, path, new):
+def with_value(data, path, new):
     """The same with another number there."""
     other = copy.deepcopy(data)
     inner = other
@@ -96,7 +96,7 @@ def test_a_change_of_any_one_number_is_rejected():
             inner = inner[key]
         old = value(inner)
         for new in (old + 1, old - 1) if isinstance(inner, int) else (old * 1001 / 1000 + (old == 0), old + 1):
-            assert rejected(changed(data, path, new)), path
+            assert rejected(with_value(data, path, new)), path
     assert not rejected(data)
 
 
@@ -110,7 +110,7 @@ def test_what_follows_is_stated_to_the_last_digit_even_when_it_is_sealed_again(n
     for path in [(name,)] if name in CLAIMS else [(name, 0), (name, 7), (name, 15)]:
         old = value(data[name] if len(path) == 1 else data[name][path[1]])
         digits = 3 if name in ("rate", "overshoot") else 4
-        assert rejected(resealed(changed(data, path, old + sign * unit(old, digits)))), path
+        assert rejected(resealed(with_value(data, path, old + sign * unit(old, digits)))), path
 
 
 @pytest.mark.parametrize(
@@ -131,13 +131,13 @@ def test_false_premises_are_rejected_even_when_they_are_sealed_again(path, facto
     inner = data
     for key in path:
         inner = inner[key]
-    assert rejected(resealed(changed(data, path, (value(inner) or 1) * factor)))
+    assert rejected(resealed(with_value(data, path, (value(inner) or 1) * factor)))
 
 
 def test_a_premise_that_still_proves_every_claim_makes_another_certificate_that_holds():
     """A little less attraction, or a little more gain, leaves every bound of a pair true."""
     for path, factor in ((("law", "a"), Fraction(999, 1000)), (("law", "c1_alpha"), Fraction(1001, 1000))):
-        other = changed(small(), path, value(small()["law"][path[1]]) * factor)
+        other = with_value(small(), path, value(small()["law"][path[1]]) * factor)
         assert rejected(other)
         assert not rejected(resealed(other))
 
@@ -146,7 +146,7 @@ def test_a_radius_that_all_else_was_fitted_to_is_rejected_for_what_it_lacks():
     """Shells of one hundredth more, with the α and β of those that hold."""
     data = small()
     with pytest.raises(RejectedError, match=r"no bound|curvature|pair|distance"):
-        check_data(resealed(changed(data, ("radius",), value(data["radius"]) * 6 / 5)))
+        check_data(resealed(with_value(data, ("radius",), value(data["radius"]) * 6 / 5)))
 
 
 def test_a_pair_left_out_is_missed():
@@ -212,7 +212,7 @@ def test_the_net_itself_is_checked_and_not_only_what_follows(name, sign, why):
     data = small()
     old = value(data[name])
     with pytest.raises(RejectedError, match=why):
-        check_data(resealed(changed(data, (name,), old + sign * unit(old, 4))))
+        check_data(resealed(with_value(data, (name,), old + sign * unit(old, 4))))
 
 
 def test_a_stated_number_has_its_digits_and_no_more():
@@ -264,7 +264,7 @@ def pair_data():
 def test_a_radius_in_which_two_agents_may_meet_is_rejected():
     """They rest 7 apart, and √2 times 6 is more."""
     with pytest.raises(RejectedError, match="agents may collide"):
-        check_data(resealed(changed(pair_data(), ("radius",), Fraction(6))))
+        check_data(resealed(with_value(pair_data(), ("radius",), Fraction(6))))
 
 
 @pytest.mark.parametrize(("radius", "unique"), [("2.82842", True), ("2.82843", False)])
@@ -288,4 +288,4 @@ def test_in_space_it_is_so_below_the_bound_of_the_two_sizes(radius, unique):
 
 def test_a_law_that_damps_nothing_proves_no_rate():
     with pytest.raises(RejectedError, match="nothing damps"):
-        check_data(resealed(changed(pair_data(), ("law", "c2_alpha"), Fraction(0))))
+        check_data(resealed(with_value(pair_data(), ("law", "c2_alpha"), Fraction(0))))

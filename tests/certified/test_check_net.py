@@ -60,7 +60,7 @@ def test_force_and_slope_are_those_of_the_law():
     still = np.zeros_like(X)
     pulled = -LAW.flow(0.0, X, still)[0]
     np.testing.assert_allclose([float(y) for y in NET.force(balls(X))], pulled.ravel(), atol=1e-12)
-    held = NET.turns(NET.centre) + NET.shifts()
+    held = NET.rotation_tangents(NET.centre) + NET.translations()
     found = floats(NET.slope(balls(X), held))
     np.testing.assert_allclose(found[:8, :8], LAW.stiffness(X).toarray(), atol=1e-11)
     motions = np.array([[-y for _, y in X], [x for x, _ in X]]).T.ravel()
@@ -137,8 +137,8 @@ def test_an_equilibrium_that_is_not_where_it_was_sought_is_found_in_the_box(digi
         assert side.rad() < 1e-6
     places, before = ([y for row in rows for y in row] for rows in (x, net.centre))
     moved = [a - b for a, b in zip(places, before, strict=True)]
-    assert check_net.inner(net.turns(net.centre)[0], moved).contains(0)
-    assert all(check_net.inner(shift, places).contains(0) for shift in net.shifts())
+    assert check_net.inner(net.rotation_tangents(net.centre)[0], moved).contains(0)
+    assert all(check_net.inner(shift, places).contains(0) for shift in net.translations())
     assert any(abs(y) > UNIT / 2 for y in moved)
 
 
@@ -177,7 +177,7 @@ def test_a_preconditioner_that_tells_nothing_proves_nothing(monkeypatch):
 def test_a_box_that_one_coordinate_of_the_equilibrium_is_not_in_is_refused(k, sign):
     """A displacement orthogonal to the rigid motions, of which the coordinate k is by far the largest."""
     rest = triangle_off([0.0] * 6, 1)
-    held = floats(rest.turns(rest.centre) + rest.shifts())
+    held = floats(rest.rotation_tangents(rest.centre) + rest.translations())
     w = np.eye(6)[k] - held.T @ np.linalg.lstsq(held.T, np.eye(6)[k], rcond=None)[0]
     w *= sign / w[k]
     assert 1.1 * np.sort(np.abs(w))[-2] < 1.0  # the others stay in

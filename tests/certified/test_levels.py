@@ -1,7 +1,5 @@
 """Levels in balls: those of the counts in floating point, with nothing left to a slack."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, ctx

@@ -57,8 +57,8 @@ def test_turns_and_shifts_are_the_rigid_motions(m):
     """As many as there are; each leaves all distances as they are to first order."""
     of, q = Structure.of(law_of(m, led=False), 6, m), places(m)
     x = [arb(y) for y in q.ravel()]
-    motions = [*of.turns(x), *of.shifts()]
-    assert len(of.turns(x)) == m * (m - 1) // 2
+    motions = [*of.rotation_tangents(x), *of.translations()]
+    assert len(of.rotation_tangents(x)) == m * (m - 1) // 2
     assert np.linalg.matrix_rank([[float(y) for y in row] for row in motions]) == len(motions)
     for row in motions:
         way = np.array([float(y) for y in row]).reshape(6, m)

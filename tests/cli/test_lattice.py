@@ -240,3 +240,12 @@ def test_a_lattice_rounded_to_two_decimals_is_none_until_a_tolerance_says_so(cal
 
 def test_a_tolerance_beyond_which_the_theorem_is_not_proved_is_refused(refused):
     refused("--tol 0.2: expected more than 0 and at most 0.1", "line:3", "--tol", "0.2")
+
+
+def test_headers_are_respected(found, refused, tmp_path):
+    (tmp_path / "id.csv").write_text("id,x,y\n1,0,0\n2,7,0\n3,3.5,6\n")
+    assert found("id.csv", "--d", "7")["m"] == 2
+    (tmp_path / "v.csv").write_text("x,y,vx\n0,0,1\n7,0,1\n")
+    refused("expected vy too", "v.csv")
+    (tmp_path / "t.csv").write_text("time,id,x,y\n0,1,0,0\n")
+    refused("a recording is for observe", "t.csv")

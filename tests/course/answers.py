@@ -252,6 +252,26 @@ ANSWERS: dict[str, dict[str, tuple[list[Any], list[Any]]]] = {
         "wait": ([34.54, 17.3, 13.8, 17.26], [17.27, 17.2694, np.log(1e6) / 0.8]),
         "same_angle": ([True, np.True_, 0, "no"], [False, np.False_]),
     },
+    "14": {
+        "limits": ([0.5, [0.5, 1, 0.5], [2.0, 2, 0.5], [0.5, 2, 1.0]], [[0.5, 2, 0.5], (Fraction(1, 2), 2.0, 0.5)]),
+        "friction": ([2.0, 0.5, 1.4142, True], [1, 1.0, Fraction(1)]),
+        "square_period": ([0.5, 0.017, 0.0352, 0.0177], [0.0176, 0.01759, np.float64(0.0175867)]),
+        "braked": ([[1.0, 1.0, 2.0], [1.0, 5.0, 1.0], [9.0, 1.0, 5.0], 5.0], [[1.0, 1.0, 5.0], (2, 3, 9)]),
+        "keeps_direction": ([True, np.True_, 0, "no"], [False, np.False_]),
+    },
+    "15": {
+        "blur": ([0.49, [0.2, 0.05], [0.122, 0.49], [0.49, 0.245]], [[0.490, 0.122], (6**0.5 / 5, 6**0.5 / 20)]),
+        "flawed": (
+            [fl.Algorithm1, lambda q, p: 0.0 * q, lambda q, p: fl.Algorithm1().acceleration(0.0, q, p), 1.0],
+            [
+                lambda q, p: fl.Algorithm1().acceleration(0.0, q, np.zeros_like(q)),
+                lambda q, p: fl.Algorithm1(gains=fl.Gains(c2_alpha=1e-14)).acceleration(0.0, q, p).tolist(),
+            ],
+        ),
+        "unknown_gain": ([10.95, 4.0, 4.3, 30.0], [4.2, 4.2003, Fraction(21, 5)]),
+        "calms": ([False, np.False_, 1, "yes"], [True, np.True_]),
+        "silent": ([[0.0, 7.0], [0.0, 9.0], [1.0, 1.0], 6.0], [[0.0, 6.0], (1, 8.5), np.array([0.0, -5.0])]),
+    },
     "A1": {
         "figures": (
             [lambda run: [], lambda run: six_axes(run, junk=True), lambda run: six_axes(run, labels=False), 6],

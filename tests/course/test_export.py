@@ -1,7 +1,5 @@
 """Masters for graders: points, hidden tests, and where answers are read by a person."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Explanatory figures: what they draw is what their captions say, in numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pages for the lecturer: every lecture is planned, times add up, and the exam's numbers are right."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -61,7 +61,7 @@ def test_a_reference_reads_as_text():
     ("old", "new", "message"),
     [
         ('[01]\nafter = ["00"]', '[01]\nafter = ["13"]', "lecture 01 builds on .*13"),
-        ("[13]\n", "[14]\n", "lectures.toml lists .*'14'"),
+        ("[13]\n", "[16]\n", "lectures.toml lists .*'16'"),
     ],
 )
 def test_a_map_that_does_not_fit_is_refused(tmp_path, old, new, message):

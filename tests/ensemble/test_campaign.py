@@ -17,7 +17,7 @@ from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.base.garbage import SELDOM
 from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
 from flockana.ensemble import digest as digests
-from flockana.ensemble.digest import digest_of_sources, mathematics, run_key
+from flockana.ensemble.digest import digest_of_sources, numerics_version, run_key
 from flockana.ensemble.executors import Serial, WorkerPool, worker_pool
 from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.runs import make_runs
@@ -115,7 +115,7 @@ def test_it_survives_a_netcdf_file(alone, tmp_path):
     again = xarray.load_dataset(tmp_path / "all.nc", engine="h5netcdf")
     assert same(alone, again)
     assert json.loads(again.tolerances)["quasi"] == Tolerances().quasi
-    assert again.mathematics == mathematics()
+    assert again.mathematics == numerics_version()
     assert again.status.attrs["flag_meanings"].split() == list(STATUSES)
 
 
@@ -233,7 +233,7 @@ def test_ctrl_c_ends_it_and_keeps_what_was_done(metric, tmp_path):
 
 def test_a_worker_with_other_mathematics_is_refused():
     request = Request("hexagon", (), (), mathematics="0" * 16)
-    with pytest.raises(SolverError, match=f"version {mathematics()} of the mathematics, expected 0{{16}}"):
+    with pytest.raises(SolverError, match=f"version {numerics_version()} of the mathematics, expected 0{{16}}"):
         run_batch(request, (Job(0),))
 
 

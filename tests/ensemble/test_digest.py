@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from flockana.ensemble import digest as digests
-from flockana.ensemble.digest import cached_digest, digest_of_sources, mathematics
+from flockana.ensemble.digest import cached_digest, digest_of_sources, numerics_version
 
 SOURCES = {"a.py": b"x = 1  # one\n", "b.json": b"{}"}
 
@@ -73,4 +73,4 @@ def test_where_nothing_may_be_written_nothing_is(tmp_path, parsed, monkeypatch):
 def test_the_version_of_the_mathematics_is_the_digest_of_its_sources():
     root = digests.Path(digests.__file__).resolve().parent.parent
     sources = {str(path.relative_to(root)): path.read_bytes() for path in digests.source_files(root)}
-    assert mathematics() == digest_of_sources(sources)
+    assert numerics_version() == digest_of_sources(sources)

@@ -19,7 +19,7 @@ from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
 from flockana.interactions import BetaInteraction
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle
 
 SQUARE = Polygon([(-1.0, -1.0), (2.0, -1.0), (2.0, 2.0), (-1.0, 2.0)])

@@ -8,7 +8,7 @@ import shapely
 
 from flockana.base.errors import ArgumentError
 from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_on_way
+from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
@@ -174,7 +174,7 @@ def test_clearances_against_shapely():
     wanted = [shape.exterior.distance(shapely.Point(x)) * (-1 if shape.contains(shapely.Point(x)) else 1) for x in q]
     np.testing.assert_allclose(ARROW.clearance(q), wanted, rtol=1e-12, atol=1e-14)
     start, end = q[:100], q[100:]
-    bound = ARROW.clearance_on_way(start, end)
+    bound = ARROW.clearance_along(start, end)
     for a, b, least in zip(start, end, bound, strict=True):
         way = shapely.LineString([a, b])
         if way.intersects(shape):
@@ -203,9 +203,9 @@ def test_clearances_where_rounding_decides_are_shapelys():
     deepest = np.minimum(least, 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1)))
     enters = shapely.intersects(ways, shape)
     assert np.count_nonzero(~enters & (deepest < least - 0.1)) > 10
-    bound = polygon.clearance_on_way(start, end)
+    bound = polygon.clearance_along(start, end)
     np.testing.assert_allclose(bound, np.where(enters, deepest, least), rtol=0.0, atol=1e-15)
-    np.testing.assert_array_equal(bound, polygon.clearance_on_way(start, end, ends))
+    np.testing.assert_array_equal(bound, polygon.clearance_along(start, end, ends))
 
 
 def test_points_are_of_the_plane():
@@ -222,14 +222,12 @@ def test_a_world_is_as_clear_as_the_nearest_of_its_obstacles_at_each_sample_and_
         np.testing.assert_array_equal(at[k], np.minimum(ARROW.clearance(q[k]), ball.clearance(q[k])))
     for row, k in zip(on_way, taken, strict=True):
         ways = q[k], q[k + 1]
-        np.testing.assert_array_equal(
-            row, np.minimum(ARROW.clearance_on_way(*ways), ball_clearance_on_way(ball, *ways))
-        )
+        np.testing.assert_array_equal(row, np.minimum(ARROW.clearance_along(*ways), ball_clearance_along(ball, *ways)))
 
 
 def test_the_bound_of_a_way_through_a_ball_is_exact():
     ball = Sphere((0.0, 0.0), 2.0)
-    found = ball_clearance_on_way(ball, np.array([[-5.0, 1.0], [3.0, 0.0]]), np.array([[5.0, 1.0], [3.0, 0.0]]))
+    found = ball_clearance_along(ball, np.array([[-5.0, 1.0], [3.0, 0.0]]), np.array([[5.0, 1.0], [3.0, 0.0]]))
     np.testing.assert_allclose(found, [-1.0, 1.0])
 
 

@@ -8,7 +8,7 @@ import pytest
 from flockana.dynamics.trajectory import Trajectory
 from flockana.falsify import falsify
 from flockana.falsify.evaluate import Evaluation, Problem, units
-from flockana.falsify.grade import FAILED, grade, missing
+from flockana.falsify.grade import FAILED, grade, shortfall
 from flockana.falsify.space import search_space
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import scenario
@@ -53,7 +53,7 @@ class TestGrades:
         assert grade(Claim("i", "verified"), [], lead=1.0) == 1.001
         assert grade(Claim("i", "inconclusive", margin=float("nan")), []) == 0.0
         assert (squash(float("-inf")), squash(0.0)) == (-1.0, 0.0)
-        assert missing([Hypothesis("a", "assumed", -1.0), Hypothesis("b", "unmet", float("nan"))]) == 1.0
+        assert shortfall([Hypothesis("a", "assumed", -1.0), Hypothesis("b", "unmet", float("nan"))]) == 1.0
 
     def test_how_well_a_limit_is_known_does_not_draw_the_search(self):
         """A flock that parts for ever has the margin −1 of no certificate: it is no nearer to a strained limit."""

@@ -186,11 +186,11 @@ def test_the_root_of_a_square_has_two_pieces():
 
 def test_parameters_are_given_later_and_compile_nothing():
     law = spring()
-    other = law.given(k=2.0)
+    other = law.with_parameters(k=2.0)
     assert other.kernels is law.kernels
     assert other.force(2.5) == pytest.approx(2.0 / dict(law.parameters)["k"] * law.force(2.5))
     with pytest.raises(ArgumentError, match="'m' is no parameter"):
-        law.given(m=1.0)
+        law.with_parameters(m=1.0)
 
 
 def test_sympy_and_text_are_one():

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from flockana.kernels import advance
 from flockana.kernels.advance import _met
 from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, share_of_pairs, steepest
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.paths import bernstein, centred
+from flockana.kernels.runge_kutta import System
 
 H, R, FAR = 0.7, 8.4, 3.5
 
@@ -106,7 +108,7 @@ def test_pairs_of_a_list_cut_a_step_as_they_do_with_all_control_points(m, speed,
 
 @pytest.mark.parametrize("listed", ["all", "none yet", "too few"])
 @pytest.mark.parametrize("m", [1, 2, 3])
-def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, listed):
+def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch):
     """Pairs are searched for unless the list holds all that may meet."""
     q0, p0, u0, q1, p1, u1 = ends(40, m, 12.0)
     y0, f0, y1, f1 = (
@@ -120,12 +122,13 @@ def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, li
 
     def search(q, within, first, second):
         searched.append(within)
-        return i, j, i.size, None
+        return i, j, i.size
 
-    pairs = (i, j, i.size if listed == "all" else 0, np.empty((0, m)) if listed == "none yet" else q0, None)
-    system = [None] * 4 + [(40, m), None, None, (R, 1e6 if listed == "all" else 0.15 * R), None, search]
-    none = np.empty(0)
-    share, _ = _met.py_func(0.0, H, y0, f0, y1, f1, (radii, FAR, None, none, None), system, pairs, (i, j))
+    pairs = (i, j, i.size if listed == "all" else 0, np.empty((0, m)) if listed == "none yet" else q0)
+    reach, order, frame = (R, 1e6 if listed == "all" else 0.15 * R), np.arange(40), np.zeros((2, m))
+    system = System(None, None, None, None, None, False, reach, order, frame, None, None)
+    monkeypatch.setattr(advance, "list_pairs", search)
+    share, _ = _met.py_func(0.0, H, y0, f0, y1, f1, (radii, FAR, False, (0.0, 0.0)), system, pairs, (i, j))
     assert share == pytest.approx(whole, rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.lift import lift
 
@@ -93,7 +93,7 @@ def test_a_law_may_have_a_negative_adjacency():
     """Velocities that part: the dissipation is negative, and the forces are summed once all the same."""
     shun = lift(_shun, _shun_slope, _shun_potential)
     q, p, u = np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), np.zeros((2, 1))
-    assert shun.sweeps[0][0](q, p, 2.0, (0.0,), 1.0, 1.0, u, np.empty((3, *q.shape))) == (True, -9.0)
+    assert shun.sums(1, 1).forces(q, p, 2.0, np.zeros(1), 1.0, 1.0, u, np.empty((3, *q.shape))) == (True, -9.0)
     np.testing.assert_array_equal(u, [[-3.0], [3.0]])
 
 

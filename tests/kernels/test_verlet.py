@@ -31,7 +31,7 @@ def test_agents_in_one_place_and_one_agent_alone():
 
 
 def kept(q, made):
-    return listed_anew(q, made, empty_list(len(q)), list_pairs)
+    return listed_anew(q, made, empty_list(len(q)))
 
 
 @given(
@@ -69,7 +69,7 @@ def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     assert not outdated(moved, 9.0, 1.0, pairs)
     moved[2] -= [0.04, 0.0]
     assert outdated(moved, 9.0, 1.0, pairs)
-    pairs = listed_anew(moved, 10.0, pairs, list_pairs)
+    pairs = listed_anew(moved, 10.0, pairs)
     assert pairs[2] == 1
     assert not outdated(moved, 9.0, 1.0, pairs)
 
@@ -118,7 +118,7 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
-    pairs = listed_anew(q, 1.1, empty_list(3), list_pairs)
+    pairs = listed_anew(q, 1.1, empty_list(3))
     assert pairs[2] == 1
     assert not outdated(q, 1.0, 0.1, pairs)
 

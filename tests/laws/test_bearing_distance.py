@@ -189,7 +189,7 @@ def test_measures_are_in_the_metrics():
     gaps = np.linalg.norm(run.q[k] - run.extra["alien"][k], axis=1)
     np.testing.assert_allclose(found.alien_distance[k], gaps.min())
     np.testing.assert_allclose(found.obstacle_clearance[k], BLOCK.clearance(run.q[k]).min())
-    ways = BLOCK.clearance_on_way(run.q[k - 1], run.q[k])
+    ways = BLOCK.clearance_along(run.q[k - 1], run.q[k])
     np.testing.assert_allclose(found.obstacle_clearance_bound[k], ways.min())
     assert (found.obstacle_clearance_bound <= found.obstacle_clearance).all()
     np.testing.assert_allclose(found.wall_distance[k], np.minimum(run.q[k], 50.0 - run.q[k]).min())

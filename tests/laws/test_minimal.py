@@ -16,12 +16,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.measures.perception import (
     both_ways,
-    edge_vectors,
-    ensure_edges,
-    incidence,
-    out_tree_root,
     random_out_tree,
-    receivers,
 )
 
 R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)
@@ -354,77 +349,6 @@ def test_laws_survive_files(tmp_path):
     assert Trajectory.load(run.save(tmp_path / "run.nc")).law == run.law
 
 
-def test_trees_are_told_from_the_rest():
-    assert out_tree_root(5, TREE) == 0
-    assert out_tree_root(3, ((2, 1), (2, 0))) == 2
-    assert out_tree_root(3, ((0, 2), (1, 2))) is None  # an in-tree: all reach agent 2, as the paper words it
-    assert out_tree_root(3, ((0, 1), (1, 2), (2, 0))) is None
-    assert out_tree_root(4, ((0, 1), (2, 3))) is None
-    assert out_tree_root(4, ((0, 1), (1, 0), (2, 3))) is None  # n − 1 edges and a cycle
-    assert out_tree_root(4, TREE[:2]) is None  # agent 3 is alone
-    for seed in range(5):
-        assert out_tree_root(9, random_out_tree(9, np.random.default_rng(seed))) == 0
-
-
-def test_incidence_and_edge_vectors():
-    chain = ((0, 1), (1, 2))
-    D, D_in = incidence(3, chain), receivers(3, chain)
-    np.testing.assert_array_equal(D @ D.T, [[1, -1, 0], [-1, 2, -1], [0, -1, 1]])
-    np.testing.assert_array_equal(D_in @ D.T, [[0, 0, 0], [-1, 1, 0], [0, -1, 1]])
-    q, _ = state(3, 2)
-    np.testing.assert_allclose(edge_vectors(q, chain), -D.T @ q)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"radius": 0.0}, r"radius = 0: expected a number > 0"),
-        ({"radius": (1.0, -1.0)}, r"radius\[1\] = -1: expected a number > 0"),
-        ({"spacing": 0.0}, "spacing = 0"),
-        ({"beta": 1.0, "spacing": 1.0}, "expected one of them, or neither"),
-        ({"mu": -1.0}, "mu = -1: expected a number >= 0"),
-        ({"mu": [[1.0, -2.0], [1.0, 1.0]]}, r"mu\[0\]\[1\] = -2"),
-        ({"mu": [1.0, 2.0]}, r"mu has shape \(2,\): expected one number, or \(n, n\)"),
-        ({"radius": (1.0, 2.0), "spacing": (1.0, 2.0, 3.0)}, "expected tables of equal length"),
-        ({"spacing": (1.0, 2.0), "edges": [(0, 2)]}, "edges name agent 2: expected agents below 2"),
-        ({"edges": []}, r"edges = \[\]: expected pairs"),
-        ({"edges": [(0, 0)]}, r"edges\[0\] = \(0, 0\): expected two different agents"),
-        ({"edges": [(0, 1), (0, 1)]}, r"edges\[1\] = \(0, 1\): expected each edge once"),
-        ({"edges": [(0, 1.5)]}, r"edges\[0\] = \(0, 1.5\): expected two different agents"),
-        ({"edges": 7}, "edges = 7: expected pairs"),
-        ({"normalised": 1}, "normalised = 1: expected True or False"),
-        ({"sigma": [[0.0, 1.0], [0.0, 0.0]]}, r"sigma\[1\] sums to zero .* for separation alone give sigma=0"),
-    ],
-)
-def test_bad_parameters_name_themselves(options, message):
-    with pytest.raises(ArgumentError, match=message):
-        MinimalFlocking(**options)
-
-
-def test_a_silent_root_is_no_mean_without_weights():
-    MinimalFlocking(edges=[(0, 1)], sigma=[[0.0, 0.0], [1.0, 0.0]])
-    with pytest.raises(ArgumentError, match=r"sigma\[1\] sums to zero"):
-        MinimalFlocking(edges=[(0, 1)], sigma=[[0.0, 1.0], [0.0, 0.0]])
-
-
-def test_the_number_of_agents_must_fit():
-    with pytest.raises(ArgumentError, match="4 agents: expected 5"):
-        law_of(**CASES["spacing"]).acceleration(0.0, *state(4, 2))
-    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
-        simulate(MinimalFlocking(edges=TREE), *state(3, 2), (0.0, 1.0))
-    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
-        simulate(MinimalFlocking(edges=TREE).discrete(), *state(3, 2), (0.0, 1.0))
-    with pytest.raises(ArgumentError, match=r"expected MinimalFlocking\(\.\.\.\)"):
-        DiscreteMinimalFlocking(3)
-    with pytest.raises(ArgumentError, match="dt = 0"):
-        MinimalFlocking().discrete(0.0)
-
-
-def test_edges_are_given_in_any_form():
-    assert ensure_edges(np.array(TREE)) == TREE
-    assert ensure_edges(iter([[0, 1]])) == ((0, 1),)
-
-
 @pytest.mark.parametrize("edges", [None, [(0, 1), (1, 2)]])
 def test_distances_of_all_pairs_are_in_the_metrics(edges):
     q = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]])
@@ -440,3 +364,16 @@ def test_a_law_in_other_units_pushes_as_before(radius, given):
     law, (q, p) = MinimalFlocking(radius=radius, edges=TREE, normalised=False, **given), state(5, 2)
     doubled = law.in_units(2.0, 1.0).acceleration(0.0, 2.0 * q, 2.0 * p)
     np.testing.assert_allclose(doubled, 2.0 * law.acceleration(0.0, q, p), rtol=1e-13, atol=1e-15)
+
+
+def test_the_number_of_agents_must_fit():
+    with pytest.raises(ArgumentError, match="4 agents: expected 5"):
+        law_of(**CASES["spacing"]).acceleration(0.0, *state(4, 2))
+    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
+        simulate(MinimalFlocking(edges=TREE), *state(3, 2), (0.0, 1.0))
+    with pytest.raises(ArgumentError, match="3 agents: expected at least 5"):
+        simulate(MinimalFlocking(edges=TREE).discrete(), *state(3, 2), (0.0, 1.0))
+    with pytest.raises(ArgumentError, match=r"expected MinimalFlocking\(\.\.\.\)"):
+        DiscreteMinimalFlocking(3)
+    with pytest.raises(ArgumentError, match="dt = 0"):
+        MinimalFlocking().discrete(0.0)

@@ -8,7 +8,16 @@ from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.base.errors import ArgumentError
-from flockana.plots.style import colour_bar, finish, finish_empty, finish_over_time, frame_space, head, in_plane, lines
+from flockana.plots.style import (
+    colour_bar,
+    finish,
+    finish_empty,
+    finish_over_time,
+    frame_space,
+    in_plane,
+    lines,
+    write_title,
+)
 from tests.plots.artists import a_run
 
 
@@ -64,7 +73,7 @@ def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style()
     ax = Figure().add_subplot()
     ax.plot([0, 1], [0, 1], label="a line")
     finish(ax, "t (time)")
-    head(ax, "ζ = 1")
+    write_title(ax, "ζ = 1")
     bar = colour_bar(ax, ax.scatter([0, 1], [0, 1], c=[0, 1]), "strain").ax
     title = ax.title if ax.get_title() else ax._left_title
     assert (title.get_text(), title.get_fontsize()) == (r"$\zeta$ = 1", 10)

@@ -1,7 +1,5 @@
 """The proofs for every potential and of convergence: what is false of wrong constants is not called proved."""
 
-from __future__ import annotations
-
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]

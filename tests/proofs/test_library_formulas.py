@@ -14,9 +14,9 @@ from flint import arb, ctx
 
 from flockana.certified.intervals import AlphaParameters, BetaParameters, psi_alpha, psi_beta
 from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana.jit import Inlined
 from flockana.kernels import alpha, obstacles, scalars
 from flockana.kernels import dead_zone as kernel
-from flockana.kernels.compiling import Inlined
 from proofs import library_formulas, library_pairs, library_potentials
 from proofs.dead_zone_pairs import zones
 from tests.proofs.steps import failing

@@ -1,7 +1,5 @@
 """The proof that velocities match: what is false of wrong constants, or of another law, is not called proved."""
 
-from __future__ import annotations
-
 import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]

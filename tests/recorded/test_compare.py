@@ -1,7 +1,5 @@
 """A recording held against a law: what it explains, and the errors of other implementations, each in a sentence."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The shipped recording is what its script makes, and is read with its gaps; its switch of names is found."""
 
-from __future__ import annotations
-
 import pytest
 
 import flockana as fl

@@ -1,7 +1,5 @@
 """Each faulty implementation is found out by one sentence of `compare`."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

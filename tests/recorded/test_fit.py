@@ -1,7 +1,5 @@
 """Gains fitted to recordings: to the last digits of exact ones, within their stated intervals of noisy ones."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

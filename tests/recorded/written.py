@@ -1,7 +1,5 @@
 """A user's own code of Algorithm 2 in numpy, with the errors that public implementations have."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import solve_ivp
 

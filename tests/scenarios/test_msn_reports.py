@@ -1,7 +1,5 @@
 """What the MSN project reports, judged on planted runs whose truth is plain."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The pair's symbolic behaviours against the compiled ones, the bound's series, the drag and the stand-off."""
 
-from __future__ import annotations
-
 from math import tanh
 
 import numpy as np

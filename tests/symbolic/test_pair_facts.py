@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.facts import Fact, together
+from flockana.base.facts import Fact, conjunction
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, FormulaInteraction
 from flockana.interactions.weights import RationalWeight
 from flockana.symbolic.pair_facts import _Decided
@@ -184,13 +184,13 @@ def test_other_pair_laws_name_their_proofs_or_are_assumed():
 def test_facts_are_those_of_the_numbers():
     law = pair("k*(r - s)**2*s**2", "k*(1 - s/r)**2", k=1.0)
     assert law.facts.weight.status == "met"
-    assert law.given(k=-1.0).facts.weight.status == "unmet"
+    assert law.with_parameters(k=-1.0).facts.weight.status == "unmet"
 
 
 def test_together():
     one, two = Fact("assumed", "a", (0.0, 1.0), 1.0), Fact("assumed", "b", (2.0, 3.0), 0.5)
-    assert together([one, two, Fact("met")]) == Fact("assumed", "a; b", (0.0, 1.0), 1.5)
-    assert together([Fact("met")], "why") == Fact("met", "why")
+    assert conjunction([one, two, Fact("met")]) == Fact("assumed", "a; b", (0.0, 1.0), 1.5)
+    assert conjunction([Fact("met")], "why") == Fact("met", "why")
     assert isinstance(spring(), FormulaInteraction)
 
 

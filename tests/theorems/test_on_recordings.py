@@ -1,7 +1,5 @@
 """Recordings are judged within their stated accuracy: as runs of the same law are, or not at all."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

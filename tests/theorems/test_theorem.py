@@ -73,6 +73,29 @@ def test_corrections_and_extensions_are_told_apart():
     assert Verdict("x", (), claims).summary == expected
 
 
+def test_a_theorem_that_calls_itself_ours_is_not_its_sources():
+    for name in theorems():
+        item = theorem(name)
+        source = item.source.lower()
+        assert item.author != "source" or not source.startswith("ours"), name
+        assert item.author == "source" or "ours" in source or "corrected" in source, name
+
+
+def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
+    needs = (MET, UNMET)
+    assert Claim("i", "vacuous", needs=needs, detail="3 links").account == "'connected' does not hold; 3 links"
+    assert Claim("i", "vacuous", needs=needs, detail="connected: 2 parts").account == "connected: 2 parts"
+    assert Claim("i", "verified", needs=(MET,), detail="3 links").account == "3 links"
+
+
+def test_claims_that_are_vacuous_for_one_reason_are_shown_as_one():
+    verdict = a_theorem(lambda run, tolerances: ([UNMET], [])).examine(None, Tolerances())
+    lines = str(Verdict("mine", *verdict)).splitlines()
+    assert [line.split() for line in lines[-1:]] == [["i,", "ii,", "iii", "vacuous", "connected:"]]
+    measured = tuple(Claim(name, "vacuous", computed=1, needs=(UNMET,), detail="1 link") for name in ("i", "ii"))
+    assert len(str(Verdict("mine", (UNMET,), measured)).splitlines()) == 5
+
+
 def test_a_theorem_says_whose_each_claim_is():
     def check(tolerances):
         return [UNMET], [Claim("mine", "verified"), Claim("theirs", "verified", by="corrected")]
@@ -137,7 +160,7 @@ def test_unknown_theorem():
     [
         ("os-1", {}, r"os-1 is checked on trajectory or law, p0, q0, t_span: got nothing"),
         ("E8", {"q": [[0.0]]}, r"E8 is checked on nothing: got q"),
-        ("os-1", {"law": Algorithm1(), "q0": [[0.0]]}, r"got law, q0"),
+        ("os-1", {"law": Algorithm1(), "p0": [[0.0]]}, r"got law, p0"),
         ("os-1", {"trajectory": 3}, r"trajectory = 3: expected a Trajectory"),
     ],
 )

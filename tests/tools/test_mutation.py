@@ -11,8 +11,6 @@ from tools import mutation
 
 SOURCE = '''"""A module, 1 + 1 = 2."""
 
-from __future__ import annotations
-
 __all__ = ["area"] + ["b"]
 
 

@@ -12,6 +12,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from tools.site import lectures, links, mathematics, proofs, reference, scenarios, slides, theorems, verdicts
@@ -31,12 +32,20 @@ def generate(report: Path | None) -> None:
         (extra / "report").mkdir()
         for name in ("index.html", "verdicts.json"):
             shutil.copy(report / name, extra / "report")
+    _tell("pages of scenarios, with their runs")
     scenarios.write(GENERATED / "scenarios", extra, found, **full)
     (GENERATED / "first.md").write_text(scenarios.first(images=report is not None), encoding="utf-8")
+    _tell("pages of theorems, lectures and names")
     theorems.write(GENERATED / "theorems", found, **full)
     lectures.write(GENERATED / "lectures")
     reference.write(GENERATED / "reference")
     (GENERATED / "mathematics.md").write_text(mathematics.page(), encoding="utf-8")
+
+
+def _tell(text: str) -> None:
+    """Print what comes next, with the time since the start."""
+    sys.stdout.write(f"{time.process_time():6.0f} s  {text}\n")
+    sys.stdout.flush()
 
 
 def build(builder: str, folder: Path, *, draft: bool = False) -> int:
@@ -61,6 +70,7 @@ def main(arguments: list[str]) -> int:
         sys.stdout.write(f"not proved: {', '.join(false)}; run python -m proofs {' '.join(false)}\n")
         return 1
     generate(None if chosen.draft else chosen.report or verdicts.report())
+    _tell("the site, with its lectures and how-tos executed: minutes" if not chosen.draft else "the site")
     html = SITE / "html"
     shutil.rmtree(html, ignore_errors=True)  # with it what an older build left
     if build("html", html, draft=chosen.draft):

@@ -27,7 +27,9 @@ def lecture(source: Path) -> Any:
     for number, cell in enumerate(book.cells):
         cell["id"] = f"{source.stem[:2]}-{number:03d}"
         tags = list(cell.metadata.get("tags", ()))
-        if "solution" in tags or "check" in tags:
+        if "solution" in tags and cell.cell_type == "markdown":
+            cell.source = f"````{{admonition}} Solution\n:class: dropdown\n\n{cell.source}\n````"
+        elif "solution" in tags or "check" in tags:
             cell.metadata["tags"] = [*tags, "hide-cell"]
     return book
 

@@ -7,7 +7,7 @@ import inspect
 from pathlib import Path
 
 import flockana
-from tools.site.words import contents
+from tools.site.words import contents, plain, table
 
 ROOMS = ("plots", "symbolic", "stability", "lattice", "equilibria")
 _TITLES = {
@@ -17,13 +17,15 @@ _TITLES = {
     "ensemble": "Many runs",
     "environment": "γ-agents, obstacles, aliens",
     "equilibria": "Equilibria",
+    "explore": "Explorer",
     "falsify": "Counterexamples",
     "interactions": "Pair laws and gains",
     "lammps": "LAMMPS",
     "laws": "Laws",
     "measures": "Measures",
     "plots": "Films",
-    "scenarios": "Scenarios",
+    "recorded": "Recorded flocks",
+    "scenarios": "Scenarios and flocks",
     "stability": "Linear stability",
     "theorems": "Theorems and verdicts",
 }
@@ -78,7 +80,20 @@ def write(folder: Path) -> None:
         body = "\n\n".join(directive(*entry) for entry in entries)
         (folder / f"{file}.rst").write_text(f"{title}\n{'=' * len(title)}\n\n{body}\n", encoding="utf-8")
     opening = (
-        "# API reference\n\nEvery public name, from its docstring. `flockana.NAME` is imported when it is first used. "
-        "Arrays are float64 of shape (n, m); lengths and times are in your own units."
+        "# API reference\n\nEvery public name with a sentence, by subject. `flockana.NAME` is imported when it is "
+        "first used. Arrays are float64 of shape (n, m); lengths and times are in your own units. "
+        "[Names by task](../../by-task.md) is shorter."
     )
-    (folder / "index.md").write_text(f"{opening}\n\n{contents(names)}\n", encoding="utf-8")
+    sections = [
+        f"## [{title}]({file}.rst)\n\n" + table(("name", "what it is"), map(_row, entries))
+        for file, (title, entries) in zip(names, pages().items(), strict=True)
+    ]
+    listed = contents(names).replace(":maxdepth: 1", ":hidden:")
+    (folder / "index.md").write_text("\n\n".join([opening, *sections, listed]) + "\n", encoding="utf-8")
+
+
+def _row(entry: tuple[str, str]) -> tuple[str, str]:
+    """Return a name and the first sentence of its docstring."""
+    item = getattr(importlib.import_module(entry[0]), entry[1])
+    first = (inspect.getdoc(item) or "").partition("\n\n")[0].replace("\n", " ")
+    return f"`{entry[1]}`", plain(first) or "—"

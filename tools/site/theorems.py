@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from flockana import cite
+from flockana.report.catalogues import theorem_entries
 from flockana.report.coverage.anchors import verdict_id
 from flockana.scenarios import scenario
 from flockana.theorems import Theorem
@@ -153,10 +154,12 @@ def index() -> str:
         "what was proved by machine, and on which runs it is checked. A false printed claim is expected to read "
         "`refuted`. What is printed and what is right, side by side: [errata](../../errata.md)."
     )
-    rows = [
-        (f"[{plain(item.id)}]({item.id}.md)", plain(item.title), item.expected.get(item.id, "on runs"))
-        for item in catalogue().values()
-    ]
+    groups: dict[str, list[tuple[str, str, str]]] = {}
+    for entry in theorem_entries():
+        item = catalogue()[entry["name"]]
+        row = (f"[{plain(item.id)}]({item.id}.md)", plain(item.title), item.expected.get(item.id, "on runs"))
+        groups.setdefault(entry["source"], []).append(row)
+    tables = [f"## {plain(name)}\n\n" + table(("entry", "title", "expected"), rows) for name, rows in groups.items()]
     names = [f"{item.id} <{item.id}>" for item in catalogue().values()]
     listed = contents(names).replace(":maxdepth: 1", ":hidden:")
-    return f"{opening}\n\n{table(('entry', 'title', 'expected'), rows)}\n\n{listed}\n"
+    return "\n\n".join([opening, *tables, listed]) + "\n"

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.interactions.weights import Weight
+from flockana.kernels.listed import no_energy
 from flockana.laws.terms.term import Term, TermKernel
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class AlignmentTerm(Term):
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         r = self.weight.range
         numbers = np.concatenate([[self.gain, float(self.mean), r], self.weight.par])
-        return TermKernel(*self.weight.kernels.compiled(), numbers, np.empty((0, 0)), r if np.isfinite(r) else 0.0)
+        return TermKernel(self.weight.kernels.act, no_energy, numbers, np.empty((0, 0)), r if np.isfinite(r) else 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
         (n, m), kernels, gain = q.shape, self.weight.kernels, self._gain(len(q))

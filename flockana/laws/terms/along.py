@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.kernels import own as kernel
+from flockana.kernels.listed import no_energy
 from flockana.laws.terms.term import Term, TermKernel
 
 
@@ -54,7 +55,7 @@ class AlongVelocity(Term):
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         numbers = np.array([float(self.moving), self.thrust, self.brake])
-        return TermKernel(*kernel.along(), numbers, np.empty((0, 0)), 0.0)
+        return TermKernel(kernel.act_along, no_energy, numbers, np.empty((0, 0)), 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         factor = self.thrust - self.brake * np.einsum("ij,ij->i", p, p)

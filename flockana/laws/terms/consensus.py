@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.interactions.pair import PairInteraction
-from flockana.kernels.listed import no_term
+from flockana.kernels.listed import no_energy
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.terms.term import Term, TermKernel
 
@@ -53,7 +53,7 @@ class Consensus(Term):
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         form = self._pairs.compiled(m)
-        return None if form is None else form._replace(energy=no_term()[1])
+        return None if form is None else form._replace(energy=no_energy)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
         return self._pairs.derivatives(t, q, p)

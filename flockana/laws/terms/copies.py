@@ -22,13 +22,6 @@ class CopiesTerm(Term):
     Its energy is ½ Σ c1γ_i ‖q_i − q_r^i‖² in the given frame, and what it adds to dH/dt is
     −Σ c2γ_i ⟨p_i, p_i − p_r^i⟩ − Σ c1γ_i ⟨q_i − q_r^i, p_r^i⟩.
 
-    Parameters
-    ----------
-    copies : Copies
-        The γ-agents.
-    gains : Gains
-        c1_gamma and c2_gamma are used.
-
     Examples
     --------
     >>> from flockana.environment.spring import Spring

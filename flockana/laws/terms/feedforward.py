@@ -10,6 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.kernels import own as kernel
+from flockana.kernels.listed import no_energy
 from flockana.laws.terms.term import Term, TermKernel
 
 
@@ -68,7 +69,7 @@ class TargetFeedforward(Term):
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         numbers = np.concatenate([[float(self.moving), self.path.omega], self.path.terms.ravel()])
-        return TermKernel(*kernel.on_all(), numbers, np.empty((0, 0)), 0.0)
+        return TermKernel(kernel.act_all, no_energy, numbers, np.empty((0, 0)), 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.hessian(t, q), self.hessian(t, q)

@@ -1,4 +1,4 @@
-"""What ties agents to leaders: velocities match among those of one leader, and a fraction of them is pinned to it."""
+"""Coupling to leaders: velocity matching within each leader's group, and pinned agents."""
 
 from __future__ import annotations
 
@@ -24,23 +24,6 @@ class Leaders(Term):
 
     Its power is that in the frames of the leaders: −k₂ pᵀL̂p of each group, −c₂ Σ h_i ‖p_i − p_l‖², and, if
     accelerations are not told, −Σ (p_i − p_l)·dp_l/dt.
-
-    Parameters
-    ----------
-    pair : PairInteraction
-        Its range and adjacency say who are neighbours.
-    damping : float
-        k₂.
-    leaders : tuple of Target
-        The leaders, each with a harmonic path, so that its acceleration is known.
-    group : tuple of int
-        l(i), the number of each agent's leader.
-    pinned : tuple of int
-        The agents with h_i = 1; the others know of their leader no more than its acceleration.
-    pull, drag : float
-        c₁ and c₂ of the pinned.
-    feedforward : bool
-        Whether the leaders' accelerations are known.
     """
 
     pair: PairInteraction
@@ -65,7 +48,7 @@ class Leaders(Term):
 
     @cached_property
     def _pins(self) -> FloatArray:
-        """h_i, a column."""
+        """Column h_i with 1 for pinned agents."""
         pins = np.zeros((len(self.group), 1))
         pins[list(self.pinned)] = 1.0
         return pins
@@ -75,13 +58,7 @@ class Leaders(Term):
         return tuple(known_path(leader) for leader in self.leaders)
 
     def led(self, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Position, velocity and acceleration of each agent's own leader, three arrays of shape (n, m).
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """Return position, velocity and acceleration of each agent's leader, three arrays of shape (n, m)."""
         states = np.array([_motion(*each, t) for each in zip(self.leaders, self._paths, strict=True)])
         q, p, a = states[list(self.group)].transpose(1, 0, 2)
         return q, p, a
@@ -126,26 +103,13 @@ class Leaders(Term):
         return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Second derivative of `energy`.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Return the second derivative of `energy`."""
         blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
         return blocks
 
 
 def known_path(leader: Any) -> Harmonic:
-    """The path of a leader, whose acceleration is known and who says its true velocity.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no target of such a path.
+    """Return the harmonic path of a leader; raise unless it reports its true velocity.
 
     Examples
     --------
@@ -163,7 +127,7 @@ def known_path(leader: Any) -> Harmonic:
 
 
 def _motion(leader: Target, path: Harmonic, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Position, velocity and acceleration of a leader."""
+    """Return position, velocity and acceleration of a leader."""
     c, s = path.terms[2:4]
     bend: FloatArray = -(path.omega**2) * (c * cos(path.omega * t) + s * sin(path.omega * t))
     return leader.position(t), leader.rate(t), bend

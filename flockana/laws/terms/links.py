@@ -46,12 +46,12 @@ class LinkTerm(Term):
 
     @cached_property
     def _ends(self) -> tuple[np.ndarray, np.ndarray]:
-        ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
+        ends = np.array(self.links, dtype=np.int32).reshape(-1, 2)
         return np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        forces_of = self.pair.kernels.sweeps[q.shape[1] - 1][1]
-        par = tuple(self.pair.par.tolist())
+        par = self.pair.par
+        forces_of = self.pair.kernels.sums(q.shape[1], par.size).forces_of
         return -self.damping * float(forces_of(q, p, *self._ends, par, self.stiffness, self.damping, u))
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102

@@ -104,7 +104,7 @@ class Navigation(Term):
         return None if self._path is None or self.target.harmonic.omega else self._path  # type: ignore[union-attr]
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
-        return None if self._path is None else TermKernel(*kernel.compiled(), self._path, np.empty((0, 0)), 0.0)
+        return None if self._path is None else TermKernel(kernel.act, kernel.energy, self._path, np.empty((0, 0)), 0.0)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         x = moving_frame(q) if self.moving else q - self.target.state(t)[0]

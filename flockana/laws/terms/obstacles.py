@@ -9,7 +9,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField, check_free
 from flockana.environment.obstacles import Obstacle
-from flockana.kernels.bodies import body_functions, body_numbers
+from flockana.kernels.bodies import body_numbers
 from flockana.laws.terms.term import Invariance, Term, TermKernel
 
 _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from its obstacles' kernels
@@ -80,9 +80,9 @@ class ObstacleTerm(Term):
             return None
         beta, kernels = self.field.beta, []
         for kind in self.field.kinds:
-            act, energy, guard = body_functions(kind.kernels.bodies)
             numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:])
-            kernels.append(TermKernel(act, energy, numbers, beta.panels, 0.0, guard))
+            own = kind.kernels
+            kernels.append(TermKernel(own.act, own.energy, numbers, beta.panels, 0.0, own.guard))
         return tuple(kernels)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.interactions.pair import PairInteraction
-from flockana.kernels.listed import PARAMETERS, listed_numbers
+from flockana.kernels.listed import listed_numbers
 from flockana.laws.terms.term import Term, TermKernel
 
 if TYPE_CHECKING:
@@ -85,10 +85,9 @@ class PairTerm(Term):
             and all(getattr(type(pair), name) is getattr(PairInteraction, name) for name in _SUMS)
         ):
             return None
-        if pair.par.size > PARAMETERS:
-            return None
         numbers = listed_numbers(self.stiffness, self.damping, pair.range, pair.far_potential, pair.par)
-        return TermKernel(*pair.kernels.listed(m), numbers, pair.panels, pair.range)
+        sums = pair.kernels.sums(m, pair.par.size)
+        return TermKernel(sums.act, sums.energy, numbers, pair.panels, pair.range)
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         return self.stiffness * self.pair.potential_energy(q)

@@ -1,4 +1,4 @@
-"""What Algorithms 1 to 3 and every composition are made of: the terms, and the frame that their energy is in."""
+"""Terms of Algorithms 1 to 3 and of compositions, and the frame of their energy."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def parts(
     thrust: float = 0.0,
     brake: float = 0.0,
 ) -> tuple[Term, ...]:
-    """The terms of a law, in the order in which they are added.
+    """Return the terms of a law, in the order of addition.
 
     The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
     nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given frame.

@@ -5,42 +5,36 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal, NamedTuple
 
-import numpy as np
-
 from flockana.base.checks import FloatArray
-from flockana.kernels.listed import MOST_TERMS, CompiledFunction, no_term
+from flockana.jit import Kernel
+from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
 
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
 
 class TermKernel(NamedTuple):
-    """A term as compiled integrators take it (`flockana.kernels.listed`).
+    """A term as compiled integrators take it (`flockana.kernels.laws`).
 
     Attributes
     ----------
-    act, energy : callable
-        Force and power, and potential energy, of the signatures `ACT` and `ENERGY`.
+    act, energy : Kernel
+        Force and power, and potential energy.
     numbers : ndarray, shape (K,)
         What they read.
     panels : ndarray, shape (L, M)
         Chebyshev panels, if they read any.
     reach : float
         Within which they need all pairs; 0 if they need none.
-    guard : callable, optional
-        What share of a step may be taken (`flockana.kernels.bodies`), of the same numbers.
+    guard : Kernel, optional
+        What share of a step may be taken, of the same numbers.
     """
 
-    act: CompiledFunction
-    energy: CompiledFunction
+    act: Kernel
+    energy: Kernel
     numbers: FloatArray
     panels: FloatArray
     reach: float
-    guard: CompiledFunction | None = None
-
-
-def nothing() -> TermKernel:
-    """A term that does nothing."""
-    return TermKernel(*no_term(), np.empty(0), np.empty((0, 0)), 0.0)
+    guard: Kernel | None = None
 
 
 class Compiled(NamedTuple):
@@ -55,9 +49,14 @@ class Compiled(NamedTuple):
         return max((term.reach for term in self.terms), default=0.0)
 
     @property
-    def padded(self) -> tuple[TermKernel, ...]:
-        """`MOST_TERMS` of them: the others do nothing."""
-        return (*self.terms, *(nothing(),) * (MOST_TERMS - len(self.terms)))
+    def functions(self) -> LawFunctions:
+        """Its functions, compiled."""
+        return law_functions(tuple((term.act, term.energy, term.guard) for term in self.terms))
+
+    @property
+    def numbers(self) -> LawNumbers:
+        """What they read."""
+        return law_numbers(self.terms)
 
 
 class Term(ABC):

@@ -49,14 +49,14 @@ class Layout:
 
 
 def plain(name: Any) -> str:
-    """Return a column's name without unit, blanks at its ends and capitals.
+    """Return a column's name without unit, capitals, and blanks or # at its ends.
 
     Examples
     --------
     >>> plain(" X [m]"), plain("Time (s)")
     ('x', 'time')
     """
-    return _UNIT.sub("", str(name)).strip().lower()
+    return _UNIT.sub("", str(name).lstrip("# ")).strip().lower()
 
 
 def coordinate(name: str) -> tuple[str, int] | None:

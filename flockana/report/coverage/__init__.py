@@ -1,4 +1,4 @@
-"""Which item of which source is held by what: one table per source, every reference of which can be looked up."""
+"""Coverage tables: for each item of each source, the theorems, scenarios and tests behind it."""
 
 from flockana.report.coverage.references import Reference, locate
 from flockana.report.coverage.rows import Row, Source, coverage, faults, read_table

@@ -35,7 +35,7 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
 
 
 def verdict_id(subject: str, theorem: str) -> str:
-    """The id of a verdict in the report.
+    """Return the id of a verdict in the report.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def verdict_id(subject: str, theorem: str) -> str:
 
 
 def scenario_id(name: str) -> str:
-    """The id of a scenario's section in the report, which no other part of the page has.
+    """Return the id of a scenario's section in the report.
 
     Examples
     --------

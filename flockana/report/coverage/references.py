@@ -1,4 +1,4 @@
-"""References such as ``theorem:os-1``: their kinds, and the file that each leads to."""
+"""References such as ``theorem:os-1``, with the file that each leads to."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _scenario_files() -> dict[str, str]:
 
 
 def _defined(package: str, attribute: str, ids: Callable[[Any], tuple[str, ...]]) -> Iterator[tuple[str, str]]:
-    """(name, file) of all that the modules of a package define under that attribute."""
+    """Return (name, file) of all that the modules of a package define under an attribute."""
     for module in modules(package):
         for name in ids(getattr(module, attribute, ())):
             yield name, str(module.__file__)
@@ -159,7 +159,7 @@ def _of_catalogue(kind: str, name: str, known: list[str]) -> str:
 
 
 def _claim(name: str) -> str:
-    """A claim of a theorem or erratum: ``id/claim``, by the names that the catalogue declares."""
+    """Return the file of a claim ``id/claim`` of a theorem or erratum; raise if there is none."""
     of, _, _ = name.partition("/")
     path = _of_catalogue("theorem or erratum", of, list(theorems()))
     item = theorem(of)
@@ -184,7 +184,7 @@ def _notebook(number: str) -> str:
 
 
 def _beside(folder: str) -> list[Path]:
-    """The Python files of a folder of the checkout, but for templates."""
+    """Return the Python files of a folder of the checkout, except templates."""
     found = sorted(path for path in (_CHECKOUT / folder).glob("*.py") if not path.name.startswith("_"))
     if not found:
         raise FileError(f"there is no folder {folder} in {_CHECKOUT}: expected a checkout, which has one")

@@ -21,7 +21,7 @@ _MARK = "|"  # between columns; texts write a norm as ‖
 
 @dataclass(frozen=True)
 class Row:
-    """An item of a source and what holds it.
+    """Item of a source with the references behind it.
 
     Examples
     --------

@@ -19,14 +19,14 @@ _PROOF = "bearing-distance-printed"
 
 
 def _wanted(law: MinimalFlocking) -> FloatArray:
-    """The lengths at which an end and the middle want their edge."""
+    """Return the desired lengths of the edge between an end and the middle, as each of the two has it."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
     spacing = {(int(j), int(i)): float(length) for i, j, length in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
 
 
 def _off(law: MinimalFlocking, seed: int) -> Enclosure:
-    """By how much the end of a run from a random start is off: ends together, both edges 5/3, all |u| = 2/3."""
+    """Return how far a run from a random start ends from the equilibrium: equal ends, edges 5/3, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
     seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END), rtol=1e-11)

@@ -16,7 +16,7 @@ SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 
 
 def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
-    """The random start of section 5.1 of the bearing-distance paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
+    """Return the random start of section 5.1 of the paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
 
 
 def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
-    """A random start as `zone_start`, with no two agents closer than `least` and the net within `reach` connected.
+    """Return a random start with no two agents closer than `least` and the net within `reach` connected.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float 
 
 
 def crowd_start(seed: int, n: int, *, least: float = 2.0, any_direction: bool = False) -> tuple[FloatArray, FloatArray]:
-    """A start of n agents as dense as ten in (0, 10)² m, no two closer than `least`.
+    """Return a start of n agents as dense as ten in (0, 10)² m, no two closer than `least`.
 
     Velocities are in (0, 1)² m/s, as printed, or in (−1, 1)².
 
@@ -69,5 +69,5 @@ def crowd_start(seed: int, n: int, *, least: float = 2.0, any_direction: bool = 
 def runs_from_random_starts(
     law: ZoneFlocking, start: Callable[[int], tuple[FloatArray, FloatArray]] = zone_start
 ) -> list[Trajectory]:
-    """One run of 20 s from each of twenty random starts."""
+    """Run 20 s from each of twenty random starts."""
     return [observed(law, *start(seed), (0.0, DURATION)).run for seed in range(SEEDS)]

@@ -24,21 +24,7 @@ from flockana.theorems.theorem import Hypothesis
 
 @dataclass(frozen=True)
 class TreeCase:
-    """A minimal law on a frozen tree, by its edges.
-
-    Parameters
-    ----------
-    law : MinimalFlocking
-        The law.
-    n : int
-        Number of agents.
-    links : tuple of (int, int)
-        Its n − 1 edges; of an undirected tree, each link in one direction.
-    rho, mu, align : ndarray, shape (n - 1,)
-        Desired length, weight of the spring, weight of the velocity difference, of each.
-    root : int or None
-        The root of a directed tree.
-    """
+    """A minimal law on a frozen tree, by its edges."""
 
     law: MinimalFlocking
     n: int
@@ -67,7 +53,7 @@ class TreeCase:
         return tuple(outwards)
 
     def on_manifold(self, q: FloatArray) -> FloatArray:
-        """A configuration with the bearings of q and every edge at its desired length, about the origin."""
+        """Return a configuration with the bearings of q and every edge at its desired length."""
         x = edge_vectors(q, self.links)
         length = np.linalg.norm(x, axis=1, keepdims=True)
         bearing = np.divide(x, length, out=np.tile(np.eye(q.shape[1])[0], (len(x), 1)), where=length > 0.0)
@@ -78,7 +64,7 @@ class TreeCase:
         return placed
 
     def edge_system(self, q: FloatArray) -> FloatArray:
-        """A of the edge dynamics (x, x') at an equilibrium: T A T⁺ with T = −Dᵀ ⊗ I, since u depends on edges alone."""
+        """Return the matrix A of the edge dynamics (x, x') at an equilibrium."""
         m = q.shape[1]
         T = np.kron(-incidence(self.n, self.links).T, np.eye(m))
         twice = np.kron(np.eye(2), T)
@@ -86,7 +72,7 @@ class TreeCase:
         return A
 
     def lengths(self, q: FloatArray) -> FloatArray:
-        """|x_e| of each edge, shape (..., n − 1)."""
+        """Return ‖x_e‖ of each edge, shape (..., n − 1)."""
         lengths: FloatArray = np.linalg.norm(edge_vectors(q, self.links), axis=-1)
         return lengths
 
@@ -103,7 +89,7 @@ class TreeCase:
         return Enclosure.around(apart, error[..., tails] + error[..., heads] + 4.0 * EPS * apart).clip(0.0)
 
     def energies(self, lengths: Enclosure, rates: Enclosure) -> Enclosure:
-        """V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖. At the root it falls: V' = −a‖x'‖²."""
+        """Return V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖."""
         return 0.5 * (rates.square() + self.mu * (lengths - self.rho).square())
 
     def shortest(self, seen: Observed) -> Enclosure:
@@ -112,7 +98,7 @@ class TreeCase:
 
 
 def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
-    """The edges of a law on a frozen tree, directed from a root or undirected; None if its graph is no tree."""
+    """Return the edges of a law on a frozen tree, directed or undirected; None if its graph is no tree."""
     if law.edges is None:
         return None
     root = out_tree_root(n, law.edges)
@@ -125,7 +111,7 @@ def tree_case(law: MinimalFlocking, n: int) -> TreeCase | None:
 
 
 def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]]) -> float:
-    """Largest relative difference between det(sI − A) and Π (s² + b s + c), at as many points as decide a polynomial.
+    """Return the largest relative difference between det(sI − A) and Π (s² + b s + c) over enough points.
 
     Examples
     --------
@@ -140,12 +126,12 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
 
 
 def minimal_law(seen: Observed) -> Hypothesis:
-    """The hypothesis that a run is of the minimal law."""
+    """Return the hypothesis that a run is of the minimal law."""
     return condition("the minimal law is applied", type(seen.law) is MinimalFlocking, detail=type(seen.law).__name__)
 
 
 def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
-    """Hypotheses that both forms of the theorem have in common, and the tree if there is one."""
+    """Return the hypotheses common to both forms of the theorem, and the tree if there is one."""
     case, frozen = tree_case(seen.law, seen.n), seen.law.edges is not None
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:

@@ -20,19 +20,19 @@ _PROOF = "bearing-distance"
 
 
 def proof_of(case: TreeCase, m: int) -> str | None:
-    """Id of the proof, which is of the plane and of space, and on directed trees of alignment with the weight 1."""
+    """Return the id of the proof, for the plane and space, and on directed trees for alignment weight 1."""
     return _PROOF if m in (2, 3) and (case.root is None or bool((case.align == 1.0).all())) else None
 
 
 def _room(case: TreeCase, seen: Observed, energy: Enclosure, edges: list[int], share: float) -> Enclosure:
-    """(least |x| - ρ + √(2E(1 + share)/μ))/ρ of some edges, E the energy of each at the start."""
+    """Return (least |x| − ρ + √(2E(1 + share)/μ))/ρ of some edges, E the energy of each at the start."""
     rho, mu = case.rho[edges], case.mu[edges]
     amplitude = (2.0 * (1.0 + share) * energy / mu).sqrt()
     return (case.shortest(seen)[edges] - rho + amplitude) / rho
 
 
 def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The claim that V of an edge from the root falls, and while V(0) < μρ²/2 keeps that edge from length 0."""
+    """Return the claim that V of an edge from the root falls, and keeps the edge from length 0."""
     if seen.doubt:
         return undecided("root-edge", "the edges' energies are not known", needs)
     lengths, rates = case.edges_of(seen.run.q, seen.shape_error), case.edges_of(seen.run.p, seen.speed_error)
@@ -59,14 +59,14 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
 
 
 def _springs_rounding(case: TreeCase, seen: Observed) -> float:
-    """Rounding of ½ Σ μ (|x| − ρ)² at places far from the origin."""
+    """Return the rounding of ½ Σ μ (|x| − ρ)² far from the origin."""
     off = 16.0 * EPS * float(np.abs(seen.run.q).max())
     stretch = np.abs(case.lengths(seen.run.q) - case.rho)
     return float((case.mu * (stretch + off) * off).sum(axis=1).max())
 
 
 def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The claim, on an undirected tree, that H never rises: its rate is −Σσ‖v_i − v_j‖²."""
+    """Return the claim, on an undirected tree, that H never rises."""
     if "work" not in seen.run.extra:
         return undecided("energy", "the run carries no integral of dH/dt", needs)
     H, largest, rate = seen.run.energy(), float(seen.run.energy().max()), float(seen.run.energy_rate().max())
@@ -88,7 +88,7 @@ def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolera
 
 
 def edge_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The claim, on an undirected tree, that no edge shrinks below ρ − √(2H(0)/μ)."""
+    """Return the claim, on an undirected tree, that no edge shrinks below ρ − √(2H(0)/μ)."""
     start, barrier = seen.energy[0].widened(_springs_rounding(case, seen)).clip(0.0), float(case.barrier.min())
     text = f"H(0) = {start.mid:.4g}"
     edges = list(range(len(case.links)))

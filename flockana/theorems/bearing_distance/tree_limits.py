@@ -40,7 +40,7 @@ def state(q: FloatArray, p: FloatArray) -> End:
 
 
 def edge_shares(case: TreeCase, end: End) -> FloatArray:
-    """V̂/(½μρ²) of each edge, shape (n − 1,): below 1 it never comes to length 0; ∞ where nothing is known.
+    """Return V̂/(½μρ²) of each edge; below 1 its length never reaches 0; ∞ where unknown.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def edge_shares(case: TreeCase, end: End) -> FloatArray:
 
 
 def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
-    """Bounds from the root outwards, from V of each edge at most."""
+    """Return bounds of each edge's energy over its barrier, from the root outwards."""
     shares, felt = np.full(len(case.links), inf), {case.root: 0.0}
     for e, parent, child in case.walk:
         W, mu, a = felt[parent], float(case.mu[e]), float(case.align[e])
@@ -78,7 +78,7 @@ def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
 
 
 def settles(case: TreeCase, end: End) -> Certificate:
-    """Certificate that from this state every edge goes to its desired length, every velocity difference to 0."""
+    """Return a certificate that all edges reach their desired lengths and all velocity differences decay."""
     share = float(edge_shares(case, end).max())
     never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
     text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
@@ -86,7 +86,7 @@ def settles(case: TreeCase, end: End) -> Certificate:
 
 
 def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, stated: str) -> Claim:
-    """The claim that the velocities at both ends of every edge match in the limit."""
+    """Return the claim that the velocities at both ends of every edge match in the limit."""
     speeds = lengths(edge_vectors(seen.run.p, case.links)).max(axis=1)
     return limit_claim(
         "velocities",
@@ -101,6 +101,6 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
 
 
 def kept(case: TreeCase, end: End) -> float:
-    """Return the least |x|/ρ that the edge farthest from collision keeps for ever; <= 0 where nothing is known."""
+    """Return the least |x|/ρ that the edge farthest from collision keeps at all times; <= 0 where unknown."""
     share = float(edge_shares(case, end).min())
     return 1.0 - sqrt(share) - 4.0 * EPS if share < 4.0 else -1.0

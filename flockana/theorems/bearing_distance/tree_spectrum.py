@@ -17,7 +17,7 @@ _CLEAR = 1e3  # times its rounding, from which on a number is not 0
 
 
 class Spectrum(NamedTuple):
-    """Zero eigenvalues, slowest other rate, error of the polynomial, and margin and error of "it is as stated"."""
+    """Zero eigenvalues, slowest decay rate, error of the polynomial, and margin against the stated spectrum."""
 
     zeros: int
     slowest: float
@@ -27,7 +27,7 @@ class Spectrum(NamedTuple):
 
 
 def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
-    """The spectrum of the law linearised at a point of the manifold, with the rate of its slowest mode but 0.
+    """Return the spectrum of the law linearised at a point of the manifold, with its slowest rate.
 
     Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
     """
@@ -35,7 +35,7 @@ def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Edge by edge the roots of s² + a s + μ once and {0, -a} m − 1 times: the polynomial, and the kernel's dimension.
+    """Return the polynomial of a directed tree, with roots of s² + a s + μ for each edge, and its kernel's dimension.
 
     Eigenvalues are not computed: those of a chain of equal edges are defective, and rounding would spread them.
     """
@@ -50,7 +50,7 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
-    """K = −∂u/∂q and C = −∂u/∂p are symmetric, so that s² + γs + κ = 0 with κ, γ >= 0 the quotients of a mode.
+    """Return the spectrum of an undirected tree from s² + γs + κ = 0, with quotients κ, γ >= 0 of each mode.
 
     All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has the
     multiplicity of the kernel of K, less translations.
@@ -68,7 +68,7 @@ def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
-    """A of (x, x') with times in a unit."""
+    """Return the matrix A of (x, x') with time in another unit."""
     half = len(A) // 2
     scale = np.concatenate([np.ones(half), np.full(half, unit)])
     scaled: FloatArray = A * (scale[:, None] * unit) / scale[None, :]
@@ -76,7 +76,7 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:
-    """(number of zeros, margin, rounding) among rising eigen- or singular values that should be zero or positive.
+    """Return (number of zeros, margin, rounding) among eigenvalues that should be zero or positive.
 
     The margin is the least of the others over the largest, negative if there are other zeros than expected, NaN if it
     is not clear which are.
@@ -92,5 +92,5 @@ def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, 
 
 
 def _off(size: int) -> float:
-    """Rounding of a determinant far outside the spectrum, over what would count as another polynomial."""
+    """Return the relative rounding of a determinant far outside the spectrum."""
     return 64.0 * size**2 * EPS / POLYNOMIAL

@@ -16,7 +16,7 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Toler
 
 
 def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """The counterexample: at rest with every edge at its desired length, where nothing moves and x is not 0."""
+    """Return the counterexample at rest with every edge at its desired length, where x does not tend to 0."""
     q = case.on_manifold(seen.run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
     least = kept(case, state(q, 0.0 * q))
@@ -35,7 +35,7 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 
 def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """The claim x -> 0 on this run: refuted by an edge that has too little energy ever to shorten to 0."""
+    """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
     length, least = case.lengths(seen.run.q[-1]), kept(case, seen.end)
     text = f"one edge keeps {least:.4g} of its desired length or more for ever"
     return limit_claim(
@@ -50,7 +50,7 @@ def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Cl
 
 
 def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
-    """Largest real part of the roots of s² + a s + w_e over all edges, w_e = μ (1 − ρ/‖x_e‖): those of A_cl (J3)."""
+    """Return the largest real part of the eigenvalues of A_cl, s² + a s + μ (1 − ρ/‖x_e‖) over all edges (J3)."""
     abscissa = -inf
     for length, rho, mu, a in zip(lengths, case.rho, case.mu, case.align, strict=True):
         w = mu * (1.0 - rho / length) if length > 0.0 else -inf
@@ -59,7 +59,7 @@ def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
 
 
 def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """The claim that A_cl is Hurwitz all along the run: it is if and only if every edge is longer than desired.
+    """Return the claim that A_cl is Hurwitz along the run, which holds if every edge is longer than desired.
 
     det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     """

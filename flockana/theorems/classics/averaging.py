@@ -1,4 +1,4 @@
-"""What is certain of averaged headings: nets that never change again, groups that never meet again, contraction."""
+"""Certificates for averaged headings: permanent nets, permanent separation, contraction."""
 
 from __future__ import annotations
 
@@ -22,14 +22,7 @@ _TERMS = 4.0  # roundings of a difference, a length and a quotient
 
 
 def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
-    """Row-stochastic matrix of one step, θ' = M θ: each agent weighs itself and its neighbours alike.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
+    """Return the row-stochastic matrix M of one step θ' = M θ, equal weights over neighbours and itself.
 
     Examples
     --------
@@ -43,12 +36,7 @@ def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def contraction(matrix: FloatArray) -> float:
-    """Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|: no spread is multiplied by more.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (n, n)
-        Row-stochastic.
+    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread.
 
     Examples
     --------
@@ -60,19 +48,7 @@ def contraction(matrix: FloatArray) -> float:
 
 @dataclass(frozen=True)
 class Block:
-    """As many jointly connected windows as there are agents, but one: enough to contract the headings.
-
-    Parameters
-    ----------
-    start, stop : int
-        First step and the first after it.
-    factor : float
-        By how much the nets contract every spread at least.
-    error : float
-        Rounding of the spread at its end.
-    mixes : bool
-        Whether all agents take something from one, so that the factor is below 1, however little: it may round to 1.
-    """
+    """Sequence of n − 1 jointly connected windows, enough to contract the headings."""
 
     start: int
     stop: int
@@ -82,17 +58,7 @@ class Block:
 
 
 def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tuple[int, int]]) -> tuple[Block, ...]:
-    """Consecutive blocks of n − 1 windows, each with what its nets guarantee.
-
-    Parameters
-    ----------
-    nets : sequence of int array
-        Links at each step.
-    headings : ndarray, shape (T, n)
-        One more than there are steps.
-    windows : sequence of (int, int)
-        Jointly connected windows of steps.
-    """
+    """Return consecutive blocks of n − 1 windows, each with its guaranteed contraction."""
     n, found = headings.shape[1], []
     size = max(1, n - 1)
     for k in range(0, len(windows) - size + 1, size):
@@ -108,21 +74,12 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
 
 
 def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Certificate that a connected net never changes again, so that all headings tend to one.
+    """Return a certificate that a connected net never changes again, so that all headings tend to one.
 
     With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
     of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
     steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
     less than what each distance is away from r, the net stays; by induction for ever.
-
-    Parameters
-    ----------
-    law : HeadingAveraging
-        The law, with the mean of headings and no noise.
-    q : ndarray, shape (n, 2)
-        Positions.
-    heading : ndarray, shape (n,)
-        Headings.
     """
     n, pairs = len(q), law.links(q)
     if components(n, pairs).max() > 0:
@@ -149,14 +106,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
-    """How many agents each averages over, itself included.
-
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    pairs : int array, shape (M, 2)
-        Links.
+    """Return the number of agents that each averages over, itself included.
 
     Examples
     --------
@@ -167,14 +117,7 @@ def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
-    """The mean heading by weights: what a connected net that stays keeps, and tends to.
-
-    Parameters
-    ----------
-    heading : ndarray, shape (n,)
-        Headings.
-    weights : ndarray, shape (n,)
-        1 and the number of neighbours of each agent.
+    """Return the weighted mean heading that a constant connected net preserves and tends to.
 
     Examples
     --------
@@ -185,26 +128,17 @@ def final_heading(heading: FloatArray, weights: FloatArray) -> float:
 
 
 def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray, IndexArray]:
-    """How far the distance of each pair is from r, and the pairs (i, j)."""
+    """Return the distance of each pair to r, and the pairs (i, j)."""
     i, j = np.triu_indices(len(q), 1)
     return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
 
 
 def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Certificate that a component of the net never meets the other agents again.
+    """Return a certificate that a component of the net never meets the other agents again.
 
     There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings
     advances faster than each of theirs. No heading leaves the span of those of its own side while the sides do not
     meet, so that they never do, and the spans stay apart.
-
-    Parameters
-    ----------
-    law : HeadingAveraging
-        The law, with the mean of headings and no noise.
-    q : ndarray, shape (n, 2)
-        Positions.
-    heading : ndarray, shape (n,)
-        Headings.
     """
     labels = components(len(q), law.links(q))
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
@@ -225,7 +159,7 @@ def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def _advance(heading: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Least and greatest cos(θ − φ) over all θ between the least and the greatest heading, for each φ."""
+    """Return the least and greatest cos(θ − φ) over the range of headings θ, for each φ."""
     low, high = float(heading.min()), float(heading.max())
     ends = np.cos(low - angles), np.cos(high - angles)
     turn = 2.0 * np.pi

@@ -27,19 +27,19 @@ WINDOWS = 4  # of equal length, of the last half of a run: in each of them an ag
 
 
 def gains_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """c1γ and c2γ of each agent, two arrays of shape (n,)."""
+    """Return c1γ and c2γ of each agent, two arrays of shape (n,)."""
     gains = run.law.gains
     pull, match = (np.broadcast_to(np.asarray(x, dtype=np.float64), (run.n,)) for x in (gains.c1_gamma, gains.c2_gamma))
     return pull, match
 
 
 def informed(run: Trajectory) -> np.ndarray:
-    """Which agents feel the leader, a mask of shape (n,)."""
+    """Return a mask (n,) of the agents that feel the leader."""
     return gains_of(run)[0] > 0.0
 
 
 def some_informed(run: Trajectory) -> Hypothesis:
-    """The hypothesis that the informed have one c1 > 0 and one c2 > 0, and the others neither."""
+    """Return the hypothesis that informed agents share one c1 > 0 and one c2 > 0, and the others have none."""
     pull, match = gains_of(run)
     who = pull > 0.0
     alike = (
@@ -52,7 +52,7 @@ def some_informed(run: Trajectory) -> Hypothesis:
 
 
 def constant_velocity(run: Trajectory) -> Hypothesis:
-    """The hypothesis that the leader moves at a constant velocity, which it tells."""
+    """Return the hypothesis that the leader moves at constant velocity, and reports it."""
     target, name = run.law.target, "the leader's velocity is constant"
     if type(target) in (LinearTarget, StaticTarget):
         return Hypothesis(name, "met", detail=type(target).__name__)
@@ -85,7 +85,7 @@ def _seen(run: Trajectory) -> Trajectory:
 
 
 def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
-    """t, q, p and u of samples, or of the steps between them, less those of the leader."""
+    """Return t, q, p and u of samples, or of steps between them, relative to the leader."""
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
     place, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))
@@ -95,7 +95,7 @@ def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
 
 
 def linked_to_informed(run: Trajectory) -> np.ndarray:
-    """Which agents a chain of links joins to an informed one in each window of the last half of a run, a mask (n,).
+    """Return a mask (n,) of agents linked to an informed one in each window of the last half of a run.
 
     A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
     """

@@ -87,8 +87,8 @@ THEOREM = Theorem(
         "first-order rendezvous. Of both this is a part, in our words."
     ),
     source=(
-        "Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that of the start, "
-        "without the links that both add, and the bound of each link is ours"
+        "ours, after Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that "
+        "of the start, without the links that both add"
     ),
     kind="trajectory",
     check=_check,

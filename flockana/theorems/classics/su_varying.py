@@ -1,4 +1,4 @@
-"""Su, Wang and Lin (2009): a virtual leader of varying velocity, whose acceleration all agents are told."""
+"""Su, Wang and Lin (2009): a virtual leader of varying velocity, with acceleration feedforward."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _AGREES = 1e-6  # of the way that the centre has to go, or of d: well above the 
 
 
 def convergence_rate(gains: Gains) -> float:
-    """−max Re s of s² + c2 s + c1: how fast the centre of mass comes to the leader.
+    """Return −max Re s of s² + c2 s + c1, the rate at which the centre of mass approaches the leader.
 
     Examples
     --------
@@ -45,7 +45,7 @@ def convergence_rate(gains: Gains) -> float:
 
 
 def _only_told(run: Trajectory) -> Hypothesis:
-    """That the law is Algorithm 2 and the leader's acceleration, told to all; or needs none, at constant velocity."""
+    """Return the hypothesis that the law is Algorithm 2 with feedforward (not needed at constant velocity)."""
     name, law = "the law is Algorithm 2, and all agents are told the leader's acceleration", run.law
     if type(law) is Algorithm2:
         steady = constant_velocity(run)
@@ -94,7 +94,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
 
 
 def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
-    """The basin of the shape, whose centre comes to the leader by itself; none is known of another pair law."""
+    """Return the basin of the flock's shape; none is known for other pair laws."""
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
     q, p, *errors = seen.end

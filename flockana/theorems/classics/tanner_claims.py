@@ -1,4 +1,4 @@
-"""What the two theorems of Tanner, Jadbabaie and Pappas claim of a run: no collision, and rest in the end."""
+"""Claims of Tanner, Jadbabaie and Pappas about a run: no collision, and rest in the limit."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: list[Hypothe
 
 
 def _energy_error(seen: Observed, i: Any, j: Any) -> float:
-    """How far rounding moves H at the start: an error e of d²/s² moves V by k (|d²/s² − 1| e + e²) at most."""
+    """Return the error of H at the start due to rounding."""
     q, potential = seen.run.q[0], seen.law.potential
     s = np.linalg.norm(q[j] - q[i], axis=1)
     x, e = (potential.d / s) ** 2, 8.0 * EPS * (1.0 + float(np.abs(q).max()) / s)

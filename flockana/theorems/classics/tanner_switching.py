@@ -15,7 +15,7 @@ from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, 
 
 
 def _connected(seen: Observed) -> Hypothesis:
-    """Connected at all times: certain if too few pairs can leave, not so if it is apart at a sample, else assumed."""
+    """Return the hypothesis that the net is connected at all times."""
     name, run = "the net is connected at all times", seen.run
     blur = 8.0 * EPS * float(np.abs(run.q).max()) + 2.0 * seen.shape_error.max(axis=1)
     for q, t, off in zip(run.q, run.t, blur, strict=True):

@@ -1,1 +1,1 @@
-"""What holds of every composition of terms, one file each."""
+"""Theorems about every composition of terms, one file each."""

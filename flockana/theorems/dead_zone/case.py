@@ -28,14 +28,14 @@ _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in
 
 
 def dead_zone_law(run: Trajectory) -> DeadZoneFlocking | None:
-    """The dead-zone law of a run, of its semi-implicit Euler steps too; None under another law, a subclass included."""
+    """Return the dead-zone law of a run, also of its semi-implicit Euler map; None under any other law."""
     law: Any = run.law.law if type(run.law) is SemiImplicitEuler else run.law
     exact = type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction
     return law if exact else None
 
 
 def hypotheses(seen: Observed) -> list[Hypothesis]:
-    """The law, and distinct positions at the start."""
+    """Return the hypotheses on the law, and on distinct positions at the start."""
     law = dead_zone_law(seen.run)
     least = min_distance(seen.run.q[0])
     return [
@@ -64,12 +64,12 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
 
 
 def settling(end: Components) -> Certificate:
-    """Certificate that velocities match within each component: each settles by itself, and no two of them meet."""
+    """Return a certificate that each component settles by itself, and no two of them meet."""
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
 def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
-    """Return K̃ → 0: certain of one component that settles, refuted where components part at different velocities."""
+    """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
     series = seen.mismatch.mid
     return limit_claim(
         name,

@@ -52,17 +52,6 @@ def hold(
 ) -> Basin:
     """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given.
 
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps.
-    off, p_off : float
-        How far positions and velocities may be from the true ones, over all coordinates.
-
     Examples
     --------
     Two agents at their contact, and two that have more energy than it takes to leave it:
@@ -94,7 +83,7 @@ def hold(
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
-    """|∇U| over all coordinates, with the rounding of its sums, and of the lengths that they are made of, added."""
+    """Return ‖∇U‖ over all coordinates, with its rounding added."""
     pair, pairs = law.interaction, links(q, law.interaction.r)
     pulls = np.abs(pair.force(link_lengths(q, pairs)))
     most = float(np.bincount(pairs.ravel(), weights=np.repeat(pulls, 2), minlength=1).max())
@@ -104,7 +93,7 @@ def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
 
 
 def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
-    """How far the nearest pair is from a distance at which the force or its slope jumps."""
+    """Return the distance of the nearest pair to a switching distance."""
     pair = law.interaction
     kinks = [pair.d1 - pair.ramp, pair.d1]
     if pair.d2 < pair.r:
@@ -117,13 +106,13 @@ def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
 
 
 def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
-    """Lipschitz constant of ∇²U within a distance of q."""
+    """Return a Lipschitz constant of ∇²U within a distance of q."""
     pairs = links(q, law.interaction.r)
     return lipschitz_constant(len(q), pairs, _third(law, link_lengths(q, pairs), sqrt(2.0) * window))
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:
-    """Upper bound of the norm of the third derivative of each pair's potential, over lengths within the slack.
+    """Return an upper bound of each pair potential's third derivative, over lengths within the slack.
 
     It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
     makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
@@ -144,7 +133,7 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
 
 
 def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
-    """f, f' and f'' on one of five pieces: repulsion, its ramp, the dead zone, the ramp of attraction, attraction."""
+    """Return f, f' and f'' on one of five pieces: repulsion, its ramp, dead zone, ramp of attraction, attraction."""
     if zone == 2:
         return 0.0 * s, 0.0 * s, 0.0 * s
     near = zone < 2
@@ -161,7 +150,7 @@ def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosu
 
 
 def _stability(law: DeadZoneFlocking, q: FloatArray, stiffest: float, dt: float) -> float:
-    """1 - (dt²Λ + 2 dt Γ)/2, positive where every mode of the map decays, with room."""
+    """Return 1 − (dt²Λ + 2 dt Γ)/2, positive where every mode of the map decays."""
     m = q.shape[1]
     by_agent = law.interaction.laplacian(q).toarray()[::m, ::m]  # each component has the same
     dissipation = law.k2 * float(np.linalg.eigvalsh(by_agent)[-1])

@@ -38,7 +38,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         return law.acceleration(0.0, x, np.zeros_like(x))
 
     def change_by_turning(u: Any) -> float:
-        """Largest change of a force by the turn, relative to the largest force."""
+        """Return the largest change of a force by a rotation, relative to the largest force."""
         return float(np.abs(u(q @ turn.T) - u(q) @ turn.T).max() / np.abs(u(q)).max())
 
     printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)

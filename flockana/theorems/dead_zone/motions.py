@@ -9,14 +9,14 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 
 
 def parting_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
-    """The law, positions and velocities of two agents 14 m apart that move apart at 12 m/s."""
+    """Return law, positions and velocities of two agents 14 m apart that separate at 12 m/s."""
     return DeadZoneFlocking(), np.array([[0.0, 0.0], [14.0, 0.0]]), np.array([[-6.0, 0.0], [6.0, 0.0]])
 
 
 def advance(
     law: DeadZoneFlocking, q: FloatArray, p: FloatArray, dt: float, t_end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Positions and velocities at t_end, by semi-implicit Euler steps of which only the last is kept."""
+    """Return positions and velocities at t_end by semi-implicit Euler steps."""
     for _ in range(round(t_end / (500 * dt))):
         states = law.semi_implicit(q, p, dt, 500, np.array([500]))
         q, p = states[0][-1], states[1][-1]

@@ -1,4 +1,4 @@
-"""The components of a dead-zone flock's net, and what is certain of them for ever: which stay together, which part.
+"""Components of a dead-zone flock's net, and which of them provably stay together or separate.
 
 While no two components meet, each has a centre of constant velocity and an energy H̄ of its own that does not rise. Two
 things keep a component together:
@@ -39,19 +39,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A component of the net at one instant, and what is certain of it while it meets no other.
-
-    Parameters
-    ----------
-    law : DeadZoneFlocking
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities of its agents.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps; by default the flow.
-    off, p_off, energy_off : float
-        How far positions and velocities, over all coordinates, and the energy may be from the true ones.
-    """
+    """A component of the net at one instant, and what is certain of it while it meets no other."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -73,7 +61,7 @@ class Component:
 
     @cached_property
     def basin(self) -> Basin:
-        """The basin of the minimum of its potential beside it."""
+        """Basin of the potential's minimum beside the component."""
         return hold(self.law, self.q, self.p, self.dt, off=self.off, p_off=self.p_off)
 
     @cached_property
@@ -102,7 +90,7 @@ class Component:
 
     @cached_property
     def radius(self) -> float:
-        """How far from its centre an agent ever gets, at most; ∞ if it might break up."""
+        """Upper bound of any agent's distance from the component's centre at all times; ∞ if it might break up."""
         if self.size == 1:
             return 0.0
         if self.basin.certificate.certain:
@@ -114,22 +102,14 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """The components of a flock at one instant.
-
-    Parameters
-    ----------
-    members : tuple of Component
-        The components, in the order of their first agents.
-    r : float
-        Interaction range.
-    """
+    """The components of a flock at one instant."""
 
     members: tuple[Component, ...]
     r: float
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of components."""
         return len(self.members)
 
     @property
@@ -139,14 +119,14 @@ class Components:
 
     @cached_property
     def drift(self) -> float:
-        """K̃ of the centres, ½ Σ n_c‖v_c − v̄‖²/n: what is left of K̃ for ever if no two components meet."""
+        """Mismatch K̃ of the centres, ½ Σ n_c‖v_c − v̄‖²/n, the limit of K̃ if no two components meet."""
         sizes, velocity = self._sizes, np.array([component.p.mean(axis=0) for component in self.members])
         mean = np.average(velocity, axis=0, weights=sizes)
         return 0.5 * float(sizes @ np.sum((velocity - mean) ** 2, axis=1)) / float(sizes.sum())
 
     @property
     def apart(self) -> Certificate:
-        """No two components ever meet; the margin is by how much their paths clear r + B + B', over r."""
+        """Certificate that no two components ever meet, with the clearance of their paths as margin."""
         margin, error = self._clearance
         clear = margin > error
         return Certificate(float(np.clip(margin, -1.0, 1.0)), f"parts {'never' if clear else 'may'} meet", error)
@@ -174,12 +154,12 @@ class Components:
 
     @property
     def parting(self) -> bool:
-        """Whether it is certain that the components part."""
+        """Whether the components certainly separate."""
         return self.separation.certain
 
     @cached_property
     def separation(self) -> Certificate:
-        """No two components ever meet, and their centres have different velocities: the flock grows beyond all bounds.
+        """Certificate that no two components ever meet, and that their centres move apart without bound.
 
         The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         """
@@ -216,19 +196,6 @@ def components_of(
     energy_off: Callable[[npt.NDArray[np.intp]], float] = lambda agents: 0.0,
 ) -> Components:
     """Return the components of the net at r.
-
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    law : DeadZoneFlocking
-        The law.
-    dt : float, optional
-        Step of the map of semi-implicit Euler steps.
-    off, p_off : float
-        How far the state may be from the true one, over all coordinates.
-    energy_off : callable
-        How far the energy of some agents, an index array, may be off.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Whether two agents of a run come into range of each other, between the samples too, as far as it can be decided."""
+"""Decision whether two agents of a run come into range of each other, also between the samples."""
 
 from __future__ import annotations
 
@@ -17,17 +17,7 @@ _NEXT = 1.5  # steps: samples of a map that are farther apart have states betwee
 
 @dataclass(frozen=True)
 class Entry:
-    """The first pair that comes into range, and whether there may be others.
-
-    Parameters
-    ----------
-    pair : tuple of int, optional
-        Two agents that were out of range for certain, and then in it.
-    time : float, optional
-        The end of the first interval between steps in which some do.
-    unsure : bool
-        Whether there are others of which it cannot be told, at r but for rounding or between samples too sparse.
-    """
+    """The first pair that comes into range, and whether there may be others."""
 
     pair: tuple[int, int] | None
     time: float | None
@@ -35,7 +25,7 @@ class Entry:
 
 
 def thinned(run: Trajectory) -> bool:
-    """Whether a map had states between those that were kept."""
+    """Return whether a map took steps between the stored samples."""
     return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 

@@ -23,7 +23,7 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Toler
 
 
 def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:
-    """1 − R/r of the limit, and how it is known; None where nothing is."""
+    """Return 1 − R/r of the limit, and its evidence; None where unknown."""
     if end.count > 1:
         apart = end.separation
         return Enclosure.around(-apart.margin, apart.error) if end.parting else None, apart.text
@@ -39,7 +39,7 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
 
 
 def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
-    """R ≤ r in the end: of a flock that stays near a minimum the limit is known, of one that parts as well."""
+    """Return the claim R ≤ r in the limit."""
     radius = cohesion_radius(seen.run.q[-1])
     room, known = _certain_radius(seen, end, radius)
     within, beyond = (-1.0, -1.0) if room is None else (float(room.lo), float(-room.hi))
@@ -56,7 +56,7 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
 
 
 def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
-    """The energy of neighbours only never rises: it does by ψ̄(r) > 0 at the very time at which a pair comes into range.
+    """Return the claim that the energy of neighbours never rises, which an entering pair refutes.
 
     Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
     """

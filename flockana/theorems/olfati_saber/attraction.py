@@ -41,15 +41,6 @@ def attraction(
     Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
     of a flock with more coordinates than a dense Hessian is made for.
 
-    Parameters
-    ----------
-    law : Algorithm1 or Algorithm2
-        The law.
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    off, p_off : float
-        How far each may be from the true ones, over all coordinates.
-
     Examples
     --------
     >>> q = np.array([[0.0, 0.0], [7.001, 0.0]])
@@ -88,14 +79,14 @@ def final_basin(seen: Observed) -> Basin:
 
 
 def _translations(q: FloatArray) -> FloatArray:
-    """Orthonormal basis of the translations, shape (n m, m)."""
+    """Return an orthonormal basis of the translations, shape (n m, m)."""
     n, m = q.shape
     basis: FloatArray = np.tile(np.eye(m), (n, 1)) / sqrt(n)
     return basis
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
-    """|∇U(x)| over all coordinates, with the rounding of its sums added."""
+    """Return ‖∇U(x)‖ over all coordinates, with the rounding of its sums added."""
     near = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
     rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (near + 1.0) + 16.0 * EPS * pull
@@ -103,14 +94,14 @@ def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
 
 
 def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float) -> float:
-    """Lipschitz constant L of ∇²U within a distance of q."""
+    """Return a Lipschitz constant L of ∇²U within a distance of q."""
     alpha, slack = paper_pair(law), sqrt(2.0) * window
     pairs = links(q, alpha.r + slack)
     return lipschitz_constant(len(q), pairs, law.gains.c1_alpha * _third(alpha, link_lengths(q, pairs), slack))
 
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:
-    """Upper bound of the norm of the third derivative of ψ_α(‖x‖_σ) for each pair, over lengths within the slack.
+    """Return an upper bound of each pair potential's third derivative, over lengths within the slack.
 
     With F(s) = ψ_α(‖s‖_σ) it is F‴ along the pair three times and (F'/s)' along it once and across twice; of unit
     vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most.
@@ -127,7 +118,7 @@ def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatA
 
 
 def _action(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
-    """φ_α, φ_α' and φ_α'' over enclosures of z."""
+    """Return φ_α, φ_α' and φ_α'' over enclosures of z."""
     rho, rho_slope, rho_bend = _bump(alpha, z)
     area = alpha.unit**2
     w = (z - alpha.d_alpha) / area + alpha.c
@@ -140,7 +131,7 @@ def _action(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure
 
 
 def _bump(alpha: AlphaInteraction, z: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
-    """ρ_h(z/r_α) and its first two derivatives in z; at z = h r_α and r_α the second one jumps."""
+    """Return ρ_h(z/r_α) and its first two derivatives in z; the second jumps at z = h r_α and r_α."""
     width = (1.0 - alpha.h) * alpha.r_alpha
     angle = (z - alpha.h * alpha.r_alpha) * (pi / width)
     inside = Enclosure(*(np.clip(end, 0.0, pi) for end in (angle.lo, angle.mid, angle.hi)))

@@ -177,7 +177,7 @@ def no_collision(
         margin,
         needs,
         computed=float(least.mid),
-        stated="distance > 0 between any two agents, always",
+        stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
         proof=proof,
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",

@@ -33,20 +33,20 @@ _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
 def _coincident_energy(tube: Tube) -> arb:
-    """c* with its gain, c1α ψ_α(0)."""
+    """Return c* with its gain, c1α ψ_α(0)."""
     unit = arb(exact(tube.law.alpha.unit))
     return arb(exact(tube.law.gains.c1_alpha)) * unit * unit * c_star(scaled(tube.law.alpha))
 
 
 def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
-    """The hypothesis H(0) < k c*."""
+    """Return the hypothesis H(0) < k c*."""
     with ctx.workprec(BITS):
         name = "H(0) < c*" if times == 1 else f"H(0) < {times} c*"
         return below(name, tube.energy(0), times * _coincident_energy(tube))
 
 
 def _below_barrier(tube: Tube) -> Hypothesis:
-    """The hypothesis H(0) < min{V : two agents coincide}: met below a lower bound, unmet above such a state's V."""
+    """Return the hypothesis H(0) < min{V : two agents coincide}."""
     name, alpha, energy = "H(0) < min{V : two agents coincide}", tube.law.alpha, tube.energy(0)
     if tube.n < 2:
         return condition(name, True, detail="there is one agent")
@@ -63,7 +63,7 @@ def _below_barrier(tube: Tube) -> Hypothesis:
 
 
 def _stays_together(tube: Tube) -> Hypothesis:
-    """The hypothesis of Theorem 1 on all solutions from Ω_c: met by too little energy to part, broken by a tube."""
+    """Return the hypothesis of Theorem 1 that all solutions from Ω_c stay connected."""
     name = "every solution from Ω_c is a cohesive dynamic flock"
     reach = arb(exact(tube.law.alpha.r))
     for k, t in enumerate(tube.t[:-1]):
@@ -82,7 +82,7 @@ def _stays_together(tube: Tube) -> Hypothesis:
 
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Theorem 1 for the starts of a tube."""
+    """Check Theorem 1 for the starts of a tube."""
     needs = [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]
     if unmet(needs):
         return needs, []
@@ -113,7 +113,7 @@ def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) ->
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Theorem 3 for the starts of a tube."""
+    """Check Theorem 3 for the starts of a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
     case, whole = Enclosed.of(tube, basin), tube.status == "complete"
@@ -200,7 +200,7 @@ def _few_pairs(case: Enclosed, repels: Hypothesis) -> Claim:
 
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """How much energy a collision takes, for the starts of a tube."""
+    """Check the energy of a collision for the starts of a tube."""
     needs, case = [positive(tube, c1_alpha="c1α")], Enclosed.of(tube, basin)
     if unmet(needs):
         return needs, []

@@ -22,7 +22,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 
 def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
-    """The steps that are judged: those that end within the last part of the tube."""
+    """Return the steps that are judged, those that end within the last part of the tube."""
     start = tube.t[0] + tolerances.settle * (tube.t[-1] - tube.t[0])
     steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
     broken = tube.status != "complete"
@@ -32,7 +32,7 @@ def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
 
 
 def _highest(tube: Tube, window: range, value: Callable[[int], arb]) -> tuple[arb, float]:
-    """A ball that holds the largest value of a quantity over the window, and when it is attained at about."""
+    """Return a ball around the largest value of a quantity over the window, and its approximate time."""
     values = [value(k) for k in window]
     low, high = (max((end(x) for x in values), key=float) for end in (arb.lower, arb.upper))
     worst = max(range(len(values)), key=lambda i: float(values[i].upper()))
@@ -44,7 +44,7 @@ def _distances(tube: Tube, k: int) -> dict[Pair, arb]:
 
 
 def _components(tube: Tube, window: range, name: str, most: int, missing: Callable[[list[Pair]], int]) -> Claim:
-    """A claim that a number that falls with each link is never above a bound, by certain and by possible links."""
+    """Return the claim that a number that falls with each link never exceeds a bound."""
     reach = arb(exact(tube.law.alpha.r))
 
     def count(k: int) -> arb:
@@ -58,7 +58,7 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
 
 
 def _deviation(tube: Tube, window: range, bound: float) -> Claim:
-    """The claim Ẽ <= ε₁, at all times of the window."""
+    """Return the claim Ẽ <= ε₁ at all times of the window."""
     d, reach = arb(exact(tube.law.alpha.d)), arb(exact(tube.law.alpha.r))
 
     def value(k: int) -> arb:
@@ -72,7 +72,7 @@ def _deviation(tube: Tube, window: range, bound: float) -> Claim:
 
 
 def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
-    """The claim K̃ <= ε₂, at all times of the window."""
+    """Return the claim K̃ <= ε₂ at all times of the window."""
     units, n, m = arb(tube.law.scales.energy), tube.n, tube.m
 
     def value(k: int) -> arb:
@@ -85,14 +85,14 @@ def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
 
 
 def _under(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
-    """A claim that the largest value of a quantity is below a bound."""
+    """Return the claim that the largest value of a quantity is below a bound."""
     top = float(highest.upper())
     detail = f"{symbol} <= {top:.4g} throughout, largest about t = {when:.4g}"
     return decided(name, arb(bound) - highest, computed=top, stated=f"{symbol} <= {bound:g}", detail=detail)
 
 
 def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
-    """The claim that R never exceeds a multiple of what it is at the start of the window."""
+    """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
     each = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
     bound = arb(tolerances.cohesion) * each[0]
@@ -104,7 +104,7 @@ def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
 
 def alpha_flocking(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """The plain form."""
+    """Check α-flocking for the starts of a tube."""
     known, window = _window(tube, tolerances)
     if known.status == "unmet":
         return [known], []
@@ -119,7 +119,7 @@ def alpha_flocking(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) 
 
 
 def alpha_flocking_strict(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """The strict form."""
+    """Check α-flocking with a connected net for the starts of a tube."""
     known, window = _window(tube, tolerances)
     if known.status == "unmet":
         return [known], []

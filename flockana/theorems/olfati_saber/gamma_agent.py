@@ -1,4 +1,4 @@
-"""Whether the γ-agent rests, and moves as it declares, by its positions during a run, between the samples too.
+"""Checks of the γ-agent during a run: whether it rests, and moves as it declares.
 
 A target declares its own velocity and rate, and may be wrong about either. Here the difference of its positions over
 each interval between samples is compared with the integral of what it declares, and rest means that no position seen
@@ -28,12 +28,12 @@ _CONSISTENT = 1e-6  # of the law's speed: what a source's own rounding of a velo
 
 
 def _known(target: Target) -> bool:
-    """Whether the path is one of the built-in formulas, which samples determine."""
+    """Return whether the path is one of the built-in formulas, which samples determine."""
     return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
 
 
 def _looked(run: Trajectory) -> FloatArray:
-    """When the γ-agent is looked at: at the samples, of another's path at the solver's steps and amid them too."""
+    """Return the times at which the γ-agent is sampled."""
     if _known(run.law.target) or len(run.t) < 2:
         return run.t
     steps = run.path.t
@@ -41,7 +41,7 @@ def _looked(run: Trajectory) -> FloatArray:
 
 
 def _between(t: FloatArray) -> FloatArray:
-    """Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
+    """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
     middle, half = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
     halves = np.stack([middle - half, middle + half], axis=1)
     nodes: FloatArray = halves[:, :, None] + half[:, None, None] * _NODES
@@ -76,7 +76,7 @@ def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class Slip:
-    """Difference between a declared velocity and the one that the positions show, at worst over a run's intervals.
+    """Largest difference over a run between a declared velocity and the one that the positions show.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class Slip:
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
-    """The difference between a declared velocity and the one that the γ-agent's positions show over a run."""
+    """Return the difference between a declared velocity and the one that the γ-agent's positions show."""
     target, t = run.law.target, _looked(run)
     h = np.diff(t)
     if h.size == 0:
@@ -108,19 +108,19 @@ def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
 
 
 def _mean(velocity: Callable[[float], FloatArray], nodes: FloatArray) -> FloatArray:
-    """Mean of a velocity over intervals by its Gauss nodes, which are the last axis."""
+    """Return the mean of a velocity over intervals from its Gauss nodes on the last axis."""
     values = np.array([velocity(float(time)) for time in nodes.ravel()]).reshape(*nodes.shape, -1)
     mean: FloatArray = np.einsum("...kc,k->...c", values, _WEIGHTS)
     return mean
 
 
 def consistent(run: Trajectory) -> Hypothesis:
-    """The hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it tells the flock."""
+    """Return the hypothesis dq_r/dt = p_r: the γ-agent moves with the velocity that it reports."""
     return _agrees(run, "dq_r/dt = p_r", "p_r", lambda t: run.law.target.state(t)[1])
 
 
 def declared_rate_is_true(run: Trajectory) -> Hypothesis:
-    """The hypothesis that the target's declared rate is that of its positions, as the closed form of dH/dt needs."""
+    """Return the hypothesis that the target's declared rate is the derivative of its positions."""
     return _agrees(run, "the γ-agent's declared rate is dq_r/dt", "the rate", run.law.target.rate)
 
 

@@ -24,21 +24,21 @@ if TYPE_CHECKING:
 
 
 def _rests(tube: Tube) -> Hypothesis:
-    """The hypothesis that the γ-agent is static; those that are enclosed move on a straight path."""
+    """Return the hypothesis that the γ-agent is static."""
     moves = bool(tube.law.target.harmonic.terms[1].any())
     detail = "it moves" if moves else f"q_r is fixed, p_r = {_told(tube).tolist()}"
     return condition("the γ-agent is static", not moves, detail=detail)
 
 
 def _told(tube: Tube) -> FloatArray:
-    """p_r, which is constant on a straight path."""
+    """Return p_r, which is constant on a straight path."""
     terms = tube.law.target.harmonic.terms
     told: FloatArray = terms[1] + terms[4]
     return told
 
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
-    """(76), and the first step from which it certainly holds to the end, for the law's time scale at least."""
+    """Return condition (76), and the first step from which it certainly holds to the end."""
     name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
     pull, half, m = flow.terms[0], tube.n * tube.m, tube.m
     slack = []
@@ -58,7 +58,7 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
 
 
 def _stays_outside(tube: Tube) -> Hypothesis:
-    """The hypothesis that no agent enters an obstacle, between the steps too."""
+    """Return the hypothesis that no agent enters an obstacle, between the steps too."""
     name = "no agent enters an obstacle"
     if not tube.law.obstacles:
         return Hypothesis(name, "met", detail="there is none")
@@ -72,7 +72,7 @@ def _stays_outside(tube: Tube) -> Hypothesis:
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
-    """The claim that dH/dt is not positive at any time from a step on; the margin is the fall over its terms' size.
+    """Return the claim that dH/dt is never positive from a step on.
 
     With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
     """
@@ -99,7 +99,7 @@ def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) ->
 
 
 def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """The claim that H(t) − H(0) is the integral of the closed-form rate, to a share of the larger |H|."""
+    """Return the claim that H(t) − H(0) is the integral of the closed-form rate."""
     first, last = total_energy(tube.law, *tube.state(0)), total_energy(tube.law, *tube.state(-1))
     largest = abs(first).max(abs(last))
     share = abs(last - first - work(tube)) / largest if largest > 0 else arb(0)
@@ -116,12 +116,12 @@ def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Cla
 
 
 def _law_of(tube: Tube) -> Any:
-    """The tube as what has a law."""
+    """Return an object with the tube's law."""
     return tube
 
 
 def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Theorem 6 for the starts of a tube, over its time."""
+    """Check Theorem 6 for the starts of a tube, over its time."""
     law = _law_of(tube)
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)

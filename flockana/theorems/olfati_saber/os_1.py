@@ -34,7 +34,7 @@ def _barrier(seen: Observed) -> str | None:
 
 
 def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesis]) -> Claim:
-    """Claim (ii): by the proof where the hypothesis on all solutions is met, else by a basin, whose flock stays one."""
+    """Return claim (ii), velocities match: by the proof if all its hypotheses are met, else by a basin."""
     caught = [final_basin(seen).certificate]
     if needs[-1].status == "assumed" and caught[0].certain:
         return velocities_match(seen, needs[:-1], name="ii", caught=caught)

@@ -18,7 +18,7 @@ from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances
 
 
 def condition_76(run: Trajectory) -> FloatArray:
-    """T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample, shape (T,): condition (76) holds where it is not negative."""
+    """Return T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample; condition (76) asks for >= 0."""
     told = np.array([run.law.target.state(t)[1] for t in run.t])
     kinetic = 0.5 * np.sum(run.p**2, axis=(1, 2))
     slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, told)
@@ -26,7 +26,7 @@ def condition_76(run: Trajectory) -> FloatArray:
 
 
 def _condition(seen: Observed) -> tuple[Hypothesis, int]:
-    """(76), and the first sample from which it holds to the end; the last sample if it does for too short a time.
+    """Return condition (76), and the first sample from which it holds to the end.
 
     It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
     decides, it is assumed to hold.

@@ -17,7 +17,7 @@ PROOF = "deviation-energy"
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """A pair of the paper's law just within its range and at it, and passing through coincidence."""
+    """Check a pair of the paper's law within range, at the range, and passing through coincidence."""
     alpha = AlphaInteraction()
     d, r = alpha.d, alpha.r
 
@@ -36,7 +36,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 
 def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, symbol: str) -> Claim:
-    """The step of an energy at the range: its value just within less its value there, which is near the limit."""
+    """Return the jump of an energy at the range."""
     within, at = energy(r * (1.0 - _NEAR)), energy(r)
     scale = max(within, at)
     return of_state(
@@ -55,7 +55,7 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
 def _corner(
     name: str, energy: Callable[[float], float], stated: float, units: tuple[float, float], symbol: str
 ) -> Claim:
-    """The change of slope as one agent passes through the other, by a difference quotient; units: of slope, length."""
+    """Return the change of slope as one agent passes through the other, by a difference quotient."""
     step = _NEAR * units[1]
     change = -2.0 * (energy(step) - energy(0.0)) / step  # of |x|: the slope on the left is the opposite
     return of_state(

@@ -132,7 +132,7 @@ THEOREM = erratum(
         "An agent that sees one other alone, which is not accelerated, still loses c1α ψ_α + ½‖p_i − p_j‖², and "
         "follows it."
     ),
-    source="slides, nets: 'directed nets may be used if agents have different ranges or a conic neighbourhood'",
+    source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
     check=_check,
     expected={
         "undirected": "verified",

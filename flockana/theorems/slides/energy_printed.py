@@ -22,13 +22,13 @@ def pair_energy(run: Trajectory) -> FloatArray:
 
 
 def _pair_forces(run: Trajectory) -> FloatArray:
-    """−c1α ∇V at each sample."""
+    """Return −c1α ∇V at each sample."""
     stiffness = run.law.gains.c1_alpha
     return np.array([run.law.alpha.forces(q, 0.0 * q, stiffness=stiffness, damping=0.0)[0] for q in run.q])
 
 
 def _printed_rate(run: Trajectory) -> FloatArray:
-    """The closed-form rate of the printed energy: V_α too much adds c1α ⟨∇V, p⟩, which has no sign."""
+    """Return the rate of the printed energy, with the surplus c1α ⟨∇V, p⟩ that has no sign."""
     rate: FloatArray = run.energy_rate() - np.sum(_pair_forces(run) * run.p, axis=(1, 2))
     return rate
 

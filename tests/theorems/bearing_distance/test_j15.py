@@ -1,7 +1,5 @@
 """Erratum J15: distances at which pairs and flocks rest."""
 
-from __future__ import annotations
-
 import pytest
 
 

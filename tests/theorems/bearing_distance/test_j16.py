@@ -1,7 +1,5 @@
 """Erratum J16: who stays apart in a box, and why."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """β < ½, on motions by hand whose bound is an integral in closed form."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import mpmath

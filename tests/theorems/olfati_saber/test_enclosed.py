@@ -1,7 +1,5 @@
 """Energies of a start against c* and barriers, from tubes of two agents and of one, whose numbers are known by hand."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The energy identities along runs: what falls, what balances, and whose error it is where they do not."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Theorem 1, on runs whose answer is known: its hypotheses, its limits, its energy bound."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flockana.environment.obstacles import Obstacle
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, no_turn
 
 

@@ -8,7 +8,7 @@ from math import exp, sqrt
 import numpy as np
 
 from flockana.interactions.pair import PairInteraction
-from flockana.kernels.compiling import register_jitable
+from flockana.jit import register_jitable
 from flockana.kernels.lift import lift
 
 

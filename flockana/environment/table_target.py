@@ -1,0 +1,102 @@
+"""γ-agent from a table of times and positions, such as a recorded leader."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flockana.base.checks import FloatArray, ensure_points, ensure_series
+from flockana.base.errors import ArgumentError
+from flockana.base.units import Powers
+from flockana.environment.target import Target
+
+
+@dataclass(frozen=True)
+class TableTarget(Target):
+    """γ-agent on a smooth path through samples; it is saved with runs.
+
+    Given velocities, the path is cubic between samples and has them there; without, it is the cubic spline, whose
+    velocities are continuous. Before the first sample and after the last it rests where the table ends, so that runs
+    should lie within.
+
+    Parameters
+    ----------
+    t : array_like, shape (T,)
+        Times, rising, two or more.
+    q : array_like, shape (T, m)
+        Positions.
+    p : array_like, shape (T, m), optional
+        Velocities.
+
+    Raises
+    ------
+    ArgumentError
+        On shapes that do not fit, numbers that are not finite, or times that do not rise.
+
+    Examples
+    --------
+    >>> path = TableTarget([0.0, 1.0, 2.0], [[0.0, 0.0], [1.0, 0.5], [2.0, 2.0]])
+    >>> path.position(1.0).tolist(), path.rate(1.0).tolist(), path.position(9.0).tolist()
+    ([1.0, 0.5], [1.0, 1.0], [2.0, 2.0])
+    """
+
+    t: Any
+    q: Any
+    p: Any = None
+
+    units: ClassVar[Mapping[str, Powers]] = {"t": (0, 1), "q": (1, 0), "p": (1, -1)}
+
+    def __post_init__(self) -> None:
+        t, q = ensure_series("t", self.t), ensure_points("q", self.q)
+        if len(t) < 2 or len(q) != len(t):
+            raise ArgumentError(f"t has {len(t)} times and q {len(q)} positions: expected as many, two or more")
+        if not (np.diff(t) > 0.0).all():
+            k = int(np.argmax(~(np.diff(t) > 0.0)))
+            raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times")
+        object.__setattr__(self, "t", tuple(t.tolist()))
+        object.__setattr__(self, "q", tuple(map(tuple, q.tolist())))
+        if self.p is not None:
+            p = ensure_points("p", self.p)
+            if p.shape != q.shape:
+                raise ArgumentError(f"p has shape {p.shape}: expected {q.shape}, as q has")
+            object.__setattr__(self, "p", tuple(map(tuple, p.tolist())))
+
+    @cached_property
+    def _pieces(self) -> FloatArray:
+        """Coefficients of t^3 to 1 in each interval, shape (4, T - 1, m)."""
+        from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+        if self.p is not None:
+            return np.asarray(CubicHermiteSpline(self.t, np.array(self.q), np.array(self.p)).c)
+        ends: Any = "not-a-knot" if len(self.t) > 3 else "natural" if len(self.t) > 2 else "not-a-knot"
+        return np.asarray(CubicSpline(self.t, np.array(self.q), bc_type=ends).c)
+
+    @cached_property
+    def _times(self) -> FloatArray:
+        return np.array(self.t)
+
+    def _at(self, t: float) -> tuple[int, float]:
+        """The interval of a time within the table, and the time since its beginning."""
+        k = int(np.clip(np.searchsorted(self._times, t, side="right") - 1, 0, len(self._times) - 2))
+        return k, float(np.clip(t, self._times[0], self._times[-1]) - self._times[k])
+
+    def position(self, t: float) -> FloatArray:  # noqa: D102
+        (k, s), c = self._at(t), self._pieces
+        place: FloatArray = ((c[0, k] * s + c[1, k]) * s + c[2, k]) * s + c[3, k]
+        return place
+
+    def rate(self, t: float) -> FloatArray:
+        """Return dq_r/dt, 0 beyond the table.
+
+        Parameters
+        ----------
+        t : float
+            Time.
+        """
+        (k, s), c = self._at(t), self._pieces
+        rate: FloatArray = (3.0 * c[0, k] * s + 2.0 * c[1, k]) * s + c[2, k]
+        return rate if self._times[0] <= t <= self._times[-1] else np.zeros(rate.shape)

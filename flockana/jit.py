@@ -1,0 +1,373 @@
+"""numba, as published: how a function is compiled, and where compiled code is kept.
+
+Kernels load numba when they first compute: a list of scenarios needs no compiler. Compiled code lies in a folder of the
+user's own, by the contents of the source file and of all package files that it imports, so that an edited kernel is
+compiled again with all its callers. numba numbers files and symbols from one on in each process: so each cached
+function is a module's own, of a name and a signature that no other function has, and one process compiles at a time.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import logging
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from functools import cache, cached_property
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+import numpy as np
+
+from flockana.base.garbage import relaxed_gc
+
+try:
+    import fcntl
+except ImportError:  # Windows: there every process compiles what it needs
+    fcntl = None  # type: ignore[assignment]
+
+WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
+_PATIENCE, _LOOK = 120.0, 0.02  # seconds: of a wait for another process, and between two looks
+_FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
+_UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
+_ONE = RLock()  # one thread compiles at a time
+_OPEN: list[Any] = []  # dispatchers that compile for new types, until all is compiled
+
+
+class Kernel:
+    """A function that is compiled when it is first called.
+
+    Parameters
+    ----------
+    function : callable
+        What to compile.
+    kept : bool
+        Keep the compiled code on disk, if the function is a module's own.
+    options : dict
+        Those of `numba.njit`.
+    """
+
+    def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
+        functools.update_wrapper(self, function)
+        self.__name__, self.__qualname__ = function.__name__, function.__qualname__
+        self.function, self.kept, self.options = function, kept, options
+        self._compiled: Callable[..., Any] | None = None
+        self._thaws = False
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        """numba's own form of the function."""
+        return _with_cache(self.function, self.kept, lambda numba, cache: numba.njit(cache=cache, **self.options))
+
+    @property
+    def py_func(self) -> Callable[..., Any]:
+        """The function as it was written."""
+        return self.function
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the compiled function; arrays that are frozen are handed over as the arrays that they view."""
+        if self._compiled is not None and not self._thaws:
+            try:
+                return self._compiled(*arguments)
+            except TypeError:  # of another type, or frozen
+                pass
+        given = self._thawed(arguments)
+        if self._compiled is not None:
+            try:
+                return self._compiled(*given)
+            except TypeError:
+                pass
+        self._compile(given)
+        return self._compiled(*given)  # type: ignore[misc]
+
+    def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
+        """The arguments with no frozen array among them; a kernel that needs that once will need it again."""
+        code, given = self.function.__code__, list(arguments)
+        for k, each in enumerate(arguments):
+            if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
+                given[k], self._thaws = thawed(each), True
+        return given
+
+    def _compile(self, arguments: list[Any]) -> None:
+        numba, made = load_numba(), self.dispatcher
+        if hasattr(made, "compile"):  # else NUMBA_DISABLE_JIT is set
+            types = tuple(numba.typeof(each) for each in arguments)
+            with compiling(_mark(self.function, types) if self.kept else None):
+                _opened(made).compile(types)
+        self._compiled = made
+
+    def __reduce__(self) -> Any:
+        """Pickle a module's own function by its name."""
+        return self.__qualname__ if _named(self) else (type(self), (self.function, self.kept, self.options))
+
+
+class Inlined(Kernel):
+    """A function that is compiled into the kernels that call it; called from Python it is what was written."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compute it, interpreted."""
+        return self.function(*arguments)
+
+
+def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """Return a decorator like `numba.njit`, which loads numba at the first call.
+
+    Parameters
+    ----------
+    cache : bool
+        Keep the compiled code on disk.
+    **options
+        Those of `numba.njit`.
+
+    Examples
+    --------
+    >>> @njit()
+    ... def twice(x):
+    ...     return 2 * x
+    >>> twice(21)
+    42
+    """
+    return lambda function: Kernel(function, cache, options)
+
+
+def register_jitable(function: Callable[..., Any]) -> Inlined:
+    """Return a function for kernels to call, which is compiled into them.
+
+    Parameters
+    ----------
+    function : callable
+        A function of scalars, for compiled and interpreted use.
+
+    Examples
+    --------
+    >>> @register_jitable
+    ... def twice(x):
+    ...     return 2 * x
+    >>> twice(21), njit()(lambda x: twice(x) + 1)(21)
+    (42, 43)
+    """
+    return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
+
+
+def callback(kernel: Kernel, signature: Any) -> Any:
+    """Return a kernel as a function that compiled code may be handed, compiled for one signature.
+
+    Parameters
+    ----------
+    kernel : Kernel
+        The function.
+    signature : object
+        numba's.
+    """
+    with compiling(_mark(kernel.function, signature)):
+        options = {"error_model": "numpy", "nogil": True}
+        return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
+
+
+def thawed(array: Any) -> Any:
+    """Return a view of an array that numba takes for one that may be written to: its type is the same for all.
+
+    Examples
+    --------
+    >>> x = np.zeros(2)
+    >>> x.flags.writeable = False
+    >>> thawed(x).flags.writeable, thawed(x).base is not None
+    (True, True)
+    """
+    return np.asarray(_Memory(array))
+
+
+class _Memory:
+    """The memory of an array, by numpy's array interface."""
+
+    def __init__(self, array: Any) -> None:
+        self.array = array  # kept alive by the view's base
+        known = array.__array_interface__
+        self.__array_interface__ = {**known, "data": (known["data"][0], False)}
+
+
+@cache
+def load_numba() -> Any:
+    """Return numba, which from then on knows kernels by their dispatchers."""
+    import numba
+    from numba.extending import typeof_impl
+
+    @typeof_impl.register(Kernel)  # type: ignore[untyped-decorator]
+    def typeof_kernel(kernel: Kernel, context: Any) -> Any:
+        return numba.typeof(_opened(kernel.dispatcher))
+
+    return numba
+
+
+def _opened(dispatcher: Any) -> Any:
+    """The same dispatcher, which compiles for new types until `compiling` ends."""
+    if hasattr(dispatcher, "disable_compile"):
+        dispatcher.disable_compile(False)
+        _OPEN.append(dispatcher)
+    return dispatcher
+
+
+def is_modules_own(known: Any) -> bool:
+    """Whether a function is what the file of its module defines by its name: no other process means another by it."""
+    return _named(known) and getattr(sys.modules[known.__module__], "__file__", None) is not None
+
+
+def _named(known: Any) -> bool:
+    found = getattr(sys.modules.get(known.__module__), known.__qualname__, None)
+    return found is not None and getattr(found, "function", found) is getattr(known, "function", known)
+
+
+def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..., Any]) -> Any:
+    """A function, decorated; its compiled code is kept in a folder named for its sources, if there may be one."""
+    numba, folder = load_numba(), _folder(function) if kept else None
+    if folder is None:
+        return decorator(numba, False)(function)
+    with _ONE:
+        before = numba.config.CACHE_DIR
+        try:
+            numba.config.CACHE_DIR = str(folder)
+            return decorator(numba, True)(function)
+        except OSError:  # a full disk
+            return decorator(numba, False)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+
+def _folder(function: Callable[..., Any]) -> Path | None:
+    """Where compiled code of a function is kept: beside a bound module, else in a folder named for its sources."""
+    base = kernels_folder() if is_modules_own(function) else None
+    if base is None:
+        return None
+    file = Path(str(sys.modules[function.__module__].__file__))
+    with suppress(OSError):  # a full disk
+        return file.parent if file.is_relative_to(base) else sources_folder(base, sources_digest(str(file)))
+    return None
+
+
+def _mark(function: Callable[..., Any], types: Any) -> Path | None:
+    """A file that says that some process has compiled a function for these types."""
+    config, folder = load_numba().config, _folder(function)
+    known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
+    return None if folder is None else folder / f"{hashlib.sha256(repr(known).encode()).hexdigest()[:16]}.known"
+
+
+@contextmanager
+def compiling(mark: Path | None = None) -> Iterator[None]:
+    """Compile alone: one thread of one process of this user, for others to load what it made.
+
+    Parameters
+    ----------
+    mark : Path, optional
+        A file that is there once all has been compiled: then it is loaded, and nobody waits.
+    """
+    with _ONE, relaxed_gc():
+        folder, until = kernels_folder(), time.monotonic() + _PATIENCE
+        free = folder is None or fcntl is None or (mark is not None and mark.exists())
+        with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]
+            while file is not None and time.monotonic() < until:  # a process that was stopped keeps nobody for ever
+                try:
+                    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    break
+                except BlockingIOError:
+                    time.sleep(_LOOK)
+                except OSError:  # no locks on this disk
+                    break
+            try:
+                yield
+                if mark is not None:
+                    with suppress(OSError):
+                        mark.touch()
+            finally:
+                while _OPEN:
+                    each = _OPEN.pop()
+                    each.disable_compile(bool(each.signatures))
+
+
+@cache
+def kernels_folder() -> Path | None:
+    """Return the folder of compiled code, which this user alone may enter; None, with one warning, if there is none."""
+    named = load_numba().config.CACHE_DIR
+    places: list[Callable[[], Path]] = [
+        lambda: Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flockana" / "kernels",
+        lambda: Path(tempfile.gettempdir()) / f"flockana-kernels-{os.getuid()}",
+    ]
+    if named:
+        places = [lambda: Path(named) / "flockana"]
+    for place in places:
+        with suppress(OSError, RuntimeError, AttributeError):  # no home, no users to tell apart
+            return _private(place())
+    logging.getLogger("flockana").warning(
+        "no folder can be written to for compiled kernels: each process compiles its own; set NUMBA_CACHE_DIR to one"
+    )
+    return None
+
+
+def _private(folder: Path) -> Path:
+    """A folder that nobody else may write to, as what lies there is run; OSError if it is not, or cannot be."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    found = folder.lstat()
+    if hasattr(os, "getuid") and (folder.is_symlink() or found.st_uid != os.getuid() or found.st_mode & 0o077):
+        raise PermissionError(f"{folder} is not this user's alone")
+    with tempfile.TemporaryFile(dir=folder):
+        return folder
+
+
+@cache
+def sources_folder(base: Path, digest: str) -> Path:
+    """Return the folder for compiled code of some sources; folders that were not used for long are removed.
+
+    Parameters
+    ----------
+    base : Path
+        Of all compiled code.
+    digest : str
+        Of the sources.
+    """
+    folder, now = base / digest, time.time()
+    if not folder.is_dir():
+        folder.mkdir(mode=0o700, exist_ok=True)
+        for other in base.iterdir():
+            with suppress(OSError):
+                if other.is_dir() and now - other.stat().st_mtime > _UNUSED:
+                    shutil.rmtree(other, ignore_errors=True)
+    os.utime(folder, (now, now))
+    return folder
+
+
+@cache
+def sources_digest(file: str) -> str:
+    """Return a digest of the contents of a file and of all that it imports of the package, and these again.
+
+    Parameters
+    ----------
+    file : str
+        Its path.
+    """
+    known, found = set[Path](), {Path(file)}
+    while found:
+        known |= found
+        found = {other for path in found for other in _imported(path)} - known
+    digest = hashlib.sha256(_FORM)
+    for path in sorted(known - {Path(__file__)}):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _imported(file: Path) -> frozenset[Path]:
+    """The files of the package that a file imports, whatever it is itself."""
+    root, text = Path(__file__).parent, "" if file == Path(__file__) else file.read_text("utf-8")
+    names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (\([^)]*\)|.+))?", text, re.MULTILINE)
+    paths = set()
+    for module, things in names:
+        paths.add(root.joinpath(*module.split(".")).with_suffix(".py"))
+        for thing in re.findall(r"\w+", things):  # it may be a module itself
+            paths.add(root.joinpath(*module.split("."), thing).with_suffix(".py"))
+    return frozenset(path for path in paths if path.is_file())

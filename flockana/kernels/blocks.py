@@ -1,0 +1,55 @@
+"""What the sums over pairs share: blocks of pairs, differences of two rows, parameters in registers."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from flockana.jit import Kernel, register_jitable
+from flockana.kernels.bound import made
+
+BLOCK = 512  # pairs: what is known of them stays in the first-level cache
+
+
+# The differences of two rows at once: all is read before anything is written, which might be the same place.
+@register_jitable
+def apart_1(x, i, j):
+    """x_j − x_i on the line."""
+    return (x[j, 0] - x[i, 0],)
+
+
+@register_jitable
+def apart_2(x, i, j):
+    """x_j − x_i in the plane."""
+    return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
+
+
+@register_jitable
+def apart_3(x, i, j):
+    """x_j − x_i in space."""
+    return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+
+
+APART = {1: apart_1, 2: apart_2, 3: apart_3}
+
+
+@register_jitable
+def as_they_are(par):
+    """The parameters as an array."""
+    return par
+
+
+@cache
+def as_tuple(count: int) -> Kernel:
+    """Return a function that puts so many parameters into registers, which no array can alias: the law is vectorised.
+
+    Parameters
+    ----------
+    count : int
+        Number of parameters.
+    """
+    values = "".join(f"par[{k}], " for k in range(count))
+    text = (
+        f"from flockana.jit import register_jitable\n\n\n@register_jitable\ndef unpacked(par):\n    return ({values})\n"
+    )
+    found: Kernel = made(text, "parameters").unpacked
+    return found

@@ -1,0 +1,121 @@
+"""Modules from templates and from generated text: ordinary source, bound to the functions and numbers of one law.
+
+A template is a module of its own, in which a comment marks the lines that may be replaced. A bound module is written to
+a file that is named by a digest of its text, so that numba keeps what it compiles of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import re
+import sys
+from contextlib import suppress
+from functools import cache
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from flockana.base.files import write_atomic
+from flockana.jit import Kernel, is_modules_own, kernels_folder, sources_digest, sources_folder
+
+_COUNT = itertools.count()
+_BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re.MULTILINE)
+
+
+@cache
+def bound(template: str, **bindings: Any) -> ModuleType:
+    """Return a template, bound: the same module for the same bindings.
+
+    Parameters
+    ----------
+    template : str
+        Name of the module.
+    **bindings
+        By the name in the template: a number, or a function that kernels call.
+
+    Examples
+    --------
+    >>> from flockana.kernels.scalars import sigma_1
+    >>> bound("flockana.kernels.over_array", function=sigma_1) is bound("flockana.kernels.over_array", function=sigma_1)
+    True
+    """
+    spec = find_spec(template)
+    text = Path(spec.origin).read_text("utf-8")  # type: ignore[union-attr, arg-type]
+    functions, left = {}, dict(bindings)
+
+    def line(match: re.Match[str]) -> str:
+        name = match[1]
+        if name not in left:
+            return match[0]
+        value = left.pop(name)
+        if not isinstance(value, Kernel):
+            return f"{name} = {value!r}"
+        functions[name] = value
+        return f"# {name}"
+
+    text = _BOUND.sub(line, text)
+    if left:
+        raise TypeError(f"{template} has no line that binds {next(iter(left))}")
+    return made(text, template.rpartition(".")[2], **functions)
+
+
+def made(text: str, name: str, **functions: Kernel) -> ModuleType:
+    """Return a module of some text, with functions in it by their names.
+
+    Parameters
+    ----------
+    text : str
+        Its source: our own, or written by this package from a formula that its own grammar has read.
+    name : str
+        What it is called, before a digest.
+    **functions
+        Kernels that it calls; those that no module has by name are handed over in memory, and nothing is kept on disk.
+    """
+    named = {own: known for own, known in functions.items() if is_modules_own(known)}
+    sources = sorted({_source(known) for known in named.values()})
+    imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))
+    future = "from __future__ import annotations\n"
+    text = "\n".join([future, *imports, "", text.replace(future, "")])
+    parts = (text, *(sources_digest(file) for file in sources if file), _of_text(text))
+    digest = hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+    whole = f"flockana_{name}_{digest}"
+    own = {key: known for key, known in functions.items() if key not in named}
+    if not own and whole in sys.modules:
+        return sys.modules[whole]
+    module = None if own else _from_file(text, whole, digest)
+    if module is None:
+        whole = f"{whole}_{next(_COUNT)}" if own else whole  # another closure of the same text is another module
+        module = ModuleType(whole)
+        vars(module).update(own)
+        sys.modules[whole] = module
+        exec(compile(text, f"<{whole}>", "exec"), vars(module))
+    return module
+
+
+def _source(known: Kernel) -> str:
+    return getattr(sys.modules[known.__module__], "__file__", None) or ""
+
+
+def _of_text(text: str) -> str:
+    """A digest of all of the package that a text imports."""
+    names = sorted(set(re.findall(r"^from (flockana\.[\w.]+) import", text, re.MULTILINE)))
+    return "".join(sources_digest(str(spec.origin)) for name in names if (spec := find_spec(name)))
+
+
+def _from_file(text: str, name: str, digest: str) -> ModuleType | None:
+    """The module of a file, written unless it is there with the same text; None if it cannot be written."""
+    base = kernels_folder()
+    if base is None:
+        return None
+    with suppress(OSError):
+        path = sources_folder(base, digest) / f"{name}.py"
+        if not path.is_file() or path.read_text("utf-8") != text:
+            write_atomic(path, text)
+        spec = spec_from_file_location(name, path)
+        module = module_from_spec(spec)  # type: ignore[arg-type]
+        sys.modules[name] = module
+        spec.loader.exec_module(module)  # type: ignore[union-attr]
+        return module
+    return None

@@ -1,0 +1,99 @@
+"""A law as compiled integrators take it: one generated module that sums its terms, as three callbacks.
+
+A term is two kernels: ``act(t, x, v, u, numbers, panels, listed)`` adds to u and returns the power, ``energy(t, x, v,
+numbers, panels, listed)`` returns the potential energy (`flockana.kernels.listed`). A term that no step may leap over
+has a third, ``guard(points, allowance, numbers, shell, far, share)``, which returns the share given, or less.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.jit import Kernel, callback, load_numba
+from flockana.kernels.bound import made
+
+_HEAD = """from flockana.jit import njit
+from flockana.kernels.listed import Listed
+
+"""
+_SEEN = "frame, numbers, panels, starts, first, second, count, order, near, room"
+_ACT = f"def force(t, x, v, u, {_SEEN}):\n    seen, total = Listed(frame, first, second, count, order, near, room), 0.0"
+_ENERGY = (
+    f"def energy(t, x, v, {_SEEN}):\n    seen, total = Listed(frame, first, second, count, order, near, room), 0.0"
+)
+_GUARD = "def guard(points, allowance, numbers, starts, shell, far, share):\n    total = share"
+
+
+class LawFunctions(NamedTuple):
+    """Force and power, potential energy, and guard of a law, for compiled code to be handed."""
+
+    force: Any
+    energy: Any
+    guard: Any
+
+
+class LawNumbers(NamedTuple):
+    """What the functions of a law read: the numbers and panels of all terms, and where those of each begin."""
+
+    numbers: Any
+    panels: Any
+    starts: Any
+
+
+def law_numbers(terms: Any) -> LawNumbers:
+    """Return the numbers of all terms in one vector, their panels in one matrix.
+
+    Parameters
+    ----------
+    terms : sequence
+        With ``numbers`` and ``panels`` each.
+    """
+    numbers = np.concatenate([np.empty(0), *(term.numbers for term in terms)])
+    width = max((term.panels.shape[1] for term in terms), default=0)
+    panels = np.concatenate([np.empty((0, width)), *(term.panels.reshape(-1, width) for term in terms if width)])
+    sizes = [(term.numbers.size, len(term.panels) if width else 0) for term in terms]
+    starts = np.concatenate([[(0, 0)], np.cumsum(np.array(sizes, np.int64).reshape(-1, 2), axis=0)]).astype(np.int64)
+    return LawNumbers(numbers, panels, starts)
+
+
+@cache
+def law_functions(terms: tuple[tuple[Kernel, Kernel, Kernel | None], ...]) -> LawFunctions:
+    """Return the functions of a law with such terms, compiled.
+
+    Parameters
+    ----------
+    terms : tuple of (act, energy, guard)
+        Kernels; None for a guard of nothing.
+    """
+    functions: dict[str, Kernel] = {}
+    lines: dict[str, list[str]] = {_ACT: [], _ENERGY: [], _GUARD: []}
+    for k, (act, energy, guard) in enumerate(terms):
+        own = f"numbers[starts[{k}, 0] : starts[{k + 1}, 0]]"
+        both = f"{own}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
+        functions |= {f"act_{k}": act, f"energy_{k}": energy}
+        lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {both}, seen)")
+        lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {both}, seen)")
+        if guard is not None:
+            functions[f"guard_{k}"] = guard
+            lines[_GUARD].append(f"    total = guard_{k}(points, allowance, {own}, shell, far, total)")
+    bodies = ("\n".join([head, *body, "    return total"]) for head, body in lines.items())
+    module = made(_HEAD + "\n".join(f"\n@njit(cache=True)\n{body}\n" for body in bodies), "law", **functions)
+    return LawFunctions(*(callback(getattr(module, k), sign) for k, sign in signatures()._asdict().items()))
+
+
+@cache
+def signatures() -> LawFunctions:
+    """Return numba's signatures of the three functions."""
+    numba = load_numba()
+    float64, int64 = numba.float64, numba.int64
+    matrix, vector, indices = float64[:, ::1], float64[::1], numba.uint32[::1]
+    law = (vector, matrix, int64[:, ::1])
+    seen = (matrix, *law, indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix)
+    return LawFunctions(
+        float64(float64, matrix, matrix, matrix, *seen),
+        float64(float64, matrix, matrix, *seen),
+        float64(float64[:, :, ::1], vector, vector, int64[:, ::1], float64, float64, float64),
+    )

@@ -1,0 +1,206 @@
+"""Sums over agents and the obstacles of one kind: a template (`flockana.kernels.bound`).
+
+``pars[starts[k]:starts[k + 1]]`` are the parameters of obstacle k, ``balls[k]`` is (centre, radius) of a ball that
+holds it: agents farther from the ball than the range cost one distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.jit import njit, register_jitable
+from flockana.kernels.alpha import pair_beta, psi_beta
+from flockana.kernels.beta_slopes import adjacency_beta_slope, pair_beta_slope
+from flockana.kernels.bodies import BETA, C1, C2, REACH, STARTS, bodies_of
+from flockana.kernels.encounters import SLACK
+from flockana.kernels.obstacles import no_turn as turn  # bound
+from flockana.kernels.obstacles import project_nothing as project  # bound
+from flockana.kernels.paths import reach_of
+from flockana.kernels.scalars import sigma_norm
+from flockana.kernels.shells import LOOKS, MARCHES, TOUCH, longest, out_of_reach, point_at, within_reach
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
+    """Add c1 φ_β n̂_ik + c2 b_ik (p̂_ik − p_i) to u_i for every obstacle in reach; return Σ b_ik ⟨p_i, p̂_ik − p_i⟩."""
+    total = 0.0
+    n, m = q.shape
+    x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
+    near, s2 = np.empty(n, np.int64), np.empty(n)
+    for k in range(balls.shape[0]):
+        par = pars[starts[k] : starts[k + 1]]
+        for e in range(within_reach(q, balls, k, reach, s2, near)):
+            i = near[e]
+            for c in range(m):
+                x[c], v[c] = q[i, c], p[i, c]
+            clearance = project(x, v, par, gap, rate)
+            if abs(clearance) >= reach:
+                continue
+            w, b = pair_beta(clearance * clearance, beta)
+            for c in range(m):
+                slip = rate[c] - p[i, c]
+                u[i, c] += c1 * w * gap[c] + c2 * b * slip
+                total += b * p[i, c] * slip
+    return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def potential(q, pars, starts, balls, beta, panels, reach):
+    """Σ ψ_β."""
+    total = 0.0
+    n, m = q.shape
+    x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
+    near, s2 = np.empty(n, np.int64), np.empty(n)
+    for k in range(balls.shape[0]):
+        par = pars[starts[k] : starts[k + 1]]
+        for e in range(within_reach(q, balls, k, reach, s2, near)):
+            for c in range(m):
+                x[c] = q[near[e], c]
+            clearance = project(x, still, par, gap, rate)
+            total += psi_beta(sigma_norm(clearance * clearance, beta[0]), beta, panels)
+    return total
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def agents(q, p, par, gap, rate, clearance):
+    """Fill the arrays for one obstacle and every agent."""
+    n, m = q.shape
+    x, v, g, w = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    for i in range(n):
+        for c in range(m):
+            x[c], v[c] = q[i, c], p[i, c]
+        clearance[i] = project(x, v, par, g, w)
+        for c in range(m):
+            gap[i, c], rate[i, c] = g[c], w[c]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def slopes(q, par, beta, reach, blocks):
+    """Add the Hessian block of ψ_β of one obstacle to every agent's."""
+    # ∇ψ_β = −w (q̂ − q), so its derivative along e_c is w (e_c − D e_c) + 2 w' (q̂ − q)_c (q̂ − q), D = dq̂/dq
+    n, m = q.shape
+    axis, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
+    for i in range(n):
+        for c in range(m):
+            axis[c] = 1.0
+            clearance = project(q[i], axis, par, gap, rate)
+            if abs(clearance) < reach:
+                w = pair_beta(clearance * clearance, beta)[0]
+                slope = pair_beta_slope(clearance * clearance, beta)
+                for e in range(m):
+                    blocks[i, e, c] += w * (axis[e] - rate[e]) + 2.0 * slope * gap[c] * gap[e]
+            axis[c] = 0.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def braking(q, p, par, beta, reach, by_position, by_velocity):
+    """Add the derivatives of b_ik (p̂_ik − p_i) of one obstacle to every agent's blocks."""
+    # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
+    n, m = q.shape
+    axis, gap, rate, along, bend = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    for i in range(n):
+        clearance = project(q[i], p[i], par, gap, rate)
+        if abs(clearance) >= reach:
+            continue
+        s2 = clearance * clearance
+        b, slope = pair_beta(s2, beta)[1], adjacency_beta_slope(s2, beta)
+        slip = rate - p[i]
+        for c in range(m):
+            axis[c] = 1.0
+            project(q[i], axis, par, gap, along)
+            turn(q[i], p[i], axis, par, bend)
+            for e in range(m):
+                by_velocity[i, e, c] += b * (along[e] - axis[e])
+                by_position[i, e, c] += b * bend[e] - 2.0 * slope * slip[e] * gap[c]
+            axis[c] = 0.0
+
+
+@register_jitable
+def _distance(q, par, room):
+    """Distance of a place from the surface; `room` is for the projection."""
+    return abs(project(q, room[0], par, room[1], room[2]))
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _visit(curve, edge, far, par, here, room):
+    """Share of a step at which an agent that starts beyond `edge` is first well within it; 1 if it never is."""
+    # The distance from an obstacle changes by no more than the way: so far beyond the edge may be gone safely.
+    legs = 5.0 * (curve[1:] - curve[:-1])
+    fastest, s = longest(legs), 0.0
+    if fastest == 0.0:
+        return 1.0
+    for _ in range(MARCHES):
+        point_at(curve, s, here)
+        gap = _distance(here, par, room) - edge
+        if gap <= TOUCH * edge:
+            break
+        s += gap / fastest
+        if s >= 1.0:
+            return 1.0
+    rate = np.zeros((1, 3))
+    point_at(legs, s, rate[0, : here.size])
+    speed = longest(rate)
+    last = min(1.0, s + far / speed) if speed > 0.0 else 1.0
+    stop, least = s, np.inf
+    for k in range(LOOKS):
+        look = s + (last - s) * k / (LOOKS - 1)
+        point_at(curve, look, here)
+        away = _distance(here, par, room)
+        if away < least:
+            stop, least = look, away
+    return 1.0 if s + SLACK * (stop - s) >= 1.0 or stop <= s else stop
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def share(points, allowance, pars, starts, balls, shell, far, most):
+    """The share of the step, at most the one given, within which no agent on a path with these control points (n, 6, 3)
+    leaps over the distance `shell` from an obstacle, or goes farther than `far` within it.
+    """
+    m = balls.shape[1] - 1
+    here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
+    begin, end = points[:, 0], points[:, 5]
+    for i in range(points.shape[0]):
+        way, edge = reach_of(points[i]), shell + allowance[i]
+        reach = way + allowance[i]
+        for k in range(balls.shape[0]):
+            if out_of_reach(begin, i, balls, k, shell + reach):
+                continue
+            for c in range(m):
+                here[c] = begin[i, c]
+            par = pars[starts[k] : starts[k + 1]]
+            beyond = _distance(here, par, room) - edge
+            if beyond < 0.0:
+                if way > SLACK * far:
+                    most = min(most, far / way)
+                continue
+            if beyond >= reach:
+                continue
+            for c in range(m):
+                here[c] = end[i, c]
+            if way <= far and _distance(here, par, room) < edge:
+                continue  # the evaluation at the end of the step meets it
+            most = min(most, _visit(points[i], edge, far, par, here, room))
+    return most
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def act(t, x, v, u, numbers, panels, listed):
+    """`forces` as a term of a law."""
+    pars, starts, balls = bodies_of(numbers)
+    law, reach, c1, c2 = numbers[BETA:STARTS], numbers[REACH], numbers[C1], numbers[C2]
+    return c2 * forces(x + listed.frame[0], v + listed.frame[1], pars, starts, balls, law, reach, c1, c2, u)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, v, numbers, panels, listed):
+    """c1 Σ ψ_β."""
+    pars, starts, balls = bodies_of(numbers)
+    seen = x + listed.frame[0]
+    return numbers[C1] * potential(seen, pars, starts, balls, numbers[BETA:STARTS], panels, numbers[REACH])
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard(points, allowance, numbers, shell, far, most):
+    """`share` as a term of a law."""
+    pars, starts, balls = bodies_of(numbers)
+    return share(points, allowance, pars, starts, balls, shell, far, most)

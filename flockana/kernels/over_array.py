@@ -1,0 +1,17 @@
+"""A scalar function over a one-dimensional array: a template (`flockana.kernels.bound`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.jit import njit
+from flockana.kernels.scalars import sigma_1 as function  # bound
+
+
+@njit(cache=True, error_model="numpy")
+def over_array(z, parameters):
+    """function(z_k, *parameters) for every k."""
+    out = np.empty(z.size)
+    for k in range(z.size):
+        out[k] = function(z[k], *parameters)
+    return out

@@ -1,0 +1,162 @@
+"""Input-to-state stability: a bounded disturbance leaves a flock near its certified equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import FlockanaError
+from flockana.equilibria.solve import find_equilibrium
+from flockana.laws.disturbed import Disturbed
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.measures.frame import moving_frame
+from flockana.theorems.claims import vacuous
+from flockana.theorems.observed import Observed
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+
+_CLAIMS = ("stays", "ultimate")
+_SLACK = 1e-12  # relative: rounding of a force's length
+_LAST = 0.2  # of the run: what is its end
+_SAMPLES = 40  # that are looked at in all
+_OWN = 1e-6  # of d: error of a run at the usual tolerances, and more
+_MOST = 7  # agents of which a basin is proved within seconds
+
+
+class _Case(NamedTuple):
+    bound: Any  # UltimateBound
+    q: FloatArray
+    p: FloatArray
+
+
+def _law(seen: Observed) -> Hypothesis:
+    law = seen.law
+    core: Any = law.law if type(law) is Disturbed else None
+    name = "Algorithm 1 or 2 is disturbed by a bounded force, the same gains for all"
+    if type(core) not in (Algorithm1, Algorithm2) or law.intensity or core.gains.per_agent:
+        return Hypothesis(name, "unmet", detail=f"the law is {type(law).__name__}, expected Disturbed(Algorithm2(...))")
+    return Hypothesis(name, "met")
+
+
+def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
+    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise.
+
+    Examples
+    --------
+    >>> round(largest_push(Disturbed(Algorithm1(), force=[[0.3], [-0.3]]), (2, 1)), 12)
+    0.424264068712
+    """
+    parts = (np.broadcast_to(np.asarray(part), shape) for part in (law.force, law.swing) if part is not None)
+    return float(sum(np.linalg.norm(moving_frame(part)) for part in parts)) * (1.0 + _SLACK)
+
+
+def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
+    from flockana.certified.basin import certify
+    from flockana.certified.disturbed import ultimate_bound
+
+    law, q, p = seen.law, seen.given.q[0], seen.given.p[0]
+    name = "the start lies in a certified basin, too deep for the disturbance to leave"
+    if len(q) > _MOST:
+        yield Hypothesis(
+            name, "unmet", detail=f"{len(q)} agents: expected at most {_MOST}, of which a basin is proved here"
+        )
+        return
+    try:
+        bound = ultimate_bound(certify(find_equilibrium(law.law, q)), largest_push(law, q.shape))
+    except FlockanaError as error:
+        yield Hypothesis(name, "unmet", detail=f"no basin: {error}")
+        return
+    margin = float(bound.largest - bound.disturbance)
+    detail = f"‖d‖ <= {float(bound.disturbance):.4g}, and {float(bound.largest):.4g} could leave"
+    if not bound.stays or not bound.holds(q, p):
+        text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
+        yield Hypothesis(name, "unmet", margin=margin, detail=text)
+        return
+    kept.append(_Case(bound, q, p))
+    yield Hypothesis(name, "met", margin=margin, detail=detail)
+
+
+def _check(seen: Observed, tolerances: Tolerances) -> Checked:
+    kept: list[_Case] = []
+    hypotheses = list(_hypotheses(seen, kept))
+    if (missed := unmet(hypotheses)) is not None:
+        return hypotheses, [vacuous(name, missed) for name in _CLAIMS]
+    return hypotheses, [_stays(seen, kept[0]), _ultimate(seen, kept[0])]
+
+
+def _stays(seen: Observed, case: _Case) -> Claim:
+    """All samples lie in the basin; that all times do is proved."""
+    from flint import ctx
+
+    from flockana.certified.basin import DIGITS
+    from flockana.certified.intervals import ball
+    from flockana.theorems.from_tube import decided
+
+    basin, run = case.bound.basin, seen.given
+    with ctx.workdps(DIGITS):
+        farthest = _farthest(basin, run, 0)
+        return decided(
+            "stays",
+            ball(basin.radius) - farthest,
+            computed=float(farthest),
+            stated=f"nearer than {float(basin.radius):.4g} to the orbit at all times, no two agents within "
+            f"{float(basin.distance):.4g}",
+            detail=f"proved by the Lyapunov function of the basin; at the samples at most {float(farthest):.3g} away",
+        )
+
+
+def _ultimate(seen: Observed, case: _Case) -> Claim:
+    """The distance at the end of the run against the ultimate bound, with what is left of the start."""
+    from flint import arb, ctx
+
+    from flockana.certified.basin import DIGITS
+    from flockana.certified.intervals import ball
+    from flockana.theorems.from_tube import decided
+
+    bound, run = case.bound, seen.given
+    basin = bound.basin
+    with ctx.workdps(DIGITS):
+        excess = max(basin.above(case.q, case.p)[1], arb(0))
+        first = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
+        since = ball(float(run.t[first]) - float(run.t[0]))
+        start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
+        allowed = (start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt()
+        reached = _farthest(basin, run, first)
+        return decided(
+            "ultimate",
+            allowed + _OWN * float(basin.law.alpha.length) - reached,
+            computed=float(reached),
+            stated=f"in the end at most {float(bound.distance):.4g} from the orbit, with speeds of at most "
+            f"{float(bound.speed):.4g}",
+            witness={"allowed by then": float(allowed)},
+            detail=f"in the last fifth of the run at most {float(reached):.3g} from the orbit; proved are "
+            f"{float(bound.distance):.4g} in the end, and {float(allowed):.4g} by then",
+        )
+
+
+def _farthest(basin: Any, run: Any, first: int) -> Any:
+    """Largest distance to the orbit at some samples from one on."""
+    some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
+    return max((basin.above(run.q[k], run.p[k])[0] for k in some), key=float)
+
+
+THEOREM = Theorem(
+    id="disturbed-basin",
+    title="A bounded disturbance leaves a flock near its certified equilibrium",
+    statement=(
+        "If a disturbance d of the accelerations, its mean over the agents taken off, is at most W at all times, a "
+        "flock under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and in the end is "
+        "within W c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin "
+        "falls at the rate α wherever it is larger than (W c/α)²."
+    ),
+    source="ours",
+    kind="trajectory",
+    check=_check,
+    law=_law,
+    claims=_CLAIMS,
+    author="flockana",
+    wrapped=True,
+    references=("olfati-saber-2006",),
+)

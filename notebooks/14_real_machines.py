@@ -1,0 +1,339 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Real machines: saturation, sampling, delay and noise
+#
+# **Aims.** Put the four limits of real machines into a law, one at a time; find by hand what each does to one agent;
+# check it on a flock; know which theorems survive.
+#
+# ## A scene
+#
+# The simulation flocks, the theorem is verified, the drones are built. On the first evening they shake. Their motors
+# give at most so much thrust; their computers act fifty times a second, not continuously; what they hear is a
+# twentieth of a second old; and their sensors are noisy. None of that is in the double integrator. **How much of
+# each does a flock bear, and which of our theorems still says something?** The answers are surprisingly simple for
+# one agent, and it is the *pair*, again, that decides for the flock.
+#
+# ## One agent and its target
+#
+# All of this lecture's computations are about one agent on a line that follows a γ-agent at rest, or about the
+# centre of mass of a flock, which obeys the same equation (lecture 03):
+#
+# $$\dot x = v, \qquad \dot v = u, \qquad u = -(c_1^\gamma x + c_2^\gamma v) .$$
+#
+# The distance of two linked agents obeys it too, near $d$, with the stiffness 447 and the friction 3.93 of lecture
+# 06 in the place of $c_1^\gamma = 1.1$ and $c_2^\gamma = 2.10$. So every formula below can be read twice: once for
+# the slow centre, and once for the fast pair.
+#
+# ## Saturation
+#
+# A motor gives $|u| \le u_{\max}$. Let $\operatorname{sat}$ be the function that cuts a number off at
+# $\pm u_{\max}$, and let $z = c_1^\gamma x + c_2^\gamma v$ be what the law asks for.
+#
+# > **Theorem (one agent).** With $u = -\operatorname{sat}(z)$ and positive gains every solution converges to
+# > $x = v = 0$.
+#
+# *Proof.* Let $W = \int_0^z\operatorname{sat} + \tfrac12c_1^\gamma v^2$.
+#
+# $$\begin{aligned}
+# \dot z &= c_1^\gamma v - c_2^\gamma\operatorname{sat}(z) && \dot x = v, \ \dot v = -\operatorname{sat}(z) \\
+# \dot W &= \operatorname{sat}(z)\,\dot z + c_1^\gamma v\,\dot v && \text{chain rule} \\
+# &= \operatorname{sat}(z)\bigl(c_1^\gamma v - c_2^\gamma\operatorname{sat}(z)\bigr) - c_1^\gamma
+#   v\operatorname{sat}(z) && \text{insert} \\
+# &= -c_2^\gamma\operatorname{sat}(z)^2 \le 0 . && \text{two terms cancel}
+# \end{aligned}$$
+#
+# 1. $W \ge 0$, and $W$ grows without bound with $|z|$, at least linearly, and with $|v|$. So its level sets are
+#    bounded, closed, and positively invariant: compact.
+# 2. By LaSalle the solution approaches an invariant set with $\operatorname{sat}(z) = 0$, that is $z = 0$.
+# 3. There $\dot v = 0$ and $0 = \dot z = c_1^\gamma v$. So $v = 0$, and $z = 0$ gives $x = 0$. $\square$
+#
+# A single agent bears any saturation; it only takes longer, and overshoots. And the flock? Its proofs used that pair
+# forces cancel in the sum and that the force is a gradient. Cut off at a limit, neither is true: an agent that is
+# pushed by several neighbours is cut off, each of the neighbours is not, so action is no longer reaction.
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import lattice, plots, stability
+from flockana.course import grade
+
+start = 0.93 * lattice.hexagonal_patch(1, 7.0)
+start[0] += [0.5, 0.2]
+still = np.zeros_like(start)
+for limit in (None, 20.0, 5.0):
+    law = fl.Algorithm1() if limit is None else fl.Saturated(fl.Algorithm1(), limit)
+    run = fl.simulate(law, start, still, (0.0, 10.0))
+    drift = np.linalg.norm(run.p[-1].mean(axis=0))
+    print(
+        f"limit {limit}: the centre ends with the speed {drift:.1e}; connectivity {run.metrics().connectivity[-1]:.2f}"
+    )
+weak = fl.simulate(fl.Saturated(fl.Algorithm2(target=fl.StaticTarget((0.0,))), 0.2), [[10.0]], [[0.0]], (0.0, 80.0))
+free = fl.simulate(fl.Algorithm2(target=fl.StaticTarget((0.0,))), [[10.0]], [[0.0]], (0.0, 80.0))
+figure, ax = plots.subplots(size=(6, 3.2))
+ax.plot(free.t, free.q[:, 0, 0], label="no limit")
+ax.plot(weak.t, weak.q[:, 0, 0], label="limit 0.2")
+ax.set(xlabel="time", ylabel="distance from the target (length)", xlim=(0.0, 60.0))
+_ = ax.legend()
+
+# %% [markdown]
+# **Figure 14.1.** One agent returns to its target, without a limit and with one of 0.2. It swings several times, and
+# arrives, as the theorem says.
+#
+# The printout shows the momentum theorem of lecture 02 breaking: a flock that starts at rest ends with a moving
+# centre. Theorems 1 and 3 say nothing about saturated flocks.
+#
+# ## Sampling
+#
+# A computer reads the state every $\Delta t$ and holds $u$ until the next time. Between two samples $u$ is constant,
+# so the motion is a parabola, and the state at the next sample is
+#
+# $$\begin{pmatrix} x \\ v \end{pmatrix} \mapsto
+# \begin{pmatrix} 1 - \tfrac12c_1^\gamma\Delta t^2 & \Delta t - \tfrac12c_2^\gamma\Delta t^2 \\
+# -c_1^\gamma\Delta t & 1 - c_2^\gamma\Delta t \end{pmatrix}\begin{pmatrix} x \\ v \end{pmatrix} .$$
+#
+# > **Theorem (sampling).** The sampled agent is stable exactly if
+# > $\Delta t < \min\bigl(2/c_2^\gamma,\ 2c_2^\gamma/c_1^\gamma\bigr)$.
+#
+# *Proof.* Both eigenvalues of a real $2\times2$ matrix lie inside the unit circle exactly if $|\det| < 1$ and
+# $|\operatorname{tr}| < 1 + \det$ (Jury).
+#
+# 1. $\operatorname{tr} = 2 - c_2^\gamma\Delta t - \tfrac12c_1^\gamma\Delta t^2$.
+# 2. $\det = (1 - \tfrac12c_1^\gamma\Delta t^2)(1 - c_2^\gamma\Delta t) + c_1^\gamma\Delta t(\Delta t -
+#    \tfrac12c_2^\gamma\Delta t^2) = 1 - c_2^\gamma\Delta t + \tfrac12c_1^\gamma\Delta t^2$: the cubic terms cancel.
+# 3. $1 + \det - \operatorname{tr} = c_1^\gamma\Delta t^2 > 0$: always.
+# 4. $1 + \det + \operatorname{tr} = 4 - 2c_2^\gamma\Delta t > 0$ exactly if $\Delta t < 2/c_2^\gamma$.
+# 5. $\det < 1$ exactly if $\tfrac12c_1^\gamma\Delta t^2 < c_2^\gamma\Delta t$, that is
+#    $\Delta t < 2c_2^\gamma/c_1^\gamma$. And $\det > -1$ follows from 3 and 4, added: $2 + 2\det > 0$. $\square$
+#
+# The first bound is about friction that acts too long and turns the velocity around; the second about a spring that
+# pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81. For a pair they
+# are 0.51 and 0.0176: **the pair asks for a sample rate fifty times that of the centre.**
+
+# %%
+one = fl.Algorithm2(target=fl.StaticTarget((0.0,)))
+for period in (0.9, 1.0):
+    held = fl.simulate(fl.Sampled(one, period), [[1.0]], [[0.0]], (0.0, 40.0), dt=period / 10.0)
+    print(f"one agent, a sample every {period}: after 40 it is {abs(held.q[-1, 0, 0]):.1e} away")
+pair_margin = stability.sampling_margin(fl.Algorithm1(), np.array([[0.0], [7.0]])).period
+law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+rest = fl.find_equilibrium(law, lattice.hexagonal_patch(2, 7.0))
+print(f"a pair is stable up to {pair_margin:.4f}, by hand {2.0 * 3.9277 / 446.6:.4f}")
+print(f"a hexagon of nineteen up to {stability.sampling_margin(law, rest.q).period:.4f}")
+
+# %% tags=["facts"]
+c1, c2 = law.gains.c1_gamma, law.gains.c2_gamma
+assert abs(stability.sampling_margin(one, np.array([[0.0]])).period - min(2.0 / c2, 2.0 * c2 / c1)) < 1e-6
+assert abs(pair_margin - 0.017587) < 1e-5
+assert abs(held.q[-1, 0, 0]) > 1.0
+assert abs(weak.q[-1, 0, 0]) < 1e-6
+assert [f"{2.0 / c2:.3f}", f"{2.0 * c2 / c1:.2f}", f"{2.0 / 3.9277:.2f}"] == ["0.953", "3.81", "0.51"]
+assert drift > 1e-3
+
+# %% [markdown]
+# ## Delay
+#
+# What an agent hears is $\tau$ old. Lecture 06 derived the delay margin of one agent,
+# $\omega^4 = (c_1^\gamma)^2 + (c_2^\gamma)^2\omega^2$ and $\omega\tau = \arctan(c_2^\gamma\omega/c_1^\gamma)$, and
+# found that a flock bears far less. A sampled agent acts on a state that is between 0 and $\Delta t$ old, on average
+# $\tfrac12\Delta t$: sampling is, roughly, a delay of half a period. For the pair, whose friction is small,
+# $\omega \approx \sqrt{447} = 21.1$ and $\arctan(3.93\cdot21.1/447) = 0.184$ give $\tau^* \approx 0.0087$, half of
+# the sampling margin, as this rule says.
+#
+# ## Noise
+#
+# Let the motor be pushed by white noise of intensity $g$: beside $\dot v = u$, in a time $\Delta t$ the noise adds a
+# random velocity of variance $g^2\Delta t$. The agent never comes to rest; how far does it wander? Take expectations
+# $\langle\cdot\rangle$ of the products:
+#
+# $$\begin{aligned}
+# \tfrac{d}{dt}\langle x^2\rangle &= 2\langle xv\rangle && \dot x = v \\
+# \tfrac{d}{dt}\langle xv\rangle &= \langle v^2\rangle - c_1^\gamma\langle x^2\rangle - c_2^\gamma\langle
+#   xv\rangle && \text{product rule} \\
+# \tfrac{d}{dt}\langle v^2\rangle &= -2c_1^\gamma\langle xv\rangle - 2c_2^\gamma\langle v^2\rangle + g^2 . &&
+#   \text{the noise adds } g^2\Delta t
+# \end{aligned}$$
+#
+# In the long run all three are constant. The first gives $\langle xv\rangle = 0$, the third
+# $\langle v^2\rangle = g^2/(2c_2^\gamma)$, the second
+#
+# $$\langle x^2\rangle = \frac{g^2}{2c_1^\gamma c_2^\gamma} .$$
+#
+# Noises of $n$ agents are independent, so their mean has the intensity $g/\sqrt n$, and **the centre of a flock
+# wanders $\sqrt n$ times less than one agent alone would**. That is the oldest reason to fly in a flock.
+
+# %%
+noisy = fl.Disturbed(law, intensity=0.5, seed=0)
+shaken = fl.simulate(noisy, lattice.hexagonal_patch(1, 7.0), np.zeros((7, 2)), (0.0, 60.0), dt=0.01)
+wander = shaken.q.mean(axis=1)[1000:]
+print(f"variance of the centre: {wander.var(axis=0).mean():.4f} measured, {0.25 / 7.0 / (2.0 * c1 * c2):.4f} predicted")
+generator = np.random.default_rng(0)
+x, v, step = np.zeros(4000), np.zeros(4000), 0.01
+for _ in range(4000):  # four thousand single agents, by the simplest scheme
+    x, v = x + step * v, v - step * (c1 * x + c2 * v) + 0.5 * np.sqrt(step) * generator.standard_normal(4000)
+print(f"variance of one agent:  {x.var():.4f} measured, {0.25 / (2.0 * c1 * c2):.4f} predicted")
+figure, ax = plots.subplots(size=(6, 3.2))
+ax.plot(shaken.t, shaken.q[:, 1, 1] - shaken.q[0, 1, 1], linewidth=0.7, label="an outer agent of seven")
+ax.plot(shaken.t, shaken.q.mean(axis=1)[:, 1], linewidth=1.4, label="their centre")
+ax.set(xlabel="time", ylabel="y, from the start (length)")
+_ = ax.legend()
+shaken.player(height=420)
+
+# %% tags=["facts"]
+assert abs(x.var() / (0.25 / (2.0 * c1 * c2)) - 1.0) < 0.1
+assert shaken.q[:, 1, 1].std() > wander.std(axis=0).max()
+assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
+
+# %% [markdown]
+# **Figure 14.2.** Seven agents pushed by independent noises. Thin: an outer one, which also turns with the hexagon;
+# thick: the centre, which stays closer to the target.
+#
+# Nothing holds the *orientation*: it is a zero mode (lecture 06), and noise makes it drift like a random walk. A
+# picture of drones would slowly turn. That is a theorem about the law, and no fault of the motors.
+#
+# ## What surprised, and what the theorems do not say
+#
+# A limit of thrust, which looks like the worst of the four, is harmless for one agent and breaks the oldest
+# conservation law of a flock. The pair decides how fast a computer must be, though one looks at the centre. Noise is
+# averaged by numbers; delay and sampling are not. None of the four theorems is about a flock: they are about linear
+# systems near rest, or about one agent. For the nonlinear flock with limits there are runs, verdicts that say
+# *vacuous*, and open questions.
+#
+# ## Summary
+#
+# - Saturated, one agent still converges (a Lyapunov function with an integral); a saturated flock loses momentum
+#   conservation.
+# - Sampled, an agent is stable for $\Delta t < \min(2/c_2^\gamma, 2c_2^\gamma/c_1^\gamma)$; the stiff pairs set the
+#   rate.
+# - Late by half a period and sampled are about the same.
+# - Noise of intensity $g$ leaves a variance $g^2/(2c_1^\gamma c_2^\gamma)$, divided by $n$ for the centre.
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** ★★ (2 points, derivation) One agent has $c_1^\gamma = 4$, $c_2^\gamma = 1$. (a) Up to which period is it
+# stable when sampled? (b) Which of the two bounds is it? Answer with its number, 1 for $2/c_2^\gamma$ and 2 for
+# $2c_2^\gamma/c_1^\gamma$. (c) What variance does its position have under noise of intensity 2? Give the list,
+# exactly.
+
+# %% tags=["answer"]
+limits = ...
+
+# %% tags=["solution"]
+limits = [0.5, 2, 0.5]  # 2 · 1/4; 4/(2 · 4 · 1)
+
+# %% tags=["check"]
+grade(limits, [0.5, 2, 0.5], hint="both formulas are in the summary")
+
+# %% [markdown] tags=["exercise"]
+# **2.** ★★ (2 points, design) Let $c_1^\gamma = 1$. Which $c_2^\gamma$ makes the largest stable sampling period as
+# large as possible? (Exactly.)
+
+# %% tags=["answer"]
+friction = ...
+
+# %% tags=["solution"]
+friction = 1.0  # 2/c2γ falls and 2 c2γ rises: they meet at 1
+
+# %% tags=["check"]
+grade(friction, 1.0, hint="one bound falls with c2γ, the other rises")
+
+# %% [markdown] tags=["exercise"]
+# **3.** ★★ (2 points, experiment) What is the sampling margin of the square of four agents under Algorithm 1,
+# `lattice.square(2, 2, 7.0)` with its default gains? (`stability.sampling_margin(law, q).period`, three significant
+# digits.)
+
+# %% tags=["answer"]
+square_period = ...
+
+# %% tags=["solution"]
+square_period = stability.sampling_margin(fl.Algorithm1(), lattice.square(2, 2, 7.0)).period
+print(square_period)
+
+# %% tags=["check"]
+grade(square_period, 0.0175867, digits=3, hint="fl.Algorithm1() and the positions are all it needs")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★★ (2 points, counterexample) Counterexample hunt: "A sampled agent is the safer, the more friction it has."
+# Give gains $[c_1^\gamma, c_2^\gamma, c']$ with $0 < c_2^\gamma < c'$ such that sampled every 0.5 the agent is
+# stable with $c_2^\gamma$ and unstable with $c'$.
+
+# %% tags=["answer"]
+braked = ...
+
+# %% tags=["solution"]
+braked = [1.0, 1.0, 5.0]  # 2/5 < 0.5
+
+# %% tags=["check"]
+grade(
+    braked,
+    lambda g: (
+        len(g) == 3
+        and g[0] > 0.0
+        and 0.0 < g[1] < g[2]
+        and min(2.0 / g[1], 2.0 * g[1] / g[0]) > 0.5 > min(2.0 / g[2], 2.0 * g[2] / g[0])
+    ),
+    form="list",
+    hint="which bound falls when friction grows?",
+)
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★ (1 point, player) Play the flock that is shaken. Does the hexagon keep its orientation to within a degree,
+# from start to end? Answer `True` or `False`.
+
+# %% tags=["answer"]
+keeps_direction = ...
+
+# %% tags=["solution"]
+arm = shaken.q[:, 1] - shaken.q.mean(axis=1)
+turned = np.degrees(np.ptp(np.unwrap(np.arctan2(arm[:, 1], arm[:, 0]))))
+print(turned)
+keeps_direction = bool(turned < 1.0)
+
+# %% tags=["check"]
+grade(keeps_direction, False, hint="follow one outer agent")
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A colleague damps the shaking of a sampled formation by raising $c_2^\alpha$, and it
+# gets worse. Explain, and say what else could be done. Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Friction that is held for a whole period acts on an old velocity. If the friction rate of a mode times the period
+# exceeds 2, the velocity is turned around and grows from sample to sample; raising the gain crosses this bound.
+# Sampling faster helps, and so does a softer link, that is a smaller $c_1^\alpha$, which allows less friction, or
+# damping by what an agent measures of its own velocity at a higher rate.
+#
+# **Rubric, a point each:** the bound $2/c_2$ and why friction overshoots; a remedy that does not raise the gain.
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★★ (3 points, proof) Prove the theorem on saturation for any odd, continuous, non-decreasing function in
+# place of $\operatorname{sat}$ that vanishes only at 0 and whose integral grows without bound. Where would the proof
+# fail for a function with a dead zone about 0?
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# The computation of $\dot W$ uses only the chain rule: $\dot W = -c_2^\gamma f(z)^2$ for the function $f$. Its
+# integral is non-negative because $f$ has the sign of its argument, and unbounded by hypothesis, so level sets of
+# $W$ are compact. $f(z) = 0$ only at $z = 0$, and the last step is as before. With a dead zone $f(z) = 0$ holds for
+# all small $z$; the invariant set then contains every state at rest with $|z|$ in the dead zone: with $v = 0$ and
+# $\dot v = 0$ nothing moves. The agent stops near the target and not at it; it still cannot drift for ever, because
+# with $v \ne 0$ constant $z$ leaves the zone.
+#
+# **Rubric, a point each:** the rate of $W$ for a general function; compactness and the invariant set; the dead
+# zone's set of rest positions.

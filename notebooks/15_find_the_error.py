@@ -1,0 +1,370 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Find the error in this code
+#
+# **Aims.** Hold recorded motion against a law: compute what the law should have done, look at what is left, and name
+# the error. Do it by hand once, then with the library; know what a recording can and cannot tell.
+#
+# ## A scene
+#
+# A student hands in a program and a film. The film does not look right: the agents jitter, or drift apart, or clump.
+# The program has ninety lines, and all of them look plausible. You could read it until you see the error, or you
+# could ask the *data*: positions and velocities at every step are there. **Which of the law's terms did the program
+# compute, which did it not, and with what gain?** The same question is asked of starlings filmed over Rome and of
+# drones that came back with a log file. The mathematics is a least-squares fit; the art is in the residual.
+#
+# ## Two agents, by hand
+#
+# Two agents on a line; the log says that at the distance 6 their accelerations are $\mp u$. Algorithm 1 would have
+# $u = c_1^\alpha|\phi_\alpha|\cdot6/\sqrt{1+36\varepsilon}$ at rest. If the log's $u$ is half of that, a factor ½ is
+# in the code; if it is $\sqrt{1+36\varepsilon}$ times as much, somebody has used $(q_j-q_i)/\|q_j-q_i\|$ times the
+# distance, or a unit vector with the wrong factor; if it has the wrong sign, agents attract where they should repel.
+# One number at one distance cannot tell these apart. A *curve* over the distance can: the factor ½ is a constant
+# ratio, the missing root a ratio that depends on the distance.
+#
+# ## The program
+#
+# Here it is. It computes the input of all agents under Algorithm 1; `error` plants one of four mistakes that
+# students have really made. Read it, and cover the `if` lines: would you have seen them?
+
+# %%
+import numpy as np
+
+import flockana as fl
+from flockana import plots
+from flockana.course import grade
+
+law = fl.Algorithm1()
+alpha, c1, c2 = law.alpha, law.gains.c1_alpha, law.gains.c2_alpha
+
+
+def student(q, p, error):
+    u = np.zeros_like(q)
+    for i in range(len(q)):
+        for j in range(len(q)):
+            x = q[j] - q[i]
+            distance = np.linalg.norm(x)
+            if j == i or distance >= alpha.r:
+                continue
+            z = (np.sqrt(1.0 + alpha.eps * distance**2) - 1.0) / alpha.eps
+            n = x / np.sqrt(1.0 + alpha.eps * distance**2)
+            weight = alpha.bump(z / alpha.r_alpha)
+            if error == "unit vector":
+                n = x / distance
+            if error == "no weight":
+                weight = 1.0
+            force = c1 * alpha.phi_alpha(z) * n
+            if error == "half":
+                force = 0.5 * force
+            change = p[i] - p[j] if error == "sign" else p[j] - p[i]
+            u[i] += force + c2 * weight * change
+    return u
+
+
+def record(error, step=0.005, steps=200):
+    generator = np.random.default_rng(0)
+    q = fl.lattice.hexagonal_patch(1, 7.0) + generator.normal(0.0, 0.3, (7, 2))
+    p = generator.normal(0.0, 1.0, (7, 2))
+    log = []
+    for k in range(steps):
+        log.append((k * step, q.copy(), p.copy()))
+        p = p + step * student(q, p, error)
+        q = q + step * p
+    return [np.array(each) for each in zip(*log, strict=True)]
+
+
+errors = ("none", "half", "unit vector", "no weight", "sign")
+logs = {error: record(error) for error in errors}
+figure, ax = plots.subplots(size=(6.5, 3.6))
+for error, (t, _, p) in logs.items():
+    ax.semilogy(t, np.linalg.norm(p - p.mean(axis=1, keepdims=True), axis=2).mean(axis=1), label=error)
+ax.set(xlabel="time", ylabel="mean speed about the centre (length/time)")
+_ = ax.legend()
+
+# %% [markdown]
+# **Figure 15.1.** Seven agents, five programs. Only the wrong sign is conspicuous. The other three errors look like
+# flocks that calm down, one of them sooner than the right program, and without that one beside them nobody would
+# object.
+#
+# ## The residual, by hand
+#
+# The log holds $q$ and $p$ at every step. The program steps $p \leftarrow p + \Delta t\,u$, so the accelerations it
+# used are the differences $(p(t+\Delta t) - p(t))/\Delta t$, exactly. Compute the two terms of the law from the
+# logged states,
+#
+# $$f_i = \sum_{j\in N_i}\phi_\alpha n_{ij}, \qquad g_i = \sum_{j\in N_i}a_{ij}(p_j - p_i),$$
+#
+# and ask which combination $c_1f + c_2g$ fits the logged accelerations $u$ best. Minimise
+# $\sum\|u - c_1f - c_2g\|^2$ over all agents and times: put the derivatives with respect to $c_1$ and $c_2$ to 0,
+#
+# $$\begin{pmatrix} \sum\|f\|^2 & \sum\langle f, g\rangle \\ \sum\langle f, g\rangle & \sum\|g\|^2 \end{pmatrix}
+# \begin{pmatrix} c_1 \\ c_2 \end{pmatrix} = \begin{pmatrix} \sum\langle f, u\rangle \\ \sum\langle g, u\rangle
+#   \end{pmatrix} .$$
+#
+# These are the *normal equations*. They have one solution if $f$ and $g$ are not proportional. What is left,
+# $u - c_1f - c_2g$, is the *residual*.
+
+
+# %%
+def terms(q, p):
+    """The two sums of the law for unit gains, from the library."""
+    only_force = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=1e-12))
+    both = fl.Algorithm1(gains=fl.Gains(c1_alpha=1.0, c2_alpha=1.0))
+    f = np.array([only_force.acceleration(0.0, a, b) for a, b in zip(q, p, strict=True)])
+    return f, np.array([both.acceleration(0.0, a, b) for a, b in zip(q, p, strict=True)]) - f
+
+
+fitted = {}
+for error, (t, q, p) in logs.items():
+    u = np.diff(p, axis=0) / (t[1] - t[0])
+    f, g = terms(q[:-1], p[:-1])
+    gains, *_ = np.linalg.lstsq(np.column_stack([f.ravel(), g.ravel()]), u.ravel(), rcond=None)
+    rest = u - gains[0] * f - gains[1] * g
+    fitted[error] = [*gains, np.linalg.norm(rest) / np.linalg.norm(u)]
+    print(f"{error:>11}: c1 = {gains[0]:7.3f}, c2 = {gains[1]:8.3f}, residual {fitted[error][2]:.1e} of the whole")
+print(f"the law has c1 = {c1:.3f}, c2 = {c2:.3f}")
+
+# %% [markdown]
+# Read the table like a detective.
+#
+# - **none**: both gains as they should be, nothing left. The program is right.
+# - **half**: $c_1$ is half, *nothing left*. The form is right and a factor is wrong.
+# - **sign**: $c_2$ has the wrong sign, nothing left.
+# - **unit vector** and **no weight**: a residual, of 1 % and of 37 %. No gains explain the data, so a *form* is
+#   wrong, though the first is well hidden. Which one? Look at the residual.
+
+# %%
+figure, axes = plots.subplots(1, 2, size=(11, 3.6))
+for ax, error in zip(axes, ("unit vector", "no weight"), strict=True):
+    t, q, p = logs[error]
+    u = np.diff(p, axis=0) / (t[1] - t[0])
+    f, g = terms(q[:-1], p[:-1])
+    left = u - c1 * f - c2 * g  # with the gains of the law, as they are documented
+    along = np.sum(left * f, axis=2) / np.linalg.norm(f, axis=2)
+    ax.plot(np.linalg.norm(f, axis=2).ravel(), along.ravel(), ".", markersize=2)
+    ax.set(xlabel="size of the law's pair force (unit gain)", ylabel="residual along it", title=error)
+
+# %% tags=["facts"]
+assert np.allclose(fitted["none"][:2], [c1, c2], rtol=1e-6)
+assert np.allclose(fitted["half"][:2], [c1 / 2.0, c2], rtol=1e-6)
+assert np.allclose(fitted["sign"][:2], [c1, -c2], rtol=1e-6)
+assert max(fitted[error][2] for error in ("none", "half", "sign")) < 1e-6
+assert min(fitted[error][2] for error in ("unit vector", "no weight")) > 5e-3
+assert [f"{100.0 * fitted[error][2]:.0f}" for error in ("unit vector", "no weight")] == ["1", "37"]
+
+# %% [markdown]
+# **Figure 15.2.** What the documented law leaves over, against the size of its pair force, a dot for each agent and
+# time. For the unit vector the residual grows with the force: the error is in the force. Without the weight there is
+# no such line: the error is elsewhere, in the other term.
+#
+# ## The same with the library
+#
+# `fl.Recording` takes a log with the accuracy of its numbers, `fl.compare` does what we did, for more laws, more
+# schemes and more kinds of mistakes, and says in words what it finds.
+
+# %%
+comparisons = {error: fl.compare(fl.Recording(*logs[error], bound=0.0), law) for error in errors}
+for error, found in comparisons.items():
+    print(f"{error:>11}: {'; '.join(found.findings)}")
+
+# %% tags=["facts"]
+assert comparisons["none"].explained > 0.999999
+assert any("15" in text and "30" in text for text in comparisons["half"].findings)
+assert any("-10.95" in text for text in comparisons["sign"].findings)
+assert any("count alike" in text for text in comparisons["no weight"].findings)
+assert any("semi-implicit" in text for text in comparisons["none"].findings)
+
+# %% [markdown]
+# It even names the scheme: *semi-implicit Euler of 0.005*, because the program moves with the new velocity. For the
+# unit vector it reports a gain of about 10.5 instead of 30, which is the best that a wrong form allows. That is a
+# clue, not a diagnosis: $30/10.5 = 2.9$ is near $7/\sqrt{1+4.9} = 2.88$, the factor between $n_{ij}$ and a unit
+# vector at the distance 7. The last step is yours.
+#
+# ## Noise
+#
+# Logs of real machines are noisy. If each position is off by a random amount of standard deviation $e$, an
+# acceleration computed from second differences is off by about $\sqrt6\,e/\Delta t^2$: with $e = 0.01$ and
+# $\Delta t = 0.005$ that is a thousand, and the law's accelerations are a few tens. *More samples make it worse.*
+# One smooths, or one compares not accelerations but whole solutions: start at a sample, let the law run for a while,
+# and compare with the next samples. A recording says how accurate it is, and what is not above that accuracy is not
+# found:
+
+# %%
+t, q, p = logs["half"]
+generator = np.random.default_rng(1)
+for e in (1e-6, 1e-3):
+    blurred = q + e * generator.standard_normal(q.shape)
+    twice = np.diff(blurred, 2, axis=0) / (t[1] - t[0]) ** 2
+    true = np.diff(q, 2, axis=0) / (t[1] - t[0]) ** 2
+    formula = np.sqrt(6.0) * e / 0.005**2
+    print(f"positions off by {e:g}: accelerations off by {np.std(twice - true):.2g}, by the formula {formula:.2g}")
+
+# %% tags=["facts"]
+assert abs(np.std(twice - true) / (np.sqrt(6.0) * 1e-3 / 0.005**2) - 1.0) < 0.1
+
+# %% [markdown]
+# ## What surprised, and what a recording does not say
+#
+# A wrong factor leaves no residual, a wrong form leaves one, and both look like flocks. The data know the
+# integrator. But a recording shows only the states that occurred: if all agents stayed within 6 and 8 of each other,
+# nothing is known of the force at 3. Two laws that agree there are the same to the data. And a law that explains
+# everything need not be the law that was programmed: of two terms that are proportional along the whole recording
+# only the sum is known. For starlings the honest conclusion is "consistent with", and never "is".
+#
+# ## Summary
+#
+# - Accelerations from a log are fitted by the law's terms; the normal equations give gains, and the residual shows
+#   what no gain explains.
+# - A wrong factor or sign: gains off, residual 0. A wrong form: a residual, whose dependence on distance and
+#   velocity names the term.
+# - Differencing multiplies noise by $\sqrt6/\Delta t^2$; a recording must state its accuracy.
+
+# %% [markdown] tags=["exercise"]
+# ## Exercises
+#
+# **1.** ★★ (2 points, derivation) Positions are known to a standard deviation of 0.002, sampled every 0.1. (a) With
+# which standard deviation are accelerations known from second differences? (b) And if every other sample is left
+# out? Give the list, each to three significant digits.
+
+# %% tags=["answer"]
+blur = ...
+
+# %% tags=["solution"]
+blur = [np.sqrt(6.0) * 0.002 / 0.1**2, np.sqrt(6.0) * 0.002 / 0.2**2]
+
+# %% tags=["check"]
+grade(blur, [0.489897949, 0.122474487], digits=3, hint="q(t+Δt) − 2 q(t) + q(t−Δt): three independent errors")
+
+# %% [markdown] tags=["exercise"]
+# **2.** ★★ (2 points, program) Plant an error of your own: write a function `flawed(q, p)` that returns inputs of
+# Algorithm 1 with its default gains in which friction is *missing*, and everything else is right.
+
+# %% tags=["answer"]
+flawed = ...
+
+
+# %% tags=["solution"]
+def without_friction(q, p):
+    return fl.Algorithm1().acceleration(0.0, q, 0.0 * np.asarray(p))
+
+
+flawed = without_friction
+
+# %% tags=["check"]
+grade(
+    flawed,
+    lambda f: all(
+        np.allclose(f(q, p), fl.Algorithm1().acceleration(0.0, q, 0.0 * p), atol=1e-9)
+        for q in (np.array([[0.0, 0.0], [6.0, 0.0]]), np.array([[0.0, 0.0], [7.5, 0.0], [3.0, 6.0]]))
+        for p in (np.ones_like(q), q**2 / 9.0)
+    ),
+    form="function",
+    hint="which argument does friction need?",
+)
+
+# %% [markdown] tags=["exercise"]
+# **3.** ★★★ (3 points, experiment) Here is a log from an unknown program, as the function `unknown()` below makes
+# it. Compare it with `law`. Which gain $c_2^\alpha$ has it? (Three significant digits.)
+#
+# `unknown = lambda: fl.simulate(fl.Algorithm1(gains=fl.Gains(c1_alpha=30.0, c2_alpha=4.2)),
+# fl.lattice.hexagonal_patch(1, 7.1), 0.3 * fl.lattice.hexagonal_patch(1, 1.0)[::-1], (0.0, 1.0),
+# t_eval=np.linspace(0.0, 1.0, 201))`
+
+# %% tags=["answer"]
+unknown_gain = ...
+
+# %% tags=["solution"]
+source = fl.simulate(
+    fl.Algorithm1(gains=fl.Gains(c1_alpha=30.0, c2_alpha=4.2)),
+    fl.lattice.hexagonal_patch(1, 7.1),
+    0.3 * fl.lattice.hexagonal_patch(1, 1.0)[::-1],
+    (0.0, 1.0),
+    t_eval=np.linspace(0.0, 1.0, 201),
+)
+print(fl.compare(fl.Recording(source.t, source.q, source.p, source.u, bound=0.0), law))
+unknown_gain = 4.2
+
+# %% tags=["check"]
+grade(unknown_gain, 4.2, digits=3, hint="fl.compare(fl.Recording(t, q, p, u, bound=0.0), law) prints the gains")
+
+# %% [markdown] tags=["exercise"]
+# **4.** ★ (1 point, player) A `Recording` has no player, a `Trajectory` has. Simulate `law` from the start of the
+# log "sign" for 1 time unit, show its player, and compare with Figure 15.1: does the right program calm down, so
+# that the mean speed about the centre at the end is below its start? Answer `True` or `False`.
+
+# %% tags=["answer"]
+calms = ...
+
+# %% tags=["solution"]
+right = fl.simulate(law, logs["sign"][1][0], logs["sign"][2][0], (0.0, 1.0))
+right.player()
+about = np.linalg.norm(right.p - right.p.mean(axis=1, keepdims=True), axis=2).mean(axis=1)
+print(about[[0, -1]])
+calms = bool(about[-1] < about[0])
+
+# %% tags=["check"]
+grade(calms, True, hint="look at the arrows, or compute the mean speeds")
+
+# %% [markdown] tags=["exercise"]
+# **5.** ★★ (2 points, counterexample) Counterexample hunt: "If gains fit exactly and the residual is 0, the program
+# is right." Give positions of two agents on a line, $[x_1, x_2]$, both at rest, at which the error "no weight" has
+# no effect at all on the inputs, although the agents are in range of each other and not at the distance 7.
+
+# %% tags=["answer"]
+silent = ...
+
+# %% tags=["solution"]
+silent = [0.0, 6.0]  # at rest there is no friction, with or without weight
+
+# %% tags=["check"]
+grade(
+    silent,
+    lambda x: len(x) == 2 and 0.0 < abs(x[1] - x[0]) < 8.4 and abs(abs(x[1] - x[0]) - 7.0) > 1e-6,
+    form="list",
+    hint="which term has the weight, and when is that term 0?",
+)
+
+# %% [markdown] tags=["exercise"]
+# **6.** ★★ (2 points, words) A program's film looks right and its residual against the documented law is 3 %. The
+# author says: "3 % is the integrator." How would you find out? Answer in your own words.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# Halve the step and record again: an error of the integrator shrinks with the step, a wrong form stays. Or compute
+# the accelerations from the scheme itself, as the difference of logged velocities over the step, which is exact for
+# Euler schemes; then the integrator contributes nothing and the 3 % must be a form. Then plot the residual against
+# distance and relative velocity to see which term it belongs to.
+#
+# **Rubric, a point each:** a test that separates step size from form; a look at the dependence of the residual.
+
+# %% [markdown] tags=["exercise"]
+# **7.** ★★★ (3 points, proof) Derive the normal equations, prove that their matrix is positive definite exactly if
+# $f$ and $g$ (as vectors of all agents and times) are not proportional, and describe a recording for which they are
+# proportional, so that the two gains cannot be told apart.
+
+# %% [markdown] tags=["answer"]
+# *Your answer:*
+
+# %% [markdown] tags=["solution"]
+# The sum $\|u - c_1f - c_2g\|^2$ is a quadratic function of the gains. Its derivative with respect to $c_1$ is
+# $-2\langle f, u - c_1f - c_2g\rangle$, and likewise for $c_2$; both 0 are the normal equations. For a vector $z$ of
+# two numbers the quadratic form of the matrix is $\|z_1f + z_2g\|^2 \ge 0$, which is 0 for some $z \ne 0$ exactly if
+# $f$ and $g$ are proportional (or one of them is 0). Example: two agents on a line at one instant have accelerations
+# along one direction only, so with a single sample $f$ and $g$ are proportional; so are they when all agents are at
+# rest all the time, where $g = 0$.
+#
+# **Rubric, a point each:** the derivatives; definiteness by the norm of a combination; a recording with proportional
+# terms.

@@ -1,0 +1,59 @@
+"""`flockana observe`: measures, findings, verdicts and a page; bad input in one line."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from flockana.recorded.faulty import faulty_recording
+
+COMMAND = ("observe",)
+
+
+@pytest.fixture(scope="module")
+def tracks(tmp_path_factory):
+    rec, path = faulty_recording("B").window(0.0, 0.6), tmp_path_factory.mktemp("tracks") / "b.csv"
+    rows = [(t, i, *rec.q[k, i], *rec.p[k, i]) for k, t in enumerate(rec.t) for i in range(rec.n)]
+    pd.DataFrame(rows, columns=["time", "id", "x", "y", "vx", "vy"]).to_csv(path, index=False)
+    return path
+
+
+def test_a_recording_is_measured_and_definitions_are_judged_without_a_law(call, tracks, tmp_path):
+    code, out, err = call(tracks, "--d", "7", "--bound", "1e-6", "-o", "page.html")
+    assert (code, err) == (0, "")
+    assert "R, cohesion radius" in out
+    assert "± 2e-06" in out
+    assert "alpha-flocking" in out
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "flockanaPlayer" in text
+    assert "http" not in text.split("</style>")[1].split("<script")[0].replace("http://www.w3.org", "")
+
+
+def test_a_law_is_held_against_it_with_findings_and_exit_status_3(call, tracks):
+    code, out, _ = call(tracks, "--law", "algorithm-1", "--bound", "1e-6")
+    assert code == 3
+    assert "finding: velocity consensus is c2α" in out
+    assert "the samples follow the law: unmet" in out
+    assert max(map(len, out.splitlines())) <= 80
+
+
+def test_a_formula_is_a_law_and_json_holds_everything(found, tracks):
+    data = found(tracks, "--d", "7", "--r", "8.4")
+    assert len(data["time"]) == 31
+    assert len(data["measures"]["cohesion_radius"]) == 31
+    assert {verdict["theorem"] for verdict in data["verdicts"]} >= {"alpha-flocking", "os-5-terminal"}
+
+
+def test_gains_are_fitted_for_a_formula_too(call, tracks):
+    code, out, _ = call(tracks, "--formula", "(s**2-d**2)**2/1e3", "--d", "7", "--r", "8.4", "--fit", "--json")
+    assert code in (0, 3)
+    assert '"c1_alpha"' in out
+
+
+def test_bad_input_is_one_line(refused, tracks):
+    refused("no file nothing.csv", "nothing.csv", "--d", "7")
+    refused("expected --law NAME, or --d", tracks)
+    refused("--fit: expected --law or --formula", tracks, "--d", "7", "--fit")
+    refused("expected one of them", tracks, "--law", "algorithm-1", "--formula", "s")
+    refused("unknown scenario 'nobody'", tracks, "--law", "nobody")
+    refused("expected --d and --r", tracks, "--formula", "s**2")

@@ -1,0 +1,54 @@
+"""The input-to-state theorem: verified in a light wind, vacuous in a strong one, of noise and of other laws."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flockana.dynamics.simulate import simulate
+from flockana.equilibria.solve import find_equilibrium
+from flockana.laws.delayed import Delayed
+from flockana.laws.disturbed import Disturbed
+from flockana.laws.olfati_saber import Algorithm1
+from flockana.theorems import verify
+
+PAIR = find_equilibrium(Algorithm1(), [[0.0], [7.0]]).q
+
+
+def verdict(law, **how):
+    return verify("disturbed-basin", simulate(law, PAIR, 0.0 * PAIR, (0.0, 10.0), **how))
+
+
+def test_a_light_wind_is_borne():
+    found = verdict(Disturbed(Algorithm1(), swing=[[0.1], [-0.1]], frequency=0.7))
+    assert (found.status, found.rigour) == ("verified", "interval")
+    assert [claim.name for claim in found.claims] == ["stays", "ultimate"]
+    assert all(claim.margin > 0.0 for claim in found.claims)
+
+
+def test_a_wind_on_all_alike_moves_no_shape():
+    found = verdict(Disturbed(Algorithm1(), force=(1.0,)))
+    assert found.status == "verified"
+    assert found.claim("ultimate").computed < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("law", "how", "reason"),
+    [
+        (Disturbed(Algorithm1(), force=[[1.0], [-1.0]]), {}, "could leave"),
+        (Disturbed(Algorithm1(), intensity=0.1), {"dt": 0.01}, "the run is of the law within Disturbed"),
+        (Disturbed(Delayed(Algorithm1(), 0.01)), {"dt": 0.01}, "within Disturbed, Delayed"),
+        (Algorithm1(), {}, "the law is Algorithm1"),
+    ],
+)
+def test_else_it_is_vacuous_with_the_reason(law, how, reason):
+    found = verdict(law, **how)
+    assert found.status == "vacuous"
+    assert reason in found.claims[0].detail or any(reason in one.detail for one in found.hypotheses)
+
+
+def test_what_is_taken_off_is_the_mean():
+    from flockana.theorems.disturbed_basin import largest_push
+
+    law = Disturbed(Algorithm1(), force=(3.0,), swing=[[1.0], [3.0]])
+    assert largest_push(law, (2, 1)) == pytest.approx(np.sqrt(2.0))
