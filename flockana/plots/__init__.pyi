@@ -52,6 +52,7 @@ from .stability import animate_mode as animate_mode
 from .stability import mode_shape as mode_shape
 from .stability import mode_title as mode_title
 from .stability import pole_map as pole_map
+from .step_margins import step_margins as step_margins
 from .style import style as style
 from .style import subplots as subplots
 from .tracks import centre_path as centre_path

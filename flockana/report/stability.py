@@ -86,7 +86,7 @@ def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = N
     margins = [v for _, v in verdicts if v.theorem in _MARGINS]
     if not decays and not margins:
         return None
-    pictures = (_range([v for _, v in decays]), bode_picture(verdicts))
+    pictures = (_range([v for _, v in decays]), bode_picture(verdicts), _steps(margins))
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
@@ -187,6 +187,22 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         "proportion. White marks: a link formed or broke on the way."
     )
     return Picture(text, svg(draw, (6.5, 4.0)))
+
+
+def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
+    """Draw the sources' steps against the largest stable ones."""
+    claims = [c for v in verdicts if v.theorem == "sampling-margins" for c in v.claims if c.computed]
+    if not claims:
+        return None
+    steps = {c.name: (c.computed["margin"], c.computed["dt"]) for c in claims}
+
+    def draw(figure: Figure) -> None:
+        plots.step_margins(steps, ax=figure.subplots())
+
+    text = (
+        "Margins of the sources: the largest step for which the linearised map is stable, over the step of the source."
+    )
+    return Picture(text, svg(draw, (6.5, 3.0)))
 
 
 class _Response(NamedTuple):

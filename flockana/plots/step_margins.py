@@ -1,0 +1,49 @@
+"""Largest stable steps over the steps in use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flockana.base.checks import ensure_positive
+from flockana.base.errors import ArgumentError
+from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_HEIGHT, _HATCH = 0.6, "///"  # of a bar; of one that is unstable, to be told in grey
+
+
+def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
+    """Draw by how much the largest stable step exceeds the step in use, on a logarithmic axis; unstable ones hatched.
+
+    Parameters
+    ----------
+    steps : mapping of str to (float, float)
+        By name, the largest stable step and the step in use, such as ``(margin.period, dt)`` of a `SamplingMargin`.
+
+    Raises
+    ------
+    ArgumentError
+        If there is none, or a step is not positive.
+    """
+    if not steps:
+        raise ArgumentError("steps is empty: expected (largest stable step, step in use) by name")
+    ratios = [
+        ensure_positive(f"{name}: margin", a) / ensure_positive(f"{name}: dt", b) for name, (a, b) in steps.items()
+    ]
+    axes, places = ensure_axes(ax), -np.arange(len(ratios))
+    for place, ratio in zip(places, ratios, strict=True):
+        stable = ratio > 1.0
+        look = {"color": BLUE} if stable else {"color": "none", "edgecolor": VERMILLION, "hatch": _HATCH}
+        axes.barh(place, ratio - 1.0, _HEIGHT, left=1.0, **look)
+        where = {"ha": "left", "xytext": (4.0, 0.0)} if stable else {"ha": "right", "xytext": (-4.0, 0.0)}
+        axes.annotate(f"{ratio:.3g}", (ratio, place), textcoords="offset points", va="center", fontsize=8.0, **where)
+    axes.axvline(1.0, color=INK, linewidth=1.0)
+    axes.set_xscale("log")
+    axes.set_xlim(min(0.4, 0.6 * min(ratios)), 1.8 * max(2.0, *ratios))
+    axes.set_yticks(places, list(steps))
+    return finish(axes, "largest stable step over the step in use", "")
