@@ -50,8 +50,9 @@
 #
 # > **Theorem (split).** Under Algorithm 2, for every motion of the γ-agent,
 # >
-# > $$\dot p_c = -c_1^\gamma(q_c - q_r) - c_2^\gamma(p_c - p_r), \qquad \dot v_i = u_i^\alpha(x, v) - c_1^\gamma
-# >   x_i - c_2^\gamma v_i .$$
+# > $$\dot p_c = -c_1^\gamma(q_c - q_r) - c_2^\gamma(p_c - p_r),$$
+# >
+# > $$\dot v_i = u_i^\alpha(x, v) - c_1^\gamma x_i - c_2^\gamma v_i .$$
 #
 # *Proof.*
 #

@@ -163,13 +163,13 @@ _ = plots.components(run, ax=axes[1])
 #
 # $T = \tfrac12\sum_i\|p_i\|^2$ and $H = V_\alpha + V_\beta + V_\gamma + T$.
 #
-# > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. Then
-# >
-# > $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle -
-# >   c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr),$$
-# >
-# > and if $\tfrac n2\langle p_c(t), p_d\rangle \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all
-# > $t \ge t_0$.
+# Its rate will be
+#
+# $$\dot H = -c_2^\alpha\, p^\top \hat L p + c_2^\beta \sum_{i,k} b_{ik}\langle p_i, \hat p_{ik} - p_i\rangle
+#   - c_2^\gamma \bigl(2T - n \langle p_c, p_d\rangle\bigr) .$$
+#
+# > **Theorem 6** (Olfati-Saber 2006). Apply Algorithm 3 with a static γ-agent. Then $\dot H$ is as displayed, and if
+# > $\tfrac n2\langle p_c(t), p_d\rangle \le T(t)$ for all $t \ge t_0$, then $\dot H \le 0$ for all $t \ge t_0$.
 #
 # *Proof.* Three lemmas, then a sum.
 #

@@ -67,13 +67,23 @@ import numpy as np
 
 import flockana as fl
 from flockana import plots
-from flockana.course import grade
+from flockana.course import figures, grade
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors
 from flockana.stability import linearise
 from flockana.symbolic import bearing_distance, spanning_trees
 
+figure, ax = plots.subplots(size=(6.4, 3.6))
+radii = {"repulsion $z_r$": 1.5, "conflict $z_c$": 3.0, "attraction $z_a$": 5.0, "surveillance $z_s$": 6.0}
+_ = figures.zones(radii, ax=ax)
+
+# %% [markdown]
+# **Figure 8.1.** The zones of one agent (dot), with the radii of the paper's second experiment. Flockmates in the
+# two inner discs repel, those outside the innermost one and within $z_a$ attract and align; aliens anywhere within
+# $z_s$ repel.
+
+# %%
 hunted = fl.scenario("zone-52").run()
 hunted.window(0.0, 32.0).animate(seconds=4, fps=8)
 
@@ -88,7 +98,7 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
-# **Figure 8.1.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
+# **Figure 8.2.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
 # circle) the same agents do not get through (right).
 #
 # ## Two forms, and where they part
@@ -140,14 +150,16 @@ for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommend
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
 # %% [markdown]
-# **Figure 8.2.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
+# **Figure 8.3.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
 # plain clip they end at 3.
 #
 # ## The theorem
 #
 # For its analysis the paper reduces the law to springs and alignment along the edges of a perception graph
-# (`MinimalFlocking`). With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$ perceives $j$, and a desired length
-# $d$:
+# (`MinimalFlocking`). A graph is a *spanning tree*, more precisely a rooted out-tree, if every agent but one, the
+# root, perceives exactly one other, and following who is perceived leads from everybody to the root. A matrix is
+# *Hurwitz* if all its eigenvalues have negative real part. With $x_e = q_j - q_i$ on edge $e = (j, i)$, by which $i$
+# perceives $j$, and a desired length $d$:
 #
 # > **Theorem 1** (as printed, in our words). If the graph is a spanning tree, then $x \to 0$ and $\dot x \to 0$ from
 # > any initial condition, because the matrix $A_{cl}$ of the edge dynamics is Hurwitz.
@@ -161,7 +173,7 @@ plots.snapshot(tree, time=0.0, ax=axes[0], velocities=False, bar=False)
 _ = plots.snapshot(tree, ax=axes[1], velocities=False)
 
 # %% [markdown]
-# **Figure 8.3.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
+# **Figure 8.4.** A tree of eight agents at the start and at $t = 100$. An arrow shows who is perceived by whom;
 # colour shows how far an edge is from its desired length. At the end every edge is right, and none is 0.
 
 # %%
@@ -215,7 +227,7 @@ figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
 # %% [markdown]
-# **Figure 8.4.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
+# **Figure 8.5.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
 # and eleven zeros.
 #
 # ## What surprised, and what the corrected theorem does not say

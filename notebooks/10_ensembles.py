@@ -126,8 +126,10 @@ _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 #
 # ## Do not wait for the counterexample
 #
-# Random starts rarely hit the bad one. A search that minimises the claim's *margin* does. Theorem 1(iii) excludes a
-# collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then below it:
+# Random starts rarely hit the bad one. Every claim has a *margin*, a number that is positive where the claim holds,
+# and smaller the nearer it is to failing. A search that minimises the margin goes downhill to the bad start. Theorem
+# 1(iii) excludes a collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then
+# below it:
 
 # %%
 broken = fl.falsify("collision-energy", "head-on", claim="twice", budget=100)

@@ -108,7 +108,7 @@ PROOF = Proof(
     ),
     rigour="smt",
     steps=_steps,
-    size=16,
+    size=17,
     theorems=("links-kept", "su-informed", "tanner-fixed", "tanner-switching"),
     cites=("Barbalat",),
 )

@@ -72,7 +72,7 @@ class TableTarget(Target):
 
         if self.p is not None:
             return np.asarray(CubicHermiteSpline(self.t, np.array(self.q), np.array(self.p)).c)
-        ends = "not-a-knot" if len(self.t) > 3 else "natural" if len(self.t) > 2 else "not-a-knot"
+        ends: Any = "not-a-knot" if len(self.t) > 3 else "natural" if len(self.t) > 2 else "not-a-knot"
         return np.asarray(CubicSpline(self.t, np.array(self.q), bc_type=ends).c)
 
     @cached_property

@@ -100,7 +100,7 @@ class Equilibrium:
     message: str
 
     def facts(self) -> dict[str, str]:
-        """Return what a table shows."""
+        """Return the rows of the table that a notebook shows."""
         lowest = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
         return {
             "law": type(self.law).__name__,

@@ -75,7 +75,7 @@ class Delayed(Wrapper):
 
     @property
     def clocks(self) -> tuple[float, ...]:
-        """The delay, if there is one for all: kinks of the solution then fall on steps."""
+        """The positive delay common to all agents, at whose multiples the solution has kinks; else empty."""
         return (self.delay,) if isinstance(self.delay, float) and self.delay > 0.0 else ()
 
     def check_agents(self, n: int) -> None:  # noqa: D102

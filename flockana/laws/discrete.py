@@ -55,7 +55,7 @@ class DiscreteLaw(LawOfMotion):
         return own if isinstance(own, Law) else None
 
     def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> csr_array | None:
-        """Derivative of the next headings in the headings, shape (n, n), of a map of headings; None of another.
+        """Return the derivative of the next headings by the headings, shape (n, n); None unless headings are mapped.
 
         Parameters
         ----------
@@ -68,7 +68,7 @@ class DiscreteLaw(LawOfMotion):
 
     @property
     def scales(self) -> Scales | None:
-        """Those of the law that is stepped."""
+        """Length and time scales of the law that is stepped."""
         return None if self.continuous is None else self.continuous.scales
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -88,7 +88,7 @@ class DiscreteLaw(LawOfMotion):
     def step(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """One step from t to t + dt: (next q, next p, the input u that was applied, next memory), unchecked.
+        """Return (next q, next p, applied input u, next memory) of one step from t to t + dt, unchecked.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class DiscreteLaw(LawOfMotion):
     def iterate(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        """`steps` steps at once: what `step` returns after each of them, stacked along a first axis, unchecked.
+        """Return the results of `steps` calls of `step`, stacked along a first axis, unchecked.
 
         `simulate` asks for `steps_at_once` steps at a time. A law whose step costs less than a call from Python
         overrides both; it must give what `step` gives, to the bit.
@@ -131,7 +131,7 @@ class DiscreteLaw(LawOfMotion):
     def visit(
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
-        """What `iterate` gives, to the bit, of some steps only: where that costs less. None by default: it does not.
+        """Return `iterate` at some steps only, where that costs less; None by default.
 
         Once the state is not finite it must stay so, as the steps in between are not seen.
 
@@ -149,7 +149,7 @@ class DiscreteLaw(LawOfMotion):
         return None
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The memory before the first step; empty by default.
+        """Return the memory before the first step; empty by default.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class DiscreteLaw(LawOfMotion):
 
 
 def ensure_law(law: Any) -> Law | DiscreteLaw:
-    """Return `law` if it is one.
+    """Return `law` if it is a law or a map; raise otherwise.
 
     Parameters
     ----------

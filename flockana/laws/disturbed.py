@@ -149,7 +149,7 @@ class Disturbed(Wrapper):
         return form._replace(terms=(*form.terms, term))
 
     def _rows(self, m: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Constant push, and amplitudes of cos ωt and sin ωt, each (1, m) or (n, m)."""
+        """Return the constant push and the amplitudes of cos ωt and sin ωt, each (1, m) or (n, m)."""
         force, swing = (np.zeros((1, m)) if x is None else np.atleast_2d(x) for x in (self.force, self.swing))
         force, swing = np.broadcast_arrays(force, swing)
         return force, np.sin(self.phase) * swing, np.cos(self.phase) * swing
@@ -159,7 +159,7 @@ class Disturbed(Wrapper):
 
 
 def _pushes(name: str, value: Any) -> Any:
-    """A force as nested tuples, so that it can be compared and saved; None stays."""
+    """Return a force as nested tuples, for comparison and files; None stays None."""
     if value is None:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Any continuous law, stepped by the explicit Euler scheme: positions and velocities both with the old state."""
+"""Explicit Euler steps of any continuous law."""
 
 from __future__ import annotations
 

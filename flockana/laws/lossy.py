@@ -16,7 +16,7 @@ _LOST = 3  # channel of random numbers
 
 @dataclass(frozen=True)
 class Lossy(Wrapper):
-    """Each message from agent j to agent i is lost with a probability; then i acts as if j were out of range.
+    """Law with random loss of messages: agent i then acts as if agent j were out of range.
 
     Messages are sent at each step, or at each sample within `Sampled`; losses are independent.
 

@@ -16,7 +16,7 @@ _POSITION, _VELOCITY = 1, 2  # channels of random numbers
 
 @dataclass(frozen=True)
 class Measured(Wrapper):
-    """Agents act on measured states: white noise is added to positions and velocities, read anew at each step.
+    """Law with measured states: white noise on positions and velocities, redrawn at each step.
 
     A reading lasts until the next, so that its standard deviation is the intensity over the square root of the time
     between them: of a step, or of the period within `Sampled`. Shorter steps then come to the same run in the mean.

@@ -20,7 +20,7 @@ BY = ("length", "component")
 
 @dataclass(frozen=True)
 class Saturated(Wrapper):
-    """u bounded by what an actuator gives: shortened to `limit`, or each of its components clipped.
+    """Law with bounded input: u shortened to `limit`, or each component clipped.
 
     The law stays a continuous one. Forces between agents no longer cancel where a limit acts: the centre of mass is
     pushed, and energy may rise.

@@ -1,4 +1,4 @@
-"""Any continuous law, stepped by the semi-implicit Euler scheme: velocities first, then positions with the new ones."""
+"""Semi-implicit Euler steps of any continuous law: velocities first, then positions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flockana.laws.scheme import Scheme
 
 @dataclass(frozen=True)
 class SemiImplicitEuler(Scheme):
-    """p' = p + dt u(t, q, p), q' = q + dt p': what sources mean that give a step and no integrator.
+    """Map p' = p + dt u(t, q, p), q' = q + dt p', for sources that give a step and no integrator.
 
     A scheme of first order with a fixed step: where the law jumps it neither sees the jump nor resolves it, and where
     the law holds a pair at a jump it chatters about it (erratum L7).
@@ -73,5 +73,5 @@ class SemiImplicitEuler(Scheme):
 
 
 def _is_compiled(law: Law) -> TypeGuard[DeadZoneFlocking]:
-    """Whether a law is what the compiled loop steps: the dead-zone law itself, as a subclass may push otherwise."""
+    """Return whether the compiled loop steps a law: the dead-zone law itself, not a subclass."""
     return type(law) is DeadZoneFlocking and type(law.interaction) is DeadZoneInteraction

@@ -1,4 +1,4 @@
-"""Any continuous law stepped as by hand: q + p dt + ½ u dt², p + u dt, with u at the beginning of the step."""
+"""Taylor steps of any continuous law: q + p dt + ½ u dt², p + u dt, with u at the step's beginning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Agents of one speed that turn to the mean heading of their neighbours: Jadbabaie, Lin and Morse, and Vicsek."""
+"""Agents of constant speed that turn to their neighbours' mean heading (Vicsek; Jadbabaie, Lin and Morse)."""
 
 from __future__ import annotations
 

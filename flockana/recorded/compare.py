@@ -13,7 +13,7 @@ from flockana.base.vectors import lengths
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations
 from flockana.recorded.findings import Share, explained
-from flockana.recorded.recording import Recording
+from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.schemes import scheme_by_law
 
 _WORST = 5  # places that are named
@@ -130,6 +130,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
     >>> compare(recording_of(run), Algorithm1()).explained > 0.999999
     True
     """
+    ensure_recording(rec)
     own = ensure_law(law)
     continuous = own.continuous if isinstance(own, DiscreteLaw) else own
     if continuous is None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ C1A, C2A, C1G, C2G = 30.0, 2.0 * sqrt(30.0), 1.1, 2.0 * sqrt(1.1)
 GOAL = (10.0, 10.0)
 _AGENTS, _END, _SAMPLES, _STEP = 12, 4.0, 201, 0.02
 
-Acceleration = Callable[[FloatArray, FloatArray], FloatArray]
+Acceleration = Callable[[FloatArray, FloatArray], Any]
 
 
 def intended_law() -> Algorithm2:
@@ -60,12 +61,12 @@ def _pairs(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     return x, s, weight, weight * _phi(_sigma_norm(s) - d_alpha)
 
 
-def _summed(action: FloatArray, n: FloatArray, weight: FloatArray, p: FloatArray, c2: float) -> FloatArray:
-    total: FloatArray = C1A * (action[:, :, None] * n).sum(axis=1)
+def _summed(action: FloatArray, n: FloatArray, weight: FloatArray, p: FloatArray, c2: float) -> Any:
+    total: Any = C1A * (action[:, :, None] * n).sum(axis=1)
     return total + c2 * (weight[:, :, None] * (p[None] - p[:, None])).sum(axis=1)
 
 
-def code_a(q: FloatArray, p: FloatArray) -> FloatArray:
+def code_a(q: FloatArray, p: FloatArray) -> Any:
     """Return the accelerations of implementation A."""
     x, s, weight, action = _pairs(q)
     n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
@@ -73,21 +74,21 @@ def code_a(q: FloatArray, p: FloatArray) -> FloatArray:
     return _summed(action, n, weight, p, C2A) - C1G * e / np.sqrt(1.0 + e**2) - C2G * p
 
 
-def code_b(q: FloatArray, p: FloatArray) -> FloatArray:
+def code_b(q: FloatArray, p: FloatArray) -> Any:
     """Return the accelerations of implementation B."""
     x, s, weight, action = _pairs(q)
     n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
     return _summed(action, n, weight, p, C1A) - C1G * (q - np.array(GOAL)) - C2G * p
 
 
-def code_c(q: FloatArray, p: FloatArray) -> FloatArray:
+def code_c(q: FloatArray, p: FloatArray) -> Any:
     """Return the accelerations of implementation C."""
     x, _, weight, action = _pairs(q)
     n = x / np.sqrt(1.0 + EPS * x**2)
     return _summed(action, n, weight, p, C2A) - C1G * (q - np.array(GOAL)) - C2G * p
 
 
-def code_d(q: FloatArray, p: FloatArray) -> FloatArray:
+def code_d(q: FloatArray, p: FloatArray) -> Any:
     """Return the accelerations of implementation D."""
     x, s, weight, action = _pairs(q)
     n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
@@ -115,7 +116,7 @@ def faulty_recording(name: str) -> Recording:
     rng = np.random.default_rng(7)
     q = D * np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=2).reshape(-1, 2)
     q, p = q + rng.normal(0.0, 0.6, (_AGENTS, 2)), rng.normal(0.0, 1.0, (_AGENTS, 2))
-    t = _STEP * np.arange(_SAMPLES)
+    t: Any = _STEP * np.arange(_SAMPLES, dtype=np.float64)
     if name == "D":
         places, speeds = [q], [p]
         for _ in t[1:]:

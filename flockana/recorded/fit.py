@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.parameters import Free
-from flockana.recorded.recording import Recording
+from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.shooting import matched, windows
 from flockana.recorded.steps import predicted
 
@@ -107,6 +107,7 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     >>> round(fit(recording_of(run), Algorithm1(), free=("c1_alpha",)).values["c1_alpha"], 4)
     20.0
     """
+    ensure_recording(rec)
     own = ensure_law(law)
     if isinstance(own, DiscreteLaw):
         raise ArgumentError(f"{type(law).__name__} is a map: expected a continuous law, such as the one that it steps")

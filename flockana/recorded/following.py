@@ -85,28 +85,28 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     known = bool(np.isfinite(place).all())
     worst: list[tuple[float, float, str, float, int]] = []
     for samples in _strides(rec, law):
-        t, q, p = rec.t[samples], rec.q[samples], rec.p[samples]
+        times, q, p = rec.t[samples], rec.q[samples], rec.p[samples]
         widths = [x[samples] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
-        off, allowed = _differences(law, t, q, p, *widths)
+        off, allowed = _differences(law, times, q, p, *widths)
         for name, apart, room in zip(("q", "p"), off, allowed, strict=True):
             ratio = apart / room
             k, i = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
-            worst.append((float(ratio[k, i]), float(apart[k, i]), name, float(t[k + 1]), int(i)))
-    ratio, size, name, t, agent = max(worst)
+            worst.append((float(ratio[k, i]), float(apart[k, i]), name, float(times[k + 1]), int(i)))
+    excess, size, name, t, agent = max(worst)
     largest = {kind: max((one[1] for one in worst if one[2] == kind), default=0.0) for kind in "qp"}
     where = f"worst: {name} of agent {rec.ids[agent]} at t = {t:.6g}"
     if not known:
         text = f"off by {largest['q']:.3g} in q and {largest['p']:.3g} in p ({where}); no accuracy is stated"
         return Following("assumed", 0.0, text, rec.q[0], rec.p[0], rec.p, speed)
-    if ratio > 1.0:
+    if excess > 1.0:
         text = (
-            f"{name} of agent {rec.ids[agent]} at t = {t:.6g} is off by {size:.3g} where {size / ratio:.3g} is allowed"
+            f"{name} of agent {rec.ids[agent]} at t = {t:.6g} is off by {size:.3g} where {size / excess:.3g} is allowed"
         )
         status: Any = "unmet"
     else:
         text = f"within {largest['q']:.3g} in q and {largest['p']:.3g} in p from sample to sample ({where})"
         status = "met" if rec.accuracy.decides else "assumed"
-    return Following(status, 1.0 - ratio, f"{text}, {rec.accuracy}", rec.q[0], rec.p[0], rec.p, speed)
+    return Following(status, 1.0 - excess, f"{text}, {rec.accuracy}", rec.q[0], rec.p[0], rec.p, speed)
 
 
 def _strides(rec: Recording, law: Any) -> list[Any]:

@@ -99,7 +99,8 @@ def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p
         with np.errstate(divide="ignore", invalid="ignore"):
             turn = np.where(speed > 0.0, 2.0 * off_p[:, None] / speed, 2.0)
         turned = np.minimum(turn, 2.0).mean(axis=1) * (1.0 if name == "order" else 2.0)
-        return np.minimum(turned, 1.0 if name == "order" else 2.0)
+        most: FloatArray = np.minimum(turned, 1.0 if name == "order" else 2.0)
+        return most
     return np.array([_net_error(name, flock, k, float(values[k]), float(off_q[k])) for k in range(len(values))])
 
 

@@ -28,7 +28,7 @@ class Free:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:
                 raise ArgumentError(f"free = None: {type(law).__name__} has no gains; name parameters: {_known(law)}")
-        if isinstance(names, str) or not names or len(set(names)) < len(names):
+        if not isinstance(names, list | tuple) or not names or len(set(map(str, names))) < len(names):
             got = format_value(names)
             raise ArgumentError(f"free = {got}: expected names of parameters, each once, such as ('c1_alpha',)")
         paths = tuple(_path(law, str(name)) for name in names)

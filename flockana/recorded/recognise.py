@@ -11,7 +11,7 @@ from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.recorded.compare import Comparison, compare
-from flockana.recorded.recording import Recording
+from flockana.recorded.recording import Recording, ensure_recording
 
 _FITS = 0.99  # share explained, the gains as the recording has them, from which a law fits
 
@@ -71,6 +71,7 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
     >>> recognise(recording_of(run)).ranked[0][0]
     'Algorithm 1'
     """
+    ensure_recording(rec)
     if laws is None:
         laws = {"Algorithm 1": Algorithm1(), "dead-zone": DeadZoneFlocking(), "Cucker-Smale": CuckerSmale()}
     if not isinstance(laws, Mapping) or not laws:

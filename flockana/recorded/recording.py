@@ -310,6 +310,19 @@ def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
     return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))
 
 
+def ensure_recording(rec: Any) -> Recording:
+    """Return `rec` if it is a recording, or raise.
+
+    Examples
+    --------
+    >>> ensure_recording(Recording([0.0], [[[0.0]]])).n
+    1
+    """
+    if not isinstance(rec, Recording):
+        raise ArgumentError(f"rec = {format_value(rec):.80}: expected a Recording, such as read_recording(file) gives")
+    return rec
+
+
 def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
     """Return the samples of a run as a recording.
 

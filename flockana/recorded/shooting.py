@@ -130,7 +130,7 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
     size = sum(len(each.residual) for each in now)
     freedom = max(size - sum(x.size for x in starts) - len(theta), 1)
     told = np.diag(normal) * theta**2 > _FELT
-    return Matched(theta, np.linalg.pinv(normal), told, _squares(now), freedom, message)
+    return Matched(theta, np.asarray(np.linalg.pinv(normal), np.float64), told, _squares(now), freedom, message)
 
 
 def match_start(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
@@ -252,8 +252,8 @@ def _carried(
 
     term = h * (rate(slope) + forced)
     total = slope + term
-    for k in (2.0, 3.0, 4.0):
-        term = h / k * rate(term)
+    for order in (2.0, 3.0, 4.0):
+        term = h / order * rate(term)
         total = total + term
     return total
 
@@ -270,9 +270,8 @@ def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[Floa
 def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) -> FloatArray:
     unit, columns = _NUDGE * (float(np.abs(x).max()) or 1.0), []
     for k in range(x.size):
-        nudge = np.zeros(x.size)
-        nudge[k] = unit
-        nudge = nudge.reshape(x.shape)
+        nudge: FloatArray = np.zeros(x.shape)
+        nudge[np.unravel_index(k, x.shape)] = unit
         columns.append((function(x + nudge) - function(x - nudge)).ravel() / (2.0 * unit))
     return np.stack(columns, axis=1)
 

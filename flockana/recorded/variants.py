@@ -49,14 +49,14 @@ def variants(law: Any) -> tuple[Variant, ...]:
 
 def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
     def per_axis(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        return alpha.phi_alpha(alpha.sigma_norm(s))[:, None] * x / np.sqrt(1.0 + alpha.eps * x**2)
+        return np.asarray(alpha.phi_alpha(alpha.sigma_norm(s)))[:, None] * x / np.sqrt(1.0 + alpha.eps * x**2)
 
     def euclidean(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        force = alpha.phi_alpha(s) * (s < alpha.r_alpha)
+        force: FloatArray = np.asarray(alpha.phi_alpha(s)) * (s < alpha.r_alpha)
         return force[:, None] * x / np.sqrt(1.0 + alpha.eps * s**2)[:, None]
 
     def unit(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
-        return alpha.phi_alpha(alpha.sigma_norm(s))[:, None] * x / np.maximum(s, 1e-300)[:, None]
+        return np.asarray(alpha.phi_alpha(alpha.sigma_norm(s)))[:, None] * x / np.maximum(s, 1e-300)[:, None]
 
     def counted(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
         return v * (s < alpha.r)[:, None]

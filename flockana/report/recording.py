@@ -74,7 +74,7 @@ def recording_page(
         parts.append("<h2>Fit</h2>" + html_table(rows, ("parameter", "value", "95 % interval")))
         parts += [f"<p>{escape(text)}</p>" for text in fitted.untold]
     for verdict in verdicts:
-        rows_ = [(f"given: {h.name}", h.status, h.detail) for h in verdict.hypotheses]
+        rows_: list[tuple[str, str, str]] = [(f"given: {h.name}", h.status, h.detail) for h in verdict.hypotheses]
         rows_ += [(c.name, c.status, c.detail) for c in verdict.claims]
         parts.append(f"<h2>{escape(verdict.theorem)}: {escape(verdict.status)}</h2><p>{escape(verdict.subject)}</p>")
         parts.append(html_table(rows_, ("claim", "status", "detail")))
@@ -86,7 +86,8 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
     rows = []
     for name in MEASURES:
         values, errors = seen[name].values, seen[f"{name}_error"].values
-        rows.append((str(seen[name].attrs["long_name"]), *(_with_error(values[k], errors[k]) for k in (0, -1))))
+        first, last = (_with_error(values[k], errors[k]) for k in (0, -1))
+        rows.append((str(seen[name].attrs["long_name"]), first, last))
     return rows
 
 

@@ -28,7 +28,7 @@ from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
 
 _DECAYS = ("linearised-decay", "linearised-decay-terminal")
-_MARGINS = ("delay-margin", "heterogeneous-gains")
+_MARGINS = ("delay-margin", "sampling-margins", "heterogeneous-gains")
 _LONGER = (
     "At n = 30 a longer search than this report's (module flockana.stability.design) gave 1.740 alike and 2.061 per "
     "agent with the rotation counted, 18 % faster, and 2.236 and 2.247 with it apart, 0.5 %"

@@ -10,9 +10,10 @@ from flockana.environment.targets import LinearTarget
 from flockana.interactions import FormulaInteraction, Gains, pair_law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios.scenario import Scenario
+from flockana.theorems.theorem import Status
 
 _CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
-_VERIFIED = {"any-potential": "verified", **{f"any-potential:{claim}": "verified" for claim in _CLAIMS}}
+_VERIFIED: dict[str, Status] = {"any-potential": "verified", **{f"any-potential:{claim}": "verified" for claim in _CLAIMS}}
 
 
 def _morse() -> FormulaInteraction:

@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_positive
-from flockana.base.errors import SolverError
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_kind,
+    ensure_known,
+    ensure_nonnegative,
+    ensure_positive,
+)
+from flockana.base.errors import ArgumentError, SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
@@ -102,6 +109,42 @@ def h2_norm(system: StateSpace) -> float:
         return inf
     gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
     return sqrt(max(0.0, float(np.trace(system.C @ gramian @ system.C.T))))
+
+
+def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
+    """Covariance of the outputs under white noise of one intensity in every input, from the Lyapunov equation.
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Strictly proper and stable.
+    intensity : float
+        Of the noise, as `flockana.Disturbed` takes it; the trace is then (intensity · H₂ norm)².
+
+    Returns
+    -------
+    ndarray, shape (outputs, outputs)
+
+    Raises
+    ------
+    ArgumentError
+        If the system is not stable: then there is no stationary covariance.
+
+    Examples
+    --------
+    >>> import control
+    >>> swing = control.ss([[0, 1], [-8, -1]], [[0], [1]], np.eye(2), 0)
+    >>> stationary_covariance(swing, 2.0).round(12).tolist()
+    [[0.25, 0.0], [0.0, 2.0]]
+    """
+    from scipy.linalg import solve_continuous_lyapunov
+
+    intensity = ensure_nonnegative("intensity", intensity)
+    if not _stable(system.A):
+        raise ArgumentError("the system is not stable: expected one whose modes all decay, such as disturbance_system")
+    gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
+    covariance: FloatArray = intensity**2 * (system.C @ gramian @ system.C.T)
+    return 0.5 * (covariance + covariance.T)
 
 
 def h2_bounds(flock: Blocks) -> tuple[float, float]:

@@ -43,7 +43,7 @@ def bridge(run: Trajectory, claim: Claim) -> float:
 
 
 def strained(run: Trajectory, claim: Claim) -> float:
-    """Lead for the lattice as a limit: 1 less the mean over time of the largest strain.
+    """Return the surrogate for a lattice as a limit: 1 less the mean over time of the largest strain.
 
     Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
     """

@@ -26,7 +26,7 @@ _LEAST = 1e-300  # below it an amplitude is 0
 
 @dataclass(frozen=True)
 class Certificate:
-    """Evidence for what happens as t → ∞: it is certain if the margin exceeds its error.
+    """Evidence for a limit as t → ∞, certain if the margin exceeds its error.
 
     Attributes
     ----------
@@ -44,12 +44,12 @@ class Certificate:
 
     @property
     def certain(self) -> bool:
-        """Whether it decides."""
+        """Whether the margin exceeds its error."""
         return self.margin > self.error
 
 
 def best_of(certificates: Iterable[Certificate]) -> Certificate:
-    """Return the certificate with the largest margin; one that decides nothing if there is none.
+    """Return the certificate with the largest margin; an undecided one if there is none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Whether some samples of a run of a map are where the map leads: a law that is another function each time shows."""
+"""Consistency of a map's run with the map, checked at some samples."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _ensure_leads_on(run: Trajectory, k: int, steps: int) -> None:
 
 
 def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, float, float]]:
-    """Of each series (name, how far the sample after sample k is off over its size, and how far)."""
+    """Return (name, relative error, error) of each series at the sample after sample k."""
     scales = run.scales
     least = {"q": scales.length, "p": scales.speed, "u": scales.force}
     for name, values in _made_again(run, k, steps, 0.0).items():
@@ -49,14 +49,14 @@ def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, flo
 
 
 def _growth(run: Trajectory, k: int, steps: int, name: str) -> float:
-    """What a nudge of the positions of sample k changes of a series over the interval, over its size."""
+    """Return the relative change of a series over the interval when the positions of sample k are perturbed."""
     exact, nudged = (_made_again(run, k, steps, nudge)[name] for nudge in (0.0, _NUDGE))
     size = float(np.abs(exact).max(initial=0.0))
     return float(np.abs(nudged - exact).max(initial=0.0)) / size if size else 0.0
 
 
 def _made_again(run: Trajectory, k: int, steps: int, nudge: float) -> dict[str, FloatArray]:
-    """q, p, u and what the map remembers after so many steps from sample k."""
+    """Return q, p, u and the map's memory after some steps recomputed from sample k."""
     law: DiscreteLaw = run.law
     q, p, t = run.q[k] * (1.0 + nudge), run.p[k].copy(), float(run.t[k])
     memory: Any = {name: series[k].copy() for name, series in run.extra.items()}

@@ -74,7 +74,7 @@ class Observed(ResultCache):
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
-        """Return a run as if it were exact but for rounding: of one of two runs whose claims are compared."""
+        """Return a run as exact up to rounding, for comparisons of claims between two runs."""
         zeros = np.zeros((len(run.t), run.n))
         return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_of(run))
 
@@ -143,7 +143,7 @@ class Observed(ResultCache):
 
     @property
     def begins_exactly(self) -> bool:
-        """Whether the first sample is the start itself."""
+        """Whether the first sample is the exact start."""
         return not self.doubt and bool(self.t[0] == self.errors.t[0])
 
     def window(self, start: float, end: float) -> Observed:
@@ -152,7 +152,7 @@ class Observed(ResultCache):
         return replace(self, given=given, run=run, other=other)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Largest half width from one law time before each start to one after each end."""
+        """Return the largest half width from one law time before each interval to one after."""
         if self.is_map:
             return np.zeros((len(start), *errors.shape[1:]))
         unit, times = self.run.scales.time, self.errors.t
@@ -209,7 +209,7 @@ class Observed(ResultCache):
 
     @property
     def accuracy_of_end(self) -> float:
-        """How far the last positions of what is judged may be off as given: those of a run are its own."""
+        """Stated error of the last positions: 0 for runs, the stated one for recordings."""
         return 0.0
 
     @property
@@ -235,7 +235,7 @@ class Observed(ResultCache):
 
     @cached_property
     def residual(self) -> Enclosure:
-        """H − ∫ dH/dt less that of the start, at each sample, shape (T,)."""
+        """Residual of the energy balance H − ∫ dH/dt at each sample, shape (T,)."""
         rounding = 2.0 * energy_rounding(self.run) + _work_rounding(self.run)
         return self.series(lambda run: run.energy_residual, floor=self.floors.work + rounding)
 
@@ -361,13 +361,13 @@ def _apart(one: Claim, other: Claim) -> float:
 
 
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
-    """Norm over all agents of vectors, each known to an error."""
+    """Return the norm over all agents of vectors, each known with an error."""
     sizes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
     return sizes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)
 
 
 def _rounding(x: FloatArray) -> float:
-    """Rounding of each x_i − x_c, x_c a mean of n numbers."""
+    """Return the rounding of each x_i − x_c, x_c a mean of n numbers."""
     return float((x.shape[1] + 4) * EPS * np.abs(x).max())
 
 

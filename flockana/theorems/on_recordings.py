@@ -70,7 +70,7 @@ class ObservedRecording(Observed):
         return super().series(observable, floor=floor + self.sensitivity(observable))
 
     @property
-    def residual(self) -> Enclosure:  # type: ignore[override]  # not cached
+    def residual(self) -> Enclosure:
         """Energy balance of the law's solution: a recording has no work of its own."""
         return replace_class(self, Observed).residual
 

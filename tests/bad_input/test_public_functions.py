@@ -36,6 +36,7 @@ def usual(tmp_path_factory):
     shared |= {"tube": fl.enclose(law, q, p, (0.0, 0.0009765625)), "adjacency": lambda s2, par: 1.0}
     shared |= {"range": 8.4, "length": 7.0, "scenario": "hexagon", "seeds": []}
     places = dict.fromkeys(("q", "q0", "positions", "configuration"), q) | dict.fromkeys(("p", "p0"), p)
+    shared |= {"rec": fl.Recording(run.t, run.q, run.p, bound=0.0), "source": {"t": run.t, "q": run.q}}
     return shared | places | {"run": run, "trajectory": run, "subject": run, "theorem": "os-3", "target": "os-3"}
 
 

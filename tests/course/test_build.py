@@ -199,6 +199,10 @@ def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     assert sum(summed_up in text for text in texts) == 1
     assert not [text for text in texts if re.search(r"[.;,] - [A-Z]", text)]  # an item of a list that has lost its line
     assert "\n> >" not in "".join(texts)  # a "greater than" that begins a line of a quotation
+    quoted = [line for text in texts for line in text.splitlines() if line.startswith("> ")]
+    assert all(
+        line.count("$$") in (0, 2) for line in quoted
+    )  # "> " on a second line would be read as part of the formula
     assert "## References\n\n- " in texts[-1]
     assert "## Further reading\n\n- " in texts[-1]
 

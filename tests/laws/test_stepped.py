@@ -47,6 +47,16 @@ def test_steps_are_the_same_in_any_pieces():
     np.testing.assert_array_equal(q, whole[0][-1])
 
 
+def test_a_step_of_order_1_holds_the_input():
+    """q + h p + ½ h² u and p + h u, with u at the beginning of the step."""
+    law, h, p = Disturbed(LAW, force=(0.3, -0.2)), 0.1, 0.1 * Q[::-1]
+    u = law.acceleration(0.0, Q, p)
+    q_1, p_1, held, _ = Stepped(law, h, 1).step(0.0, Q, p, Stepped(law, h, 1).start(Q, p))
+    np.testing.assert_allclose(q_1, Q + h * p + 0.5 * h**2 * u, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(p_1, p + h * u, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(held, u, rtol=0.0, atol=1e-12)
+
+
 def test_what_wraps_shows_through():
     assert ALL.core is LAW
     assert [type(one).__name__ for one in ALL.wrappers][:3] == ["Disturbed", "Saturated", "Sampled"]

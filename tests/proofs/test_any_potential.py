@@ -9,11 +9,11 @@ import z3
 from flockana.symbolic.errata import e1_identity
 from proofs import any_potential as proof
 from proofs import any_potential_limits as limits
-from proofs import convergence
+from proofs import convergence, matched_velocities
 from tests.proofs.steps import failing
 
 
-@pytest.mark.parametrize("of", [proof, limits, convergence])
+@pytest.mark.parametrize("of", [proof, limits, convergence, matched_velocities])
 def test_all_steps_hold_and_none_is_missing(of):
     steps = list(of.PROOF.steps())
     assert failing(steps) == []

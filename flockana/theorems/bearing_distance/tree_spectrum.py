@@ -35,7 +35,7 @@ def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Edge by edge the roots of s² + a s + μ once and {0, -a} m − 1 times: the polynomial, and the kernel's dimension.
+    """Return the polynomial of a directed tree, with roots of s² + a s + μ for each edge, and its kernel's dimension.
 
     Eigenvalues are not computed: those of a chain of equal edges are defective, and rounding would spread them.
     """
@@ -50,7 +50,7 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
-    """K = −∂u/∂q and C = −∂u/∂p are symmetric, so that s² + γs + κ = 0 with κ, γ >= 0 the quotients of a mode.
+    """Return the spectrum of an undirected tree from s² + γs + κ = 0, with quotients κ, γ >= 0 of each mode.
 
     All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has the
     multiplicity of the kernel of K, less translations.

@@ -33,7 +33,7 @@ def _net(n: int, pairs: list[tuple[int, int]]) -> FloatArray:
 
 
 def _nets() -> dict[str, tuple[DelaySystem, float]]:
-    """Nets with what is known of them: the system, and λ_n in closed form or, of the flock's own, from its matrix."""
+    """Return nets with their systems, and λ_n in closed form or from the matrix."""
     path, ring = [(0, 1), (1, 2)], [(k, (k + 1) % 6) for k in range(6)]
     star, whole = [(0, k) for k in range(1, 5)], [(i, j) for j in range(4) for i in range(j)]
     known = {
@@ -52,7 +52,7 @@ def _nets() -> dict[str, tuple[DelaySystem, float]]:
 
 
 def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """The library's margin, found by a sweep over frequency, against the closed form."""
+    """Return the claim that the library's delay margin, by a sweep over frequency, agrees with the closed form."""
     off, listed = 0.0, {}
     for name, (system, largest) in nets.items():
         found = delay_margin(system)
@@ -69,7 +69,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
 
 
 def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """The rightmost root a hundredth beside the margin, by discretising the delayed state."""
+    """Return the rightmost root a hundredth beside the margin, by discretising the delayed state."""
     share = 1.0 + sign * float(_AROUND)
     margin, error, off, listed = np.inf, 0.0, 0.0, {}
     for net, (system, largest) in nets.items():
@@ -94,7 +94,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
 
 
 def root_enclosure(share: Fraction) -> Any:
-    """A ball around the rightmost root of s + e^(−sτ) = 0 at so many times τ = π/2, from Lambert's W.
+    """Return a ball around the rightmost root of s + e^(−sτ) = 0, from Lambert's W.
 
     Of another λ the root is λ times this one, at τ over λ: λτ alone counts.
 
@@ -118,7 +118,7 @@ def root_enclosure(share: Fraction) -> Any:
 
 
 def _exact(name: str, sign: int) -> Claim:
-    """The rightmost root of one mode, enclosed: W₀ has the greatest real part of all branches."""
+    """Return an enclosure of one mode's rightmost root, by the principal branch W₀."""
     share = 1 + sign * _AROUND
     root = root_enclosure(share)
     return decided(
@@ -133,7 +133,7 @@ def _exact(name: str, sign: int) -> Claim:
 
 
 def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """Σ x_i' = −1ᵀL x(t − τ) = 0 whatever the delay: what is agreed on is the mean of the start."""
+    """Return the claim that the agreed value is the mean of the start, whatever the delay."""
     off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
     size = max(len(system.late[1]) for system, _ in nets.values())
     return of_state(

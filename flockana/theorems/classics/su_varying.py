@@ -45,7 +45,7 @@ def convergence_rate(gains: Gains) -> float:
 
 
 def _only_told(run: Trajectory) -> Hypothesis:
-    """That the law is Algorithm 2 and the leader's acceleration, told to all; or needs none, at constant velocity."""
+    """Return the hypothesis that the law is Algorithm 2 with feedforward (not needed at constant velocity)."""
     name, law = "the law is Algorithm 2, and all agents are told the leader's acceleration", run.law
     if type(law) is Algorithm2:
         steady = constant_velocity(run)

@@ -69,7 +69,7 @@ def settling(end: Components) -> Certificate:
 
 
 def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
-    """Return K̃ → 0: certain of one component that settles, refuted where components part at different velocities."""
+    """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
     series = seen.mismatch.mid
     return limit_claim(
         name,

@@ -61,7 +61,7 @@ class Component:
 
     @cached_property
     def basin(self) -> Basin:
-        """The basin of the minimum of its potential beside it."""
+        """Basin of the potential's minimum beside the component."""
         return hold(self.law, self.q, self.p, self.dt, off=self.off, p_off=self.p_off)
 
     @cached_property

@@ -1,1 +1,1 @@
-"""What the linearisation predicts of a run."""
+"""Theorems about predictions of the linearisation for a run."""

@@ -48,7 +48,7 @@ class _Window:
 
 
 def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window]:
-    """The part of a run that is judged: flocking is defined over a time, which one instant is not."""
+    """Return the part of a run that is judged, as flocking is defined over a time."""
     t = seen.t
     start = float(t[0] + tolerances.settle * (t[-1] - t[0]))
     before = int(np.searchsorted(t, start, side="right")) - 1
@@ -61,7 +61,7 @@ def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window
 
 
 def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: Real) -> Claim:
-    """A claim that a quantity stays below a bound: broken at one sample, or kept from each sample to the next."""
+    """Return the claim that a quantity stays below a bound, at and between the samples."""
     (symbol, what), t = _SYMBOLS[name], part.seen.t[part.first :]
     seen = value[part.first :]
     largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
@@ -84,7 +84,7 @@ _SYMBOLS = {
 
 
 def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
-    """A claim that a number never exceeds a bound, in whole numbers (at samples at least, at most; between)."""
+    """Return the claim that a whole number never exceeds a bound, at and between the samples."""
     t, between = part.seen.t[part.first :], counts[2]
     least, largest = (series[part.first :] for series in counts[:2])
     worst = int(np.argmax(least))
@@ -105,14 +105,14 @@ def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, 
 
 
 def _connected(part: _Window) -> Claim:
-    """The claim that the net is connected throughout, by links that are certain."""
+    """Return the claim that the net is connected throughout, by links that are certain."""
     between, at = nets_between(part.seen), nets_at(part.seen)
     counts = at.components_least, at.components, float(between.components.max(initial=0.0))
     return _never_more("flock", part, counts, 1, "components")
 
 
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
-    """The claim that a component keeps more than a share of the agents, by links that are certain."""
+    """Return the claim that a component keeps more than a share of the agents, by links that are certain."""
     n = part.seen.n
     between, at = nets_between(part.seen), nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
@@ -121,7 +121,7 @@ def _giant(part: _Window, tolerances: Tolerances) -> Claim:
 
 
 def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
-    """The claims Ẽ <= ε₁ and K̃ <= ε₂; a link that may come or go between samples, or by an error, adds to Ẽ."""
+    """Return the claims Ẽ <= ε₁ and K̃ <= ε₂, with uncertain links counted in Ẽ."""
     seen = part.seen
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
@@ -140,7 +140,7 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
 
 
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
-    """The claim that R never exceeds a multiple of its value at the start of the window."""
+    """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     seen = part.seen
     after = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
     grown = float(fastest_between(seen)[0]) * after if part.first else 0.0

@@ -1,0 +1,82 @@
+"""What lectures and model answers say in words, by numbers: statements that were false once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import flockana as fl
+from flockana.course import build
+from flockana.course.pages import number_of
+
+TEXT = {
+    number_of(source): " ".join(source.read_text(encoding="utf-8").replace("\n# ", " ").split())
+    for source in build.sources()
+}
+
+
+def components(q, r):
+    return len(set(fl.components(len(q), fl.links(q, r))))
+
+
+def test_the_components_of_the_first_film_join_after_its_end():
+    case = fl.scenario("notebook-algorithm1")
+    assert case.t_span[1] == 5.0
+    run = fl.simulate(case.law, case.q0, case.p0, (0.0, 12.0))
+    counts = [components(q, case.law.alpha.r) for q in run.q]
+    at_5 = counts[int(np.searchsorted(run.t, 5.0))]
+    assert (counts[0], at_5, counts[-1]) == (4, 3, 1)
+    joined = run.t[max(k for k, count in enumerate(counts) if count > 1) + 1]
+    assert f"{joined:.2f}" == "7.14"
+    assert "from $t = 7.14$ on" in TEXT["A2"]
+    assert "four components at the start and three at the end of the film" in TEXT["A2"]
+
+
+def test_case_1_starts_connected_and_ends_in_pieces():
+    run = fl.scenario("msn-case1").run()
+    reached = run.metrics()["connectivity"].values
+    assert (reached[0], f"{reached[-1]:.2f}") == (1.0, "0.29")
+    assert "$C = 1$ at $t = 0$" in TEXT["A1"]
+    assert "$C = 0.29$ at the end" in TEXT["A1"]
+
+
+def test_the_floor_of_lecture_07_passes_c_star_at_23():
+    alpha = fl.AlphaInteraction()
+    floor = {n: (n * (n - 1) // 2 - n**2 // 3) * float(alpha.psi_alpha(alpha.r_alpha)) for n in range(2, 200)}
+    assert f"{floor[23]:.1f} {floor[22]:.1f} {alpha.c_star:.1f}" == "56.7 51.5 52.4"
+    assert min(n for n in floor if floor[n] > alpha.c_star) == 23
+    assert all(floor[n] > alpha.c_star for n in range(23, 200))
+    assert "56.7 > 52.4" in TEXT["07"]
+    assert "that is 51.5" in TEXT["07"]
+
+
+def test_the_law_of_lecture_11_repels_below_d_and_attracts_from_there_to_r():
+    formula = "k/2*((r**2-s**2)**4/4 - (r**2-d**2)*(r**2-s**2)**3/3 + (r**2-d**2)**4/12)"
+    well = fl.pair_law(formula, adjacency="(1 - s/r)**2", range=3.0, length=2.0, parameters={"k": 0.01})
+    assert np.all(well.force(np.linspace(0.05, 1.99, 99)) < 0.0)
+    assert np.all(well.force(np.linspace(2.01, 2.99, 99)) > 0.0)
+    s = np.array([0.5, 1.0, 2.5, 2.9])
+    assert np.allclose(well.force(s), 0.01 * s * (s**2 - 4.0) * (9.0 - s**2) ** 2)
+    assert math.isclose(well.energy_at(3.0) - well.energy_at(2.0), 0.01 * 5.0**4 / 24.0, rel_tol=1e-12)
+
+
+def test_connectedness_bounds_positions_and_a_level_set_does_not():
+    assert "in a connected net of $n$ agents no two are farther apart than $(n-1)r$" in TEXT["02"]
+    law = fl.Algorithm1()
+    far = [law.energy(0.0, [[0.0, 0.0], [x, 0.0]], np.zeros((2, 2))) for x in (10.0, 1e6)]
+    assert far[0] == far[1]
+
+
+def test_the_bump_is_defined_where_the_exercises_need_it():
+    assert "\\rho_h(z) = \\begin{cases} 1 & 0 \\le z < h" in TEXT["01"]
+    assert "with $0 < a \\le b$" in TEXT["01"]
+
+
+def test_what_sets_the_rate_of_late_consensus():
+    from flockana.stability import consensus_root
+
+    values, tau = [0.586, 2.0, 3.414], 0.01
+    rates = [-consensus_root(value, tau).real for value in values]
+    assert min(rates) == rates[0]  # the smallest positive eigenvalue, for small delays
+    assert "for small $\\tau$ that of $\\lambda_2$" in TEXT["12"]
