@@ -27,7 +27,7 @@ extensions = [
 templates_path = ["_templates"]
 exclude_patterns = ["_ext", "generated/lectures/own_law", "generated/extra", "generated/first.md"]
 default_role = "py:obj"
-suppress_warnings = ["misc.highlighting_failure", "mystnb.unknown_mime_type", "myst-nb.lexer"]
+suppress_warnings = ["misc.highlighting_failure", "toc.not_included", "mystnb.unknown_mime_type", "myst-nb.lexer"]
 
 numpydoc_show_class_members = False
 autodoc_member_order = "bysource"
@@ -48,7 +48,7 @@ html_static_path = ["_static"]
 html_extra_path = ["generated/extra"]  # runs that play, and the report
 html_css_files = ["flockana.css"]
 html_js_files = ["print.js"]
-html_search_scorer = "scorer.js"
+html_search_scorer = str(HERE / "scorer.js")
 html_favicon = "_static/icon.svg"
 html_sidebars = {page: [] for page in ("index", "start", "generated/mathematics", "performance")}  # no pages below them
 html_copy_source = False

@@ -108,6 +108,25 @@ for outcome in outcomes:
 # > intervals of time, starting at $t = 0$, across each of which the agents are linked together, that is the union of
 # > the nets of the interval is connected, then all headings tend to a common one.
 #
+# *Proof, for windows of at most $k$ steps.* (The paper does without a common bound, by a theorem of Wolfowitz.)
+#
+# 1. A step multiplies the vector of headings by a matrix with non-negative entries whose rows add up to 1. Its
+#    diagonal entries, and those of neighbours, are $1/(1+|N_i|) \ge 1/n$.
+# 2. Follow one agent, say agent 1, and say that $i$ *has heard of* it if the heading of $i$ contains that of agent 1
+#    at the start with a positive weight. Since diagonals are positive, nobody ever forgets.
+# 3. As long as somebody has not heard of it, the next window links one who has to one who has not, because the union
+#    of its nets is connected. So each window adds at least one, and after $n - 1$ windows all have heard of agent 1.
+# 4. Every weight passed on in one step is at least $1/n$, and there were at most $k(n-1)$ steps. So all have heard
+#    with a weight of at least $e = n^{-k(n-1)} > 0$.
+# 5. Over these $n - 1$ windows every new heading is a mean of old ones, with a weight of at least $e$ on the same
+#    number $\theta_1$. So the largest heading is now at most $(1-e)\max_i\theta_i + e\,\theta_1$, and the least is
+#    at least $(1-e)\min_i\theta_i + e\,\theta_1$.
+# 6. Subtract: the spread of the headings has shrunk to at most $1 - e$ times what it was. Windows follow each other
+#    for ever, so it tends to 0. The largest heading never rises and the least never falls, so both tend to the same
+#    limit. $\square$
+#
+# The factor $1 - e$ is hardly below 1, and real flocks agree much faster; the proof asks only whether, not how fast.
+#
 # No single net need be connected: it is enough that the links seen over a window of time connect all, window after
 # window, for ever. Three agents, of which only two are linked at a time, first 0 and 1, then 1 and 2, show it. No net
 # is connected, each window of two steps is, and the three headings agree:

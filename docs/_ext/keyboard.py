@@ -6,10 +6,14 @@ from typing import Any
 
 _SCRIPT = """
 addEventListener("DOMContentLoaded", () => {
-  const wide = "div.highlight pre, div.math, .pst-scrollable-table-container, .cell_output .output";
-  for (const box of document.querySelectorAll(wide)) {
-    if (box.scrollWidth > box.clientWidth || box.matches("div.math")) box.tabIndex = 0;
-  }
+  const wide = "div.highlight pre, div.math, .pst-scrollable-table-container, .cell_output .output, .bd-article table";
+  const reach = () => {
+    for (const box of document.querySelectorAll(wide)) {
+      if (box.scrollWidth > box.clientWidth || box.matches("div.math")) box.tabIndex = 0;
+    }
+  };
+  reach();
+  document.addEventListener("toggle", reach, true);  // a fold that opens
   for (const image of document.querySelectorAll(".cell_output img:not([alt]), .cell_output img[alt*='/']")) {
     const heading = image.closest("section")?.querySelector("h1, h2, h3, h4");
     image.alt = "Figure: " + (heading ? heading.textContent.replace("#", "").trim() : document.title);

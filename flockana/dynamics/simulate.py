@@ -154,7 +154,7 @@ def simulate(
 
 
 def _stepped(law: Law, method: str, dt: Any) -> Stepped:
-    """The steps of a law that has a past, a clock or chance."""
+    """Return a law that needs steps of its own (delay, clock or noise) as a map with these steps."""
     if dt is None:
         raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, such as dt=0.01")
     order = 2 if any(one.noisy for one in wrappers_of(law)) else 4

@@ -24,15 +24,16 @@ def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def act(t, x, v, u, numbers, panels, listed):
-    """Add the push to u, and return its power."""
+    """Add the push to u and return its power."""
     (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0
     co, si, part = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
     for k in range(m):
-        centre = -listed.frame[1, k]
+        centre = 0.0
         if numbers[_MOVING] != 0.0:
-            centre = 0.0
             for i in range(n):
                 centre += v[i, k] / n
+        else:
+            centre = -listed.frame[1, k]
         for i in range(n):
             at = _FIRST + (np.int64(listed.order[i]) if rows > 1 else 0) * m + k
             push = numbers[at] + co * numbers[at + part] + si * numbers[at + 2 * part]

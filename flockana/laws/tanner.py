@@ -245,7 +245,7 @@ class ProximityFlocking(SwitchedLaw):
 
 
 def _ensure_potential(potential: Any) -> None:
-    """Raise on anything else."""
+    """Raise unless a potential is a `LogPotential`."""
     if not isinstance(potential, LogPotential):
         raise ArgumentError(f"potential = {potential!r}: expected LogPotential(strength, d)")
 

@@ -26,7 +26,7 @@ Acceleration = Callable[[FloatArray, FloatArray], Any]
 
 
 def intended_law() -> Algorithm2:
-    """Return the law that all four implement, or mean to.
+    """Return the law that the four faulty programs are meant to implement.
 
     Examples
     --------

@@ -73,8 +73,8 @@ def select(
 
     Examples
     --------
-    >>> [entry["name"] for entry in select(theorem_entries(), ["collision"], source="olfati", status="verified")]
-    ['collision-energy', 'os-1', 'os-3']
+    >>> [entry["name"] for entry in select(theorem_entries(), ["proximity"], source="tanner")]
+    ['tanner-switching']
     """
     every = list(entries)
     sources = sorted({entry["source"] for entry in every})

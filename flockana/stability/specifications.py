@@ -150,8 +150,8 @@ def specified_gains(
 
     axis = np.linspace(np.log(low), np.log(high), count)
     best = max(((a, b) for a in axis for b in axis), key=room)
-    options: Any = {"maxfev": 60, "xatol": 1e-3}
-    found = minimize(lambda x: -room(x), np.array([float(x) for x in best]), method="Nelder-Mead", options=options)
+    limits: Any = {"maxfev": 60, "xatol": 1e-3}
+    found = minimize(lambda x: -room(x), np.array(best), method="Nelder-Mead", options=limits)
     chosen = max((np.array(best), found.x), key=room)
     c1, c2 = np.exp(np.clip(chosen, np.log(low), np.log(high))).tolist()
     return _tried(law, q, asked, c1, c2)

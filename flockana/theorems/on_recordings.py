@@ -99,7 +99,7 @@ class ObservedRecording(Observed):
 
 
 def replace_class(seen: Observed, kind: type[Observed]) -> Observed:
-    """Return the same evidence as another class of it."""
+    """Return the same observed run as an object of another class."""
     return kind(seen.given, seen.run, seen.other, seen.errors, seen.doubt)
 
 

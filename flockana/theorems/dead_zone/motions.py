@@ -1,4 +1,4 @@
-"""Motions that several errata of the dead-zone paper look at."""
+"""Runs shared by several errata of the dead-zone paper."""
 
 from __future__ import annotations
 

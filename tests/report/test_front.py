@@ -1,0 +1,28 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from flockana.report.front import FINDINGS, front_findings
+from flockana.report.pages import ScenarioResult, page
+from flockana.scenarios import scenario
+from flockana.theorems import theorem
+
+
+@pytest.mark.parametrize(("name", "id_"), [(name, id_) for name, id_, _ in FINDINGS])
+def test_what_stands_first_is_in_the_catalogue_and_expected(name, id_):
+    assert scenario(name).expected[id_] in ("verified", "refuted")
+    assert theorem(id_).id == id_
+
+
+def test_a_finding_has_its_verdict_its_place_and_a_picture():
+    item = scenario("hexagon")
+    run = item.run()
+    made = page(ScenarioResult(item, run, (item.verdict("os-1", run),)), figures=True)
+    (found,) = front_findings([made])
+    assert (found.status, found.address) == ("verified", "scenario-hexagon--os-1")
+    assert found.thumbnail.startswith("<svg ")
+    assert found.thumbnail.count("<svg ") == 1
+    other = tuple(replace(finding, expected={"os-1": "refuted"}) for finding in made.findings)
+    assert len(front_findings([replace(made, findings=other)])) <= 1
