@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from math import exp, inf, pi, sqrt
 from typing import Any
@@ -151,10 +151,15 @@ def specified_gains(
     axis = np.linspace(np.log(low), np.log(high), count)
     best = max(((a, b) for a in axis for b in axis), key=room)
     limits: Any = {"maxfev": 60, "xatol": 1e-3}
-    found = minimize(lambda x: -room(x), np.array(best), method="Nelder-Mead", options=limits)
+    found: Any = minimize(_less(room), np.array(best, dtype=np.float64), method="Nelder-Mead", options=limits)
     chosen = max((np.array(best), found.x), key=room)
     c1, c2 = np.exp(np.clip(chosen, np.log(low), np.log(high))).tolist()
     return _tried(law, q, asked, c1, c2)
+
+
+def _less(room: Callable[[Any], float]) -> Callable[[Any], float]:
+    """Return the negative of a function, to be minimised."""
+    return lambda x: -room(x)
 
 
 def _tried(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float) -> SpecifiedGains:
