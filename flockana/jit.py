@@ -34,7 +34,7 @@ except ImportError:  # Windows: there every process compiles what it needs
     fcntl = None  # type: ignore[assignment]
 
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
-_PATIENCE, _LOOK = 120.0, 0.02  # seconds: of a wait for another process, and between two looks
+_PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
 _FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
 _UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
 _ONE = RLock()  # one thread compiles at a time
@@ -300,9 +300,11 @@ def kernels_folder() -> Path | None:
     ]
     if named:
         places = [lambda: Path(named) / "flockana"]
+    # of two installations numba would give functions of one name the constants of each other
+    installation = repr((__file__, load_numba().__version__, sys.version))
     for place in places:
         with suppress(OSError, RuntimeError, AttributeError):  # no home, no users to tell apart
-            return _private(place())
+            return sources_folder(_private(place()), hashlib.sha256(installation.encode()).hexdigest()[:16])
     logging.getLogger("flockana").warning(
         "no folder can be written to for compiled kernels: each process compiles its own; set NUMBA_CACHE_DIR to one"
     )

@@ -246,10 +246,20 @@ def test_without_a_home_the_temporary_folder_is_used_if_nobody_else_may_enter_it
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")
     monkeypatch.setattr(jit.tempfile, "gettempdir", lambda: str(tmp_path))
     folder = jit.kernels_folder()
-    assert folder == tmp_path / f"flockana-kernels-{os.getuid()}"
-    folder.chmod(0o755)
+    assert folder.parent == tmp_path / f"flockana-kernels-{os.getuid()}"
+    folder.parent.chmod(0o755)
     jit.kernels_folder.cache_clear()
     assert jit.kernels_folder() is None
+
+
+def test_two_installations_keep_nothing_in_common(monkeypatch, afresh):
+    """numba sets the constants of a function by its name: those of the copy that was loaded first."""
+    here = jit.kernels_folder()
+    jit.kernels_folder.cache_clear()
+    monkeypatch.setattr(jit, "__file__", "/another/flockana/jit.py")
+    there = jit.kernels_folder()
+    assert here.parent == there.parent
+    assert here.name != there.name
 
 
 def test_folders_that_were_not_used_for_long_are_removed(tmp_path, afresh):
