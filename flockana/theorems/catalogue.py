@@ -75,15 +75,14 @@ def theorem(name: str) -> Theorem:
     >>> theorem("os-3").kind, theorem("Theorem 3").id
     ('trajectory', 'os-3')
     """
-    try:
-        return catalogue()[name]
-    except (KeyError, TypeError):
-        return _printed_as(name)
+    if not isinstance(name, str):
+        raise UnknownNameError("theorem", name, theorems())
+    return catalogue().get(name) or _printed_as(name)
 
 
-def _printed_as(name: Any) -> Theorem:
+def _printed_as(name: str) -> Theorem:
     """Return the theorem that its source prints under a name such as "Theorem 3"."""
-    wanted = re.compile(rf"\b{re.escape(str(name).strip())}$", re.IGNORECASE)
+    wanted = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
     found = {i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(_printed(x.source))}
     if len(found) == 1:
         return catalogue()[next(iter(found))]

@@ -13,15 +13,15 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
-from flockana.theorems.claims import vacuous
+from flockana.theorems.claims import concluded, vacuous
+from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Theorem, Tolerances, unmet
 
-_CLAIMS = ("stays", "ultimate")
+_CLAIMS, _PROOF = ("stays", "ultimate"), "disturbed-basins"
 _SLACK = 1e-12  # relative: rounding of a force's length
 _LAST = 0.2  # of the run: what is its end
 _SAMPLES = 40  # that are looked at in all
-_OWN = 1e-6  # of d: error of a run at the usual tolerances, and more
 _MOST = 7  # agents of which a basin is proved within seconds
 
 
@@ -87,59 +87,59 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
 
 
 def _stays(seen: Observed, case: _Case) -> Claim:
-    """All samples lie in the basin; that all times do is proved."""
-    from flint import ctx
-
-    from flockana.certified.basin import DIGITS
-    from flockana.certified.intervals import ball
-    from flockana.theorems.from_tube import decided
-
-    basin, run = case.bound.basin, seen.given
-    with ctx.workdps(DIGITS):
-        farthest = _farthest(basin, run, 0)
-        return decided(
-            "stays",
-            ball(basin.radius) - farthest,
-            computed=float(farthest),
-            stated=f"nearer than {float(basin.radius):.4g} to the orbit at all times, no two agents within "
-            f"{float(basin.distance):.4g}",
-            detail=f"proved by the Lyapunov function of the basin; at the samples at most {float(farthest):.3g} away",
-        )
+    """That the flock stays in the basin is proved; its samples stand beside."""
+    basin = case.bound.basin
+    return _beside(
+        seen,
+        case,
+        "stays",
+        0,
+        float(basin.radius),
+        stated=f"nearer than {float(basin.radius):.4g} to the orbit at all times, no two agents within "
+        f"{float(basin.distance):.4g}",
+        detail="proved by the Lyapunov function of the basin; at the samples at most {reached:.3g} away",
+    )
 
 
 def _ultimate(seen: Observed, case: _Case) -> Claim:
-    """The distance at the end of the run against the ultimate bound, with what is left of the start."""
+    """The ultimate bound is proved; the end of the run stands beside, with what is left of the start by then."""
     from flint import arb, ctx
 
     from flockana.certified.basin import DIGITS
     from flockana.certified.intervals import ball
-    from flockana.theorems.from_tube import decided
 
     bound, run = case.bound, seen.given
     basin = bound.basin
+    first = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
     with ctx.workdps(DIGITS):
         excess = max(basin.above(case.q, case.p)[1], arb(0))
-        first = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
         since = ball(float(run.t[first]) - float(run.t[0]))
         start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
-        allowed = (start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt()
-        reached = _farthest(basin, run, first)
-        return decided(
-            "ultimate",
-            allowed + _OWN * float(basin.law.alpha.length) - reached,
-            computed=float(reached),
-            stated=f"in the end at most {float(bound.distance):.4g} from the orbit, with speeds of at most "
-            f"{float(bound.speed):.4g}",
-            witness={"allowed by then": float(allowed)},
-            detail=f"in the last fifth of the run at most {float(reached):.3g} from the orbit; proved are "
-            f"{float(bound.distance):.4g} in the end, and {float(allowed):.4g} by then",
-        )
+        allowed = float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
+    return _beside(
+        seen,
+        case,
+        "ultimate",
+        first,
+        allowed,
+        stated=f"in the end at most {float(bound.distance):.4g} from the orbit, with speeds of at most "
+        f"{float(bound.speed):.4g}",
+        witness={"allowed by then": allowed},
+        detail="in the last fifth of the run at most {reached:.3g} from the orbit; proved are "
+        f"{float(bound.distance):.4g} in the end, and {allowed:.4g} by then",
+    )
 
 
-def _farthest(basin: Any, run: Any, first: int) -> Any:
-    """Largest distance to the orbit at some samples from one on."""
+def _beside(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
+    """Return a proved claim that the flock is nearer to the orbit than allowed, with its samples from one on."""
+    basin, run = case.bound.basin, seen.given
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
-    return max((basin.above(run.q[k], run.p[k])[0] for k in some), key=float)
+    reached = max(float(basin.above(run.q[k], run.p[k])[0]) for k in some)  # an upper bound of the distance
+    error = float(np.linalg.norm(seen.shape_error[some], axis=1).max())
+    margin = Enclosure(allowed - reached - error, allowed - reached, np.maximum(allowed, allowed - reached))
+    by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"
+    text = detail.format(reached=reached)
+    return concluded(name, by_samples, margin, about="all", proof=_PROOF, computed=reached, detail=text, **fields)
 
 
 THEOREM = Theorem(

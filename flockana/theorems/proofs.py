@@ -21,6 +21,7 @@ RIGOUR: dict[str, Rigour] = {
     "delayed-consensus": "interval",
     "deviation-energy": "symbolic",
     "distinct-pairs": "interval",
+    "disturbed-basins": "symbolic",
     "double-agent": "interval",
     "energy-identities": "symbolic",
     "headings": "smt",

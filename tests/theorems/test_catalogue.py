@@ -45,7 +45,7 @@ def run():
         ("E8", {"q": PAIR}, "E8 is checked on nothing: got q"),
         ("E8", {"trajectory": run}, "E8 is checked on nothing: got trajectory"),
         ("os-1", {}, "os-1 is checked on trajectory or law, p0, q0, t_span: got nothing"),
-        ("os-1", {"law": Algorithm1(), "q0": PAIR}, "t_span: got law, q0"),
+        ("os-1", {"law": Algorithm1()}, "t_span: got law"),
         ("os-1", {"trajectory": run, "t_span": (0.0, 1.0)}, "got t_span, trajectory"),
         ("os-1", {"trajectory": run, "d": 7.0}, "got d, trajectory"),
         ("os-1", {"trajectory": 3}, r"trajectory = 3: expected a Trajectory, such as scenario\('collapse'\)"),
