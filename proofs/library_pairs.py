@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from flockana.kernels import alpha, obstacles, scalars
+from flockana.kernels import alpha, beta_slopes, scalars
 from flockana.symbolic.functions import taper
 from flockana.symbolic.norms import sigma_1, sigma_norm
 from proofs.library_formulas import below_overflow, on_symbols
@@ -139,11 +139,11 @@ def _pairs() -> Iterator[Step]:
     )
     yield Step(
         "its slope is the derivative in the squared distance",
-        residual(obstacles.pair_beta_slope, BETA, by_square(beta_stress())) == 0,
+        residual(beta_slopes.pair_beta_slope, BETA, by_square(beta_stress())) == 0,
     )
     yield Step(
         "and so is that of the adjacency",
-        residual(obstacles.adjacency_beta_slope, BETA, by_square(RHO(Z / LAST))) == 0,
+        residual(beta_slopes.adjacency_beta_slope, BETA, by_square(RHO(Z / LAST))) == 0,
     )
     x = sp.Symbol("x", positive=True)
     yield Step(

@@ -27,6 +27,7 @@ def _morse() -> FormulaInteraction:
         range=14.0,
         length=7.0,
         parameters={"k": 30.0, "a": 0.5},
+        units={"k": (2, -2), "a": (-1, 0)},
     )
 
 

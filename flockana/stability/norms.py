@@ -134,7 +134,7 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
     --------
     >>> import control
     >>> swing = control.ss([[0, 1], [-8, -1]], [[0], [1]], np.eye(2), 0)
-    >>> stationary_covariance(swing, 2.0).round(12).tolist()
+    >>> (stationary_covariance(swing, 2.0).round(12) + 0.0).tolist()
     [[0.25, 0.0], [0.0, 2.0]]
     """
     from scipy.linalg import solve_continuous_lyapunov

@@ -15,9 +15,10 @@ from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.wrapped import wrappers_of
+from flockana.theorems.claims import vacuous
 from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, with_doubt
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
@@ -238,7 +239,7 @@ def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subj
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
     detail = f"the run is of the law within {around}; the theorem is about the law itself"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
-    claims = tuple(Claim(name, "vacuous", detail=detail, needs=(missed,), by=item.by(name)) for name in item.claims)
+    claims = tuple(vacuous(name, missed, by=item.by(name)) for name in item.claims)
     return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)
 
 

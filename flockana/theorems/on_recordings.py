@@ -23,6 +23,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
+from flockana.theorems.claims import vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed, with_doubt
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, largest_over
@@ -156,8 +157,7 @@ def verify_recording(
     name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
     named = f"{name}: {rec.accuracy}"
     if follow.status == "unmet":
-        text = "the samples do not follow the law"
-        claims = tuple(Claim(each, "vacuous", detail=text, needs=(first,), by=item.by(each)) for each in _names(item))
+        claims = tuple(vacuous(each, first, by=item.by(each)) for each in _names(item))
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     hypotheses, claims = item.examine(seen, tolerances)

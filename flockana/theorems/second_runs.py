@@ -41,7 +41,7 @@ class Errors(NamedTuple):
 class Pair(NamedTuple):
     """Two runs of one start at the same samples, their half widths, and the reason if these are unknown."""
 
-    tightened_options: Trajectory
+    tighter: Trajectory
     looser: Trajectory
     errors: Errors
     doubt: str = ""
@@ -56,7 +56,7 @@ def paired(run: Trajectory) -> Pair:
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
     again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
     if again.status != "complete" or len(again.t) != len(steps):
-        kind = "tightened_options" if tight else "looser"
+        kind = "tighter" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
         return Pair(run, run, _nothing_known(run), doubt)
     thinned = _at_samples_of(again, run.t)

@@ -29,7 +29,7 @@ QUICK = {  # one change each in the sample; every change of every scenario in th
 }
 
 
-def tightened_options(factor):
+def with_tolerances_times(factor):
     def change(case, rng):
         if isinstance(case.law, DiscreteLaw):
             raise UnchangedError("a map has no tolerance")
@@ -50,9 +50,9 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
     "moved": lambda case, rng: rigid(case, np.eye(np.shape(case.q0)[1]), 20.0 * rng.normal(size=np.shape(case.q0)[1])),
     "renumbered": lambda case, rng: renumbered(case, rng.permutation(len(case.q0))),
     "later": lambda case, rng: delayed_start(case, 1000.0),
-    "half the tolerance": tightened_options(0.5),
-    "twice the tolerance": tightened_options(2.0),
-    "a hundredth of the tolerance": tightened_options(0.01),
+    "half the tolerance": with_tolerances_times(0.5),
+    "twice the tolerance": with_tolerances_times(2.0),
+    "a hundredth of the tolerance": with_tolerances_times(0.01),
 }
 
 

@@ -151,7 +151,7 @@ def refused(path, message):
 
 
 def test_another_version_of_the_mathematics_is_refused(whole, monkeypatch):
-    monkeypatch.setattr(store, "mathematics", lambda: "0" * 16)
+    monkeypatch.setattr(store, "numerics_version", lambda: "0" * 16)
     refused(whole, r"another version of the mathematics .*this is 0{16}.*choose another file, or compute with")
 
 

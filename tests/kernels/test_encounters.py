@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flockana.kernels import advance
-from flockana.kernels.advance import _met
+from flockana.kernels.advance import Around, _met
 from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, share_of_pairs, steepest
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.paths import bernstein, centred
@@ -128,7 +128,9 @@ def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, li
     reach, order, frame = (R, 1e6 if listed == "all" else 0.15 * R), np.arange(40), np.zeros((2, m))
     system = System(None, None, None, None, None, False, reach, order, frame, None, None)
     monkeypatch.setattr(advance, "list_pairs", search)
-    share, _ = _met.py_func(0.0, H, y0, f0, y1, f1, (radii, FAR, False, (0.0, 0.0)), system, pairs, (i, j))
+    share, _ = _met.py_func(
+        0.0, H, y0, f0, y1, f1, Around(radii, FAR, False, (0.0, 0.0), np.empty(0)), system, pairs, (i, j)
+    )
     assert share == pytest.approx(whole, rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")

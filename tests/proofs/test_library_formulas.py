@@ -14,8 +14,8 @@ from flint import arb, ctx
 
 from flockana.certified.intervals import AlphaParameters, BetaParameters, psi_alpha, psi_beta
 from flockana.interactions import AlphaInteraction, BetaInteraction
-from flockana.jit import Inlined
-from flockana.kernels import alpha, obstacles, scalars
+from flockana.jit import register_jitable
+from flockana.kernels import alpha, beta_slopes, scalars
 from flockana.kernels import dead_zone as kernel
 from proofs import library_formulas, library_pairs, library_potentials
 from proofs.dead_zone_pairs import zones
@@ -31,7 +31,7 @@ def wrong_action(s, par):
 
 
 def test_a_slip_in_a_kernel_is_told(monkeypatch):
-    monkeypatch.setattr(scalars, "sigma_norm", Inlined(wrong_sigma_norm))
+    monkeypatch.setattr(scalars, "sigma_norm", register_jitable(wrong_sigma_norm))
     monkeypatch.setattr(scalars, "_S3", scalars._S3 * (1.0 + 2.0**-50))
     broken = failing(library_formulas._steps())
     assert [text.partition(":")[0] for text in broken] == ["σ-norm", "taper"]
@@ -41,7 +41,7 @@ def test_a_force_without_its_dead_zone_is_told(monkeypatch):
     wrong_action.__globals__["repulsion"] = kernel.repulsion
     names = zones(wide=False)
     assert all(library_formulas.force_residual(zone) == 0 for zone in names.values())
-    monkeypatch.setattr(kernel, "action", Inlined(wrong_action))
+    monkeypatch.setattr(kernel, "action", register_jitable(wrong_action))
     told = {name for name, zone in names.items() if library_formulas.force_residual(zone) != 0}
     assert told == {"on the dead zone", "above d₂"}
 
@@ -77,11 +77,11 @@ SLIPS = {  # in what is executed, and the steps that tell
     "another slope of the stress": (alpha, "pair_alpha_slope", alpha.pair_alpha_adjacency_slope, [5]),
     "another slope of the adjacency": (alpha, "pair_alpha_adjacency_slope", alpha.pair_alpha_slope, [6]),
     "a β-agent like an α-agent": (alpha, "pair_beta", alpha.pair_alpha, [7]),
-    "another slope of a β-agent's weight": (obstacles, "pair_beta_slope", obstacles.adjacency_beta_slope, [8]),
-    "another slope of its adjacency": (obstacles, "adjacency_beta_slope", obstacles.pair_beta_slope, [9]),
-    "another power": (scalars, "phi_slope", Inlined(wrong_phi_slope), [0]),
-    "another sign": (scalars, "bump_slope", Inlined(wrong_bump_slope), [1]),
-    "an integral without the gap": (scalars, "phi_integral", Inlined(wrong_phi_integral), [2, 3]),
+    "another slope of a β-agent's weight": (beta_slopes, "pair_beta_slope", beta_slopes.adjacency_beta_slope, [8]),
+    "another slope of its adjacency": (beta_slopes, "adjacency_beta_slope", beta_slopes.pair_beta_slope, [9]),
+    "another power": (scalars, "phi_slope", register_jitable(wrong_phi_slope), [0]),
+    "another sign": (scalars, "bump_slope", register_jitable(wrong_bump_slope), [1]),
+    "an integral without the gap": (scalars, "phi_integral", register_jitable(wrong_phi_integral), [2, 3]),
 }
 
 

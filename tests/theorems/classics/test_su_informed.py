@@ -138,7 +138,7 @@ class Said:
         self.told, self.moving = told, moving
 
     def state(self, t):
-        return [5.0 * t, 0.0], self.format_value(t)
+        return [5.0 * t, 0.0], self.told(t)
 
     def rate(self, t):
         return self.moving(t)
