@@ -9,8 +9,12 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from flockana.base.errors import ArgumentError
+from flockana.base.checks import ensure_flag, ensure_known, ensure_seed
+from flockana.base.errors import ArgumentError, format_value
 from flockana.scenarios.flock import as_scenario, chosen
+from flockana.scenarios.scenario import scenarios
+
+_LAST_PORT = 65535
 
 
 def explore(
@@ -49,9 +53,15 @@ def explore(
     except ModuleNotFoundError as error:
         raise ArgumentError(f"{error.name} is not installed: pip install tornado") from error
     given = chosen(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
+    ensure_seed(seed)
+    ensure_flag("browser", browser)
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= _LAST_PORT:
+        raise ArgumentError(f"port = {format_value(port)}: expected a whole number from 0 (any) to {_LAST_PORT}")
     folder = tempfile.TemporaryDirectory(prefix="flockana-")
     first = {"kind": "scenario", "name": given}
-    if not isinstance(given, str):
+    if isinstance(given, str):
+        ensure_known("scenario", given, scenarios())
+    else:
         item = as_scenario(given, seed)
         path = item.run().save(Path(folder.name) / f"{item.name.replace(' ', '-')}.nc")
         first = {"kind": "file", "name": str(path)}

@@ -18,7 +18,7 @@ STRANGE = {
     "text": "\0",
     "huge": 10**30,
 }
-ELSEWHERE = {"falsify", "verify", "shares"}  # long searches, and what stands in tables of its own
+ELSEWHERE = {"falsify", "verify", "shares", "explore"}  # long searches, a server, and what stands in tables of its own
 MUCH = {("runs", "huge"), ("t_end", "huge")}  # one may ask for it
 
 
