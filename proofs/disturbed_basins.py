@@ -49,4 +49,6 @@ PROOF = Proof(
     ),
     rigour="symbolic",
     steps=_steps,
+    size=3,
+    theorems=("disturbed-basin",),
 )

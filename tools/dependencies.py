@@ -14,7 +14,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent / "pyproject.toml"
 EXTRAS = ("test", "cluster", "proofs", "course")  # what tests and lectures run on; linters are no part of it
-_BOUND = re.compile(r"^([A-Za-z0-9._-]+)>=([0-9.]+)$")
+_BOUND = re.compile(r"^([A-Za-z0-9._-]+)>=([0-9.]+)(?:,<[0-9.]+)?$")
 
 
 def pinned(requirements: Iterable[str]) -> list[str]:
@@ -27,7 +27,8 @@ def pinned(requirements: Iterable[str]) -> list[str]:
     for text in requirements:
         match = _BOUND.match(text)
         if match is None:
-            raise ValueError(f"{text!r} in pyproject.toml: expected NAME>=VERSION, so that the bound can be tested")
+            wanted = "NAME>=VERSION or NAME>=VERSION,<VERSION"
+            raise ValueError(f"{text!r} in pyproject.toml: expected {wanted}, so that the bound can be tested")
         found.append("{}=={}".format(*match.groups()))
     return found
 

@@ -46,7 +46,7 @@ def theorems_command(
 def _show(
     found: list[dict[str, Any]], table: Callable[[list[str]], Any], kind: str, *, long: bool, as_json: bool
 ) -> None:
-    from flockana.cli.show import show, show_json
+    from flockana.cli.show import show, show_json, show_lines
     from flockana.report.catalogues import short_list
 
     if as_json:
@@ -55,6 +55,6 @@ def _show(
     if long:
         show(kind, table([entry["name"] for entry in found]))
     elif found:
-        typer.echo(short_list(found))
+        show_lines(short_list(found))
     note = "" if long or not found else "; --long prints more of each"
     typer.echo(f"{len(found)} {kind}{note}")

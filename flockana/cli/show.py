@@ -25,6 +25,13 @@ def show(title: str, *tables: RenderableType) -> Console:
     return console
 
 
+def show_lines(text: str) -> None:
+    """Print lines as they are, whatever the width; letters that the encoding lacks are written as escapes."""
+    from rich.console import Console
+
+    Console(highlight=False).print(text, markup=False, soft_wrap=True)
+
+
 def show_files(**files: Path | None) -> None:
     """Print the path of each file written, with its description."""
     for kind, path in files.items():

@@ -156,7 +156,7 @@ def simulate(
 def _stepped(law: Law, method: str, dt: Any) -> Stepped:
     """Return a law that needs steps of its own (delay, clock or noise) as a map with these steps."""
     if dt is None:
-        raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, such as dt=0.01")
+        raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, expected one such as dt=0.01")
     order = 2 if any(one.noisy for one in wrappers_of(law)) else 4
     if method != "DOP853":
         order = _ORDERS[ensure_known("method of a wrapped law", method, tuple(_ORDERS))]

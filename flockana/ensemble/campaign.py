@@ -225,7 +225,7 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
         raise ArgumentError(f"metrics = {metrics!r}: expected several names or functions, such as ('strain',)")
     names = []
     for metric in metrics:
-        if not callable(metric) and metric not in measures():
+        if not callable(metric) and not (isinstance(metric, str) and metric in measures()):
             raise UnknownNameError("metric", metric, measures())
         names.append(reference(metric) if callable(metric) else metric)
     return tuple(names)

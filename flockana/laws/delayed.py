@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice
+from flockana.base.checks import FloatArray, ensure_choice, real_array
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
@@ -56,7 +56,7 @@ class Delayed(Wrapper):
         ensure_wrappable(self.law)
         ensure_choice("late", self.late, LATE)
         try:
-            lag = np.asarray(self.delay, dtype=np.float64)
+            lag = real_array(self.delay)
         except (TypeError, ValueError):
             lag = np.array(np.nan)
         if lag.ndim not in (0, 2) or not lag.size or not (np.isfinite(lag) & (lag >= 0.0)).all():

@@ -61,7 +61,7 @@ def cases():
     yield "slowest_modes", OTHERS, lambda v: fl.slowest_modes(v, 2)
     yield "slowest_modes count", SIZES, lambda v: fl.slowest_modes(LINEAR, v)
     yield "theorem", without(NAMES, "a list"), fl.theorem
-    yield "verify theorem", without(NAMES, "a list"), lambda v: fl.verify(v, RUN)
+    yield "verify theorem", without(NAMES, "a list", "none"), lambda v: fl.verify(v, RUN)
     yield "verify run", {"a text": "x", "a number": 3, "a list": [1]}, lambda v: fl.verify("energy", v)
     yield "verify tolerances", {"a mapping": {}, "a number": 3}, lambda v: fl.verify("energy", RUN, tolerances=v)
     yield "verify q", POINTS, lambda v: fl.verify("os-5", q=v, d=7.0, r=8.4)

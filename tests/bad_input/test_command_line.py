@@ -143,7 +143,7 @@ def cases():
         ["prove", "--time-limit", "-1"],
         ["prove", "-o", "torn.csv"],
     )
-    yield from (["scenarios", "x"], ["theorems", "--no-such"])
+    yield from (["scenarios", "--status", "x"], ["theorems", "--no-such"])
 
 
 CASES = list(cases())

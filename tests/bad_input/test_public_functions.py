@@ -34,6 +34,7 @@ def usual(tmp_path_factory):
     shared |= {"item": law, "equilibrium": rest, "linearisation": fl.linearise(law, rest)}
     shared |= {"basin": fl.certify([[0.0], [7.0]], law=law), "distances": [0.1]}
     shared |= {"tube": fl.enclose(law, q, p, (0.0, 0.0009765625)), "adjacency": lambda s2, par: 1.0}
+    shared |= {"margin": 1.0, "disturbance": 0.1, "spread": 0.05}
     shared |= {"range": 8.4, "length": 7.0, "scenario": "hexagon", "seeds": []}
     places = dict.fromkeys(("q", "q0", "positions", "configuration"), q) | dict.fromkeys(("p", "p0"), p)
     shared |= {"rec": fl.Recording(run.t, run.q, run.p, bound=0.0), "source": {"t": run.t, "q": run.q}}

@@ -73,7 +73,7 @@ def test_wrong_names_and_maps_are_refused():
 
 
 @pytest.mark.attack  # a fit takes half a minute
-@pytest.mark.timeout(7200)
+@pytest.mark.timeout(2300)
 def test_of_100_seeds_89_to_99_are_inside_each_95_percent_interval():
     """5 s of 30 agents, a sample every 0.02 s, noise 0.01 d: the intervals hold the truth as often as they say."""
     inside = dict.fromkeys(NAMES, 0)

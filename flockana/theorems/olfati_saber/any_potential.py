@@ -16,7 +16,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import judged
+from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     by_fact,
@@ -192,11 +192,16 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     else:
         reach = Enclosure.around(0.5 * (seen.n - 1) * seen.law.alpha.range, 0.0)
         cohesion = _within(seen, reach, needs, "cohesion", "½ (n - 1) r", PROOF)
+    one_instant = (
+        vacuous("one-instant", repels)
+        if repels.status == "unmet"  # then c* = 0
+        else pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF)
+    )
     return [*needs, *bounded, *steady, apart], [
         cohesion,
         velocities_match(seen, [*needs, *bounded], name="velocities", proof=LIMITS),
         critical(seen, [*needs, *bounded, *steady], name="critical"),
-        pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF),
+        one_instant,
         no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
     ]
 
