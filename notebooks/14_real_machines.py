@@ -128,12 +128,12 @@ for period in (0.9, 1.0):
     print(f"one agent, a sample every {period}: after 40 it is {abs(held.q[-1, 0, 0]):.1e} away")
 pair_margin = stability.sampling_margin(fl.Algorithm1(), np.array([[0.0], [7.0]])).period
 law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+c1, c2 = law.gains.c1_gamma, law.gains.c2_gamma
 rest = fl.find_equilibrium(law, lattice.hexagonal_patch(2, 7.0))
 print(f"a pair is stable up to {pair_margin:.4f}, by hand {2.0 * 3.9277 / 446.6:.4f}")
 print(f"a hexagon of nineteen up to {stability.sampling_margin(law, rest.q).period:.4f}")
 
 # %% tags=["facts"]
-c1, c2 = law.gains.c1_gamma, law.gains.c2_gamma
 assert abs(stability.sampling_margin(one, np.array([[0.0]])).period - min(2.0 / c2, 2.0 * c2 / c1)) < 1e-6
 assert abs(pair_margin - 0.017587) < 1e-5
 assert abs(held.q[-1, 0, 0]) > 1.0
