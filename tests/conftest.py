@@ -26,6 +26,7 @@ SLOW = (
     *("explore/test_server.py", "explore/test_worker.py", "test_jit.py"),
     *("test_time_limits.py", "test_browser.py", "test_explore_in_browser.py", "test_site_in_browser.py"),
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
+    *("kernels/test_poles.py", "theorems/olfati_saber/test_attraction.py"),
     *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),
 )
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
