@@ -58,6 +58,11 @@ class Comparison:
     ids: tuple[str, ...] = field(default=(), repr=False)
 
     @property
+    def share(self) -> str:
+        """Explained share in words; a residual larger than the accelerations explains nothing."""
+        return f"{self.explained:.4%}" if self.explained > 0.0 else "nothing"
+
+    @property
     def by_agent(self) -> FloatArray:
         """Root mean square of each agent's residual, shape (n,)."""
         size: FloatArray = np.sqrt(np.nanmean(lengths(self.residual) ** 2, axis=0))
@@ -79,7 +84,7 @@ class Comparison:
 
     def __str__(self) -> str:
         name = type(self.law).__name__
-        lines = [f"{name} explains {self.explained:.4%} of the recorded accelerations (from {self.basis})"]
+        lines = [f"{name} explains {self.share} of the recorded accelerations (from {self.basis})"]
         for one in self.shares:
             known = "" if one.error == 0.0 else f" ± {2.0 * one.error:.2g}"
             lines.append(

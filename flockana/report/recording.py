@@ -92,13 +92,13 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
 
 
 def _with_error(value: float, error: float) -> str:
-    return f"{value:.4g}" + (f" ± {error:.2g}" if np.isfinite(error) else " (accuracy not stated)")
+    return f"{value:.4g}" + (f" ± {error:.2g}" if np.isfinite(error) else "")
 
 
 def _compared(comparison: Comparison) -> list[str]:
     name = type(comparison.law).__name__
     parts = [
-        f"<h2>Against {escape(name)}</h2><p>It explains {comparison.explained:.2%} of the recorded accelerations "
+        f"<h2>Against {escape(name)}</h2><p>It explains {comparison.share} of the recorded accelerations "
         f"(from {comparison.basis}), and {comparison.explained_refitted:.2%} with gains as the recording has them.</p>"
     ]
     if comparison.findings:

@@ -98,3 +98,13 @@ def test_too_few_samples_are_refused():
         fl.compare(fl.Recording([0.0], Q0[None], P0[None]), LAW)
     with pytest.raises(ArgumentError, match="expected 4 or more"):
         fl.compare(fl.Recording([0.0, 1.0], np.stack([Q0, Q0])), LAW)
+
+
+def test_a_law_that_is_off_by_more_than_the_accelerations_explains_nothing():
+    from flockana.recorded.faulty import faulty_recording
+
+    rec = faulty_recording("A")
+    law = fl.Algorithm2(target=fl.StaticTarget((900.0, 0.0)))
+    found = fl.compare(rec, law)
+    assert found.explained < 0.0
+    assert str(found).startswith("Algorithm2 explains nothing of the recorded accelerations")
