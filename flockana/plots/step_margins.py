@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
@@ -44,6 +45,9 @@ def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = 
         axes.annotate(f"{ratio:.3g}", (ratio, place), textcoords="offset points", va="center", fontsize=8.0, **where)
     axes.axvline(1.0, color=INK, linewidth=1.0)
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlim(min(0.4, 0.6 * min(ratios)), 1.8 * max(2.0, *ratios))
     axes.set_yticks(places, list(steps))
     return finish(axes, "largest stable step over the step in use", "")

@@ -15,6 +15,7 @@ def test_bars_begin_at_one_and_end_at_the_ratio():
     assert unstable.get_hatch()
     assert [label.get_text() for label in ax.get_yticklabels()] == ["stable", "unstable"]
     assert [text.get_text() for text in ax.texts] == ["2", "0.5"]
+    assert [ax.xaxis.get_major_formatter()(tick) for tick in (0.05, 1.0, 200.0)] == ["0.05", "1", "200"]
 
 
 @pytest.mark.parametrize(("steps", "message"), [({}, "steps is empty"), ({"a": (0.1, 0.0)}, "a: dt = 0")])
