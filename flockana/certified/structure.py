@@ -7,13 +7,14 @@ c1γ = c2γ = 0 under Algorithm 1. A configuration is a list of balls x_11, ...,
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.errors import ArgumentError
+from flockana.base.units import rescale
 from flockana.certified.intervals import (
     AlphaParameters,
     adjacency,
@@ -30,6 +31,15 @@ from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
 Balls = Sequence[arb]
+
+
+def in_lengths_of_unit(law: Any) -> Any:
+    """Return a law in lengths of ℓ, the unit of σ₁, where ℓ = 1: the printed law, rounded; unchanged if it is."""
+    unit = getattr(law.alpha, "unit", 1.0)
+    if unit == 1.0:
+        return law
+    law = rescale(law, length=1.0 / unit)
+    return replace(law, alpha=replace(law.alpha, unit=1.0))  # but for rounding it is
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from flockana.base.errors import SolverError
 from flockana.base.seals import replace_sealed
-from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems import Tolerances, Verdict, verify
 
@@ -37,13 +36,11 @@ class Enclosure:
         """Return the tube, and the basin or None, in lengths of ℓ (the unit of σ₁)."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose import enclose
+        from flockana.certified.structure import in_lengths_of_unit
         from flockana.equilibria.solve import find_equilibrium
 
         unit = run.law.alpha.unit
-        law = run.law
-        if unit != 1.0:
-            law = rescale(law, length=1.0 / unit)
-            law = replace(law, alpha=replace(law.alpha, unit=1.0))  # but for rounding it is
+        law = in_lengths_of_unit(run.law)
         span = (float(run.t[0]), float(run.t[-1]))
         tube = enclose(law, run.q[0] / unit, run.p[0] / unit, span, **self.options)
         if unit != 1.0:

@@ -26,9 +26,12 @@ _MOST = 7  # agents of which a basin is proved within seconds
 
 
 class _Case(NamedTuple):
+    """Bound and start in lengths of ℓ, the unit of σ₁, of which the run has `unit`."""
+
     bound: Any  # UltimateBound
     q: FloatArray
     p: FloatArray
+    unit: float
 
 
 def _law(seen: Observed) -> Hypothesis:
@@ -55,8 +58,10 @@ def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
 def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
     from flockana.certified.basin import certify
     from flockana.certified.disturbed import ultimate_bound
+    from flockana.certified.structure import in_lengths_of_unit
 
-    law, q, p = seen.law, seen.given.q[0], seen.given.p[0]
+    law, unit = seen.law, getattr(seen.law.law.alpha, "unit", 1.0)
+    q, p = seen.given.q[0] / unit, seen.given.p[0] / unit
     name = "the start lies in a certified basin, too deep for the disturbance to leave"
     if len(q) > _MOST:
         yield Hypothesis(
@@ -64,17 +69,20 @@ def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
         )
         return
     try:
-        bound = ultimate_bound(certify(find_equilibrium(law.law, q)), largest_push(law, q.shape))
+        bound = ultimate_bound(
+            certify(find_equilibrium(in_lengths_of_unit(law.law), q)), largest_push(law, q.shape) / unit
+        )
     except FlockanaError as error:
         yield Hypothesis(name, "unmet", detail=f"no basin: {error}")
         return
-    margin = float(bound.largest - bound.disturbance)
-    detail = f"‖d‖ <= {float(bound.disturbance):.4g}, and {float(bound.largest):.4g} could leave"
+    largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
+    margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
+    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could leave{rounded}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
         yield Hypothesis(name, "unmet", margin=margin, detail=text)
         return
-    kept.append(_Case(bound, q, p))
+    kept.append(_Case(bound, q, p, unit))
     yield Hypothesis(name, "met", margin=margin, detail=detail)
 
 
@@ -88,15 +96,15 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
 
 def _stays(seen: Observed, case: _Case) -> Claim:
     """That the flock stays in the basin is proved; its samples stand beside."""
-    basin = case.bound.basin
+    basin, unit = case.bound.basin, case.unit
+    radius, apart = unit * float(basin.radius), unit * float(basin.distance)
     return _beside(
         seen,
         case,
         "stays",
         0,
-        float(basin.radius),
-        stated=f"nearer than {float(basin.radius):.4g} to the orbit at all times, no two agents within "
-        f"{float(basin.distance):.4g}",
+        radius,
+        stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {apart:.4g}",
         detail="proved by the Lyapunov function of the basin; at the samples at most {reached:.3g} away",
     )
 
@@ -108,33 +116,33 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
     from flockana.certified.basin import DIGITS
     from flockana.certified.intervals import ball
 
-    bound, run = case.bound, seen.given
-    basin = bound.basin
+    bound, run, basin = case.bound, seen.given, case.bound.basin
+    distance, speed = case.unit * float(bound.distance), case.unit * float(bound.speed)
     first = int(np.searchsorted(run.t, run.t[-1] - _LAST * (run.t[-1] - run.t[0])))
     with ctx.workdps(DIGITS):
         excess = max(basin.above(case.q, case.p)[1], arb(0))
         since = ball(float(run.t[first]) - float(run.t[0]))
         start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
-        allowed = float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
+        allowed = case.unit * float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
     return _beside(
         seen,
         case,
         "ultimate",
         first,
         allowed,
-        stated=f"in the end at most {float(bound.distance):.4g} from the orbit, with speeds of at most "
-        f"{float(bound.speed):.4g}",
+        stated=f"in the end at most {distance:.4g} from the orbit, with speeds of at most {speed:.4g}",
         witness={"allowed by then": allowed},
         detail="in the last fifth of the run at most {reached:.3g} from the orbit; proved are "
-        f"{float(bound.distance):.4g} in the end, and {allowed:.4g} by then",
+        f"{distance:.4g} in the end, and {allowed:.4g} by then",
     )
 
 
 def _beside(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
     """Return a proved claim that the flock is nearer to the orbit than allowed, with its samples from one on."""
-    basin, run = case.bound.basin, seen.given
+    basin, run, unit = case.bound.basin, seen.given, case.unit
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
-    reached = max(float(basin.above(run.q[k], run.p[k])[0]) for k in some)  # an upper bound of the distance
+    distances = [basin.above(run.q[k] / unit, run.p[k] / unit)[0] for k in some]  # upper bounds
+    reached = unit * max(map(float, distances))
     error = float(np.linalg.norm(seen.shape_error[some], axis=1).max())
     margin = Enclosure(allowed - reached - error, allowed - reached, np.maximum(allowed, allowed - reached))
     by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"

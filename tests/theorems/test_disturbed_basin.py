@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana.base.units import rescale
 from flockana.dynamics.simulate import simulate
 from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.delayed import Delayed
@@ -24,6 +25,17 @@ def test_a_light_wind_is_borne():
     assert (found.status, found.rigour) == ("verified", "symbolic")
     assert [claim.name for claim in found.claims] == ["stays", "ultimate"]
     assert all(claim.margin > 0.0 for claim in found.claims)
+
+
+def test_it_is_the_same_in_other_units_and_its_numbers_are_the_units_own():
+    run = simulate(Disturbed(Algorithm1(), swing=[[0.1], [-0.1]], frequency=0.7), PAIR, 0.0 * PAIR, (0.0, 10.0))
+    here, there = (verify("disturbed-basin", rescale(run, length=length)) for length in (1.0, 1000.0))
+    assert there.status == "verified"
+    assert "in lengths of ℓ, rounded" in there.hypotheses[1].detail
+    assert there.hypotheses[1].margin == pytest.approx(1000.0 * here.hypotheses[1].margin, rel=2e-3)
+    for one, other in zip(here.claims, there.claims, strict=True):
+        assert other.computed == pytest.approx(1000.0 * one.computed, rel=1e-3)
+        assert other.margin == pytest.approx(1000.0 * one.margin, rel=2e-3)
 
 
 def test_a_wind_on_all_alike_moves_no_shape():
