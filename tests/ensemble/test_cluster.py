@@ -207,7 +207,7 @@ def nothing_left():
     before = now()
     yield
     assert {one.status for one in gc.get_objects() if issubclass(type(one), distributed.Client)} <= {"closed"}
-    assert now() == before
+    until(lambda: now() == before)  # the thread in which Dask waits for a process outlives that by a moment
 
 
 def silent(connection):
