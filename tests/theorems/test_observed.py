@@ -13,7 +13,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, verify
 from flockana.theorems import second_runs as module
 from flockana.theorems.claims import judged
-from flockana.theorems.observed import Observed, by_both_runs, observed
+from flockana.theorems.observed import Observed, by_both_runs, observed, with_doubt
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.second_runs import failure
 
@@ -142,7 +142,10 @@ def test_a_run_that_left_the_domain_of_its_law_decides_nothing():
     law = LinkKeeping(((0, 1),), r=1.0, k=1.0, c=0.0)
     run = fl.simulate(law, [[0.0], [1.0 - 1e-5]], [[0.0], [1e-3]], (0.0, 0.05), rtol=1e-4)
     assert failure(run) == ""
-    assert failure(replace(run, q=2.0 * run.q)).startswith("the run left the domain of its law before t = ")
+    moved = replace(run, q=2.0 * run.q)
+    assert failure(moved).startswith("the run left the domain of its law before t = ")
+    told = with_doubt([Claim("links", "verified", "smt"), Claim("a", "verified", "symbolic")], Observed.of(moved))
+    assert [claim.status for claim in told] == ["inconclusive", "verified"]
 
 
 def test_a_claim_of_both_runs_is_as_sure_as_they_agree():
