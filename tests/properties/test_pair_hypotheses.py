@@ -56,13 +56,7 @@ NEEDS = {  # claims that rest on each of them, by theorem
     "os-1": dict.fromkeys(("smooth", "weight"), ("i", "ii", "iii", "iii-barrier")),
     "os-3": dict.fromkeys(("smooth", "weight"), ("i", "ii", "ii-converges", "ii-semidefinite", "iii", "iv-none")),
 }
-AS_ANY_POTENTIAL = ("os-1", "os-3")  # which ask by its functions: one law shows it
-CASES = [
-    (name, what, k)
-    for name, table in NEEDS.items()
-    for what in table
-    for k in range(1 if name in AS_ANY_POTENTIAL else len(BROKEN[what][1]))
-]
+CASES = [(name, what, k) for name, table in NEEDS.items() for what in table for k in range(len(BROKEN[what][1]))]
 
 
 def verdict_of(name, law):
