@@ -119,13 +119,6 @@ class Inlined(Kernel):
 def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
     """Return a decorator like `numba.njit`, which loads numba at the first call.
 
-    Parameters
-    ----------
-    cache : bool
-        Keep the compiled code on disk.
-    **options
-        Those of `numba.njit`.
-
     Examples
     --------
     >>> @njit()
@@ -140,11 +133,6 @@ def njit(*, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]
 def register_jitable(function: Callable[..., Any]) -> Inlined:
     """Return a function for kernels to call, which is compiled into them.
 
-    Parameters
-    ----------
-    function : callable
-        A function of scalars, for compiled and interpreted use.
-
     Examples
     --------
     >>> @register_jitable
@@ -157,15 +145,7 @@ def register_jitable(function: Callable[..., Any]) -> Inlined:
 
 
 def callback(kernel: Kernel, signature: Any) -> Any:
-    """Return a kernel as a function that compiled code may be handed, compiled for one signature.
-
-    Parameters
-    ----------
-    kernel : Kernel
-        The function.
-    signature : object
-        numba's.
-    """
+    """Return a kernel as a function that compiled code may be handed, compiled for one signature."""
     with compiling(_mark(kernel.function, signature)):
         options = {"error_model": "numpy", "nogil": True}
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
@@ -260,13 +240,7 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
 
 @contextmanager
 def compiling(mark: Path | None = None) -> Iterator[None]:
-    """Compile alone: one thread of one process of this user, for others to load what it made.
-
-    Parameters
-    ----------
-    mark : Path, optional
-        A file that is there once all has been compiled: then it is loaded, and nobody waits.
-    """
+    """Compile alone: one thread of one process of this user, for others to load what it made."""
     with _ONE, relaxed_gc():
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         free = folder is None or fcntl is None or (mark is not None and mark.exists())
@@ -323,15 +297,7 @@ def _private(folder: Path) -> Path:
 
 @cache
 def sources_folder(base: Path, digest: str) -> Path:
-    """Return the folder for compiled code of some sources; folders that were not used for long are removed.
-
-    Parameters
-    ----------
-    base : Path
-        Of all compiled code.
-    digest : str
-        Of the sources.
-    """
+    """Return the folder for compiled code of some sources; folders that were not used for long are removed."""
     folder, now = base / digest, time.time()
     if not folder.is_dir():
         folder.mkdir(mode=0o700, exist_ok=True)
@@ -345,13 +311,7 @@ def sources_folder(base: Path, digest: str) -> Path:
 
 @cache
 def sources_digest(file: str) -> str:
-    """Return a digest of the contents of a file and of all that it imports of the package, and these again.
-
-    Parameters
-    ----------
-    file : str
-        Its path.
-    """
+    """Return a digest of the contents of a file and of all that it imports of the package, and these again."""
     known, found = set[Path](), {Path(file)}
     while found:
         known |= found

@@ -18,14 +18,7 @@ from flockana.laws.stepped import Stepped
 def followed(
     law: Stepped, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
 ) -> Iterator[Samples]:
-    """Steps of a law that follows a path, as `discrete` gives them; the past that it hears is looked at, too.
-
-    Raises
-    ------
-    ArgumentError
-        If a step leaps over an encounter, with the step that it takes: steps divide delays, so that one cannot be made
-        shorter than the others.
-    """
+    """Steps of a law that follows a path, as `discrete` gives them; the past that it hears is looked at, too."""
     check, wanted = Encounters.of(law.law, len(q0)), wanted_steps(law, t_span, keep)
     before = State(q0, p0, np.zeros_like(q0))
     past = law.start(q0, p0)["past"]

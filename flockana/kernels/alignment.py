@@ -46,13 +46,7 @@ class WeightKernels:
 
 
 def lift_weight(weight: Callable[..., float], slope: Callable[..., float]) -> WeightKernels:
-    """Return the sums of a weight a(s²) and its slope, two `register_jitable` functions of (s2, par).
-
-    Parameters
-    ----------
-    weight, slope : callable
-        a and da/d(s²).
-    """
+    """Return the sums of a weight a(s²) and its slope, two `register_jitable` functions of (s2, par)."""
     return WeightKernels(weight, lift_scalar(weight), lift_scalar(slope))  # type: ignore[arg-type]
 
 

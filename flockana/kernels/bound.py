@@ -28,13 +28,6 @@ _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re
 def bound(template: str, **bindings: Any) -> ModuleType:
     """Return a template, bound: the same module for the same bindings.
 
-    Parameters
-    ----------
-    template : str
-        Name of the module.
-    **bindings
-        By the name in the template: a number, or a function that kernels call.
-
     Examples
     --------
     >>> from flockana.kernels.scalars import sigma_1
@@ -62,17 +55,7 @@ def bound(template: str, **bindings: Any) -> ModuleType:
 
 
 def made(text: str, name: str, **functions: Kernel) -> ModuleType:
-    """Return a module of some text, with functions in it by their names.
-
-    Parameters
-    ----------
-    text : str
-        Its source: our own, or written by this package from a formula that its own grammar has read.
-    name : str
-        What it is called, before a digest.
-    **functions
-        Kernels that it calls; those that no module has by name are handed over in memory, and nothing is kept on disk.
-    """
+    """Return a module of some text, with functions in it by their names."""
     named = {own: known for own, known in functions.items() if is_modules_own(known)}
     sources = sorted({_source(known) for known in named.values()})
     imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))

@@ -29,15 +29,7 @@ class Cells(NamedTuple):
 
 @njit(cache=True)
 def sort_into_cells(q, reach):
-    """The cells of a flock; all four are empty where looking at all agents is as good.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    reach : float
-        Those within it of each other are in the same or in adjacent cells.
-    """
+    """The cells of a flock; all four are empty where looking at all agents is as good."""
     n, m = q.shape
     none = np.empty(0, np.int64)
     if n <= _FEW:
@@ -60,21 +52,7 @@ def sort_into_cells(q, reach):
 
 @njit(cache=True)
 def gather(i, q, reach, cells, near):
-    """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are.
-
-    Parameters
-    ----------
-    i : int
-        The agent.
-    q : ndarray, shape (n, m)
-        Positions now.
-    reach : float
-        How far.
-    cells : Cells
-        Of positions that nobody has left by more than half of what the cells' reach exceeds this one by.
-    near : ndarray of int64, shape (n,)
-        Where to write, in rising order: 0 to n − 1 where there are no cells.
-    """
+    """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are."""
     n, m = q.shape
     if cells.start.size == 0:
         for k in range(n):  # an instant before this one may have had cells

@@ -146,15 +146,6 @@ def _nearest(x, pairs, owner, low, high, home, piece, stop, cell, planar, reach)
 def grid(q: FloatArray, pairs: IndexArray, *, reach: float = 0.0) -> Grid:
     """Sort links into cells so that any two that come within `reach` share one.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Finite positions.
-    pairs : int32 array, shape (M, 2)
-        Links.
-    reach : float
-        Distance up to which links are to be compared.
-
     Examples
     --------
     >>> len(grid(np.array([[0.0], [9.0]]), np.array([[0, 1]], np.int32)).owner)
@@ -188,13 +179,6 @@ def crossing_blocks(q: FloatArray, pairs: IndexArray) -> Iterator[tuple[IndexArr
 
     Links that were cut may come more than once.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Finite positions.
-    pairs : int32 array, shape (M, 2)
-        Links.
-
     Examples
     --------
     >>> q = np.array([[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]])
@@ -214,15 +198,6 @@ def crossing_blocks(q: FloatArray, pairs: IndexArray) -> Iterator[tuple[IndexArr
 
 def nearest_links(q: FloatArray, pairs: IndexArray, reach: float) -> tuple[float, int, int]:
     """Least distance of two links without a common agent, and which; (reach, −1, −1) if none is nearer than `reach`.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Finite positions.
-    pairs : int32 array, shape (M, 2)
-        Links, of which no two cross.
-    reach : float
-        Distance up to which is looked.
 
     Examples
     --------

@@ -29,13 +29,6 @@ from flockana.kernels.scalars import on_panels
 def generated(text: str, name: str) -> Kernel:
     """Return the function of a name that a text defines, for compiled and interpreted use.
 
-    Parameters
-    ----------
-    text : str
-        What `flockana.symbolic.printing.function_text` wrote: one definition, whose name ``NAME`` stands for.
-    name : str
-        What it is called.
-
     Examples
     --------
     >>> generated("def NAME(x):\\n    return cosine(x)*x", "f")(0.0)
@@ -49,15 +42,7 @@ def generated(text: str, name: str) -> Kernel:
 def generated_kernels(
     pair: str, slope: str, potential: str, adjacency_slope: str, norm: str | None = None
 ) -> PairKernels:
-    """Return the sums over pairs of a law whose scalar functions are generated, the same for the same texts.
-
-    Parameters
-    ----------
-    pair, slope, potential, adjacency_slope : str
-        Texts of the functions that `lift` takes.
-    norm : str, optional
-        That of its norm, if the law begins with one.
-    """
+    """Return the sums over pairs of a law whose scalar functions are generated, the same for the same texts."""
     texts = {"pair": pair, "slope": slope, "potential": potential, "adjacency_slope": adjacency_slope}
     functions = (generated(text, name) for name, text in texts.items())
     return lift(*functions, norm=None if norm is None else generated(norm, "norm"))
@@ -65,11 +50,5 @@ def generated_kernels(
 
 @lru_cache(maxsize=_KEPT)
 def generated_potential(text: str) -> Callable[..., Any]:
-    """Return a generated potential over an array of squared distances.
-
-    Parameters
-    ----------
-    text : str
-        As `generated_kernels` takes it.
-    """
+    """Return a generated potential over an array of squared distances."""
     return lift_scalar(generated(text, "potential"))

@@ -44,13 +44,7 @@ class LawNumbers(NamedTuple):
 
 
 def law_numbers(terms: Any) -> LawNumbers:
-    """Return the numbers of all terms in one vector, their panels in one matrix.
-
-    Parameters
-    ----------
-    terms : sequence
-        With ``numbers`` and ``panels`` each.
-    """
+    """Return the numbers of all terms in one vector, their panels in one matrix."""
     numbers = np.concatenate([np.empty(0), *(term.numbers for term in terms)])
     width = max((term.panels.shape[1] for term in terms), default=0)
     panels = np.concatenate([np.empty((0, width)), *(term.panels.reshape(-1, width) for term in terms if width)])
@@ -61,13 +55,7 @@ def law_numbers(terms: Any) -> LawNumbers:
 
 @cache
 def law_functions(terms: tuple[tuple[Kernel, Kernel, Kernel | None], ...]) -> LawFunctions:
-    """Return the functions of a law with such terms, compiled.
-
-    Parameters
-    ----------
-    terms : tuple of (act, energy, guard)
-        Kernels; None for a guard of nothing.
-    """
+    """Return the functions of a law with such terms, compiled."""
     functions: dict[str, Kernel] = {}
     lines: dict[str, list[str]] = {_ACT: [], _ENERGY: [], _GUARD: []}
     for k, (act, energy, guard) in enumerate(terms):

@@ -250,18 +250,6 @@ def _embed(start, out, head, parent, side):
 def embedding(n: int, links: LinkArray) -> tuple[IndexArray, IndexArray] | None:
     """The order of links around each agent in a drawing without crossings; None if none was found.
 
-    Parameters
-    ----------
-    n : int
-        Number of agents.
-    links : int array, shape (M, 2)
-        Different pairs of different agents.
-
-    Returns
-    -------
-    owner, after : int arrays, shape (2M,)
-        The agent of each half-link, 2k and 2k + 1 those of link k, and the half-link that comes next around it.
-
     Examples
     --------
     >>> owner, after = embedding(3, np.array([[0, 1], [1, 2], [0, 2]], np.int32))

@@ -81,31 +81,12 @@ def lift(
     *,
     norm: Callable[..., Any] | None = None,
 ) -> PairKernels:
-    """Return the pair sums of a law given by scalar functions of the squared distance s².
-
-    Parameters
-    ----------
-    pair : callable
-        ``pair(s2, par) -> (w, a)``, a `flockana.jit.register_jitable` function.
-    slope : callable
-        ``slope(s2, par)`` = dw/d(s²).
-    potential : callable
-        ``potential(s2, par, panels)`` = ψ, whose gradient in q_i is −w (q_j − q_i).
-    adjacency_slope : callable, optional
-        ``adjacency_slope(s2, par)`` = da/d(s²): only the Jacobian at unequal velocities needs it.
-    norm : callable, optional
-        ``norm(s2, par) -> (z, root)``: two numbers that the law begins with. If given, it is ``pair(z, root, par)``.
-    """
+    """Return the pair sums of a law given by scalar functions of the squared distance s²."""
     return PairKernels(pair, slope, potential, adjacency_slope, norm)  # type: ignore[arg-type]
 
 
 def lift_scalar(function: Callable[..., float]) -> Callable[..., Any]:
     """Return a function of ``(z, *parameters)`` that runs over a one-dimensional array z.
-
-    Parameters
-    ----------
-    function : callable
-        A `register_jitable` scalar function.
 
     Examples
     --------

@@ -37,13 +37,6 @@ def _directed(q, first, second, square):
 def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """(head, tail) of every directed edge: agent head[e] perceives agent tail[e], not farther than its own radius.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Positions.
-    radius : ndarray, shape (n,)
-        Perception radius of each agent.
-
     Examples
     --------
     >>> head, tail = perceived_edges(np.array([[0.0], [2.0]]), np.array([1.0, 2.0]))
@@ -62,17 +55,6 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
     """Add μ (1 − ρ/‖x‖) x + a (p_j − p_i) of each edge, x = q_j − q_i, to u_i; return Σ a ‖p_j − p_i‖² over edges.
 
     Coincident agents have no bearing: their edge contributes the alignment only.
-
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    head, tail : int64 arrays, shape (M,)
-        Edges: the agent i that perceives and the agent j that is perceived.
-    mu, rho, align : ndarray, shape (M,)
-        Weight μ, desired spacing ρ = α r, and weight a of the velocity difference, of each edge.
-    u : ndarray, shape (n, m)
-        Changed in place.
     """
     dissipated = 0.0
     m = q.shape[1]
@@ -130,25 +112,7 @@ def perceived_forces(
     normalised: bool,
     u: FloatArray,
 ) -> None:
-    """Add to u what `edge_forces` adds for `perceived_edges` that are all heeded alike, without making them.
-
-    Parameters
-    ----------
-    q, p : ndarray, shape (n, m)
-        Positions and velocities.
-    radius : ndarray, shape (n,)
-        Perception radius of each agent.
-    spacing : ndarray, shape (n,)
-        Its desired spacing, times the number of those that it perceives if that is `shared`.
-    shared : bool
-        Whether it grows with that number.
-    mu, sigma : float
-        Weights of springs and of alignment.
-    normalised : bool
-        Whether alignment is with the mean, rather than the sum.
-    u : ndarray, shape (n, m)
-        Changed in place.
-    """
+    """Add to u what `edge_forces` adds for `perceived_edges` that are all heeded alike, without making them."""
     reach, square, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
     parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
     if shared or normalised:
@@ -256,15 +220,6 @@ def semi_implicit_steps(
     """Semi-implicit Euler steps by `perceived_forces` of few agents: q, p after each and u before, (steps, n, m).
 
     All pairs are looked at in each step. Up to `AT_ONCE` agents it is what steps one by one are, to the bit.
-
-    Parameters
-    ----------
-    q, p, radius, spacing, shared, mu, sigma, normalised
-        As in `perceived_forces`.
-    dt : float
-        Step.
-    steps : int
-        How many.
 
     Examples
     --------

@@ -151,21 +151,6 @@ def pair_blocks(
 
     A block's arrays are reused for the next one: use each before asking for the next.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Finite positions, m = 1, 2 or 3.
-    r : float
-        Range, in the unit of `q`; the inequality is strict. Infinity is allowed: all pairs.
-    dense : bool, optional
-        Force the direct search (True) or the cells (False); by default the faster one for this n.
-    block : int
-        Most pairs in a block (at least n − 1 are allowed).
-
-    Yields
-    ------
-    i, j : int32 arrays of equal length
-
     Examples
     --------
     >>> [(i.tolist(), j.tolist()) for i, j in pair_blocks(np.array([[0.0], [1.0], [5.0]]), 2.0)]
@@ -199,13 +184,6 @@ def pair_blocks(
 
 def pair_list(q: FloatArray, r: float) -> tuple[IndexArray, IndexArray]:
     """All pairs of `pair_blocks` at once, i < j, in lexicographic order: O(number of pairs) memory.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, m)
-        Finite positions.
-    r : float
-        Range (strict).
 
     Examples
     --------

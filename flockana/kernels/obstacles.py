@@ -64,16 +64,7 @@ def project_nothing(q, p, par, gap, rate):
 
 
 def lift_obstacle(project: Callable[..., float], turn: Callable[..., None] | None = None) -> ObstacleKernels:
-    """Return the sums of an obstacle kind given by its closest-point map.
-
-    Parameters
-    ----------
-    project : callable
-        ``project(q, p, par, gap, rate) -> clearance``, a `register_jitable` function of one agent.
-    turn : callable, optional
-        ``turn(q, p, e, par, out)`` writes the derivative of dq̂/dt in q along e, at fixed p, into out: `no_turn` for
-        flat faces. Only the Jacobian of a law at moving agents needs it.
-    """
+    """Return the sums of an obstacle kind given by its closest-point map."""
     return ObstacleKernels(project, turn)  # type: ignore[arg-type]
 
 

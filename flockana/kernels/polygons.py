@@ -122,15 +122,6 @@ def _from_corners(ax, ay, bx, by, edges, least, length):
 def ways_from_boundary(start, end, at_start, at_end, edges):
     """Distance of straight ways from the boundary, and whether each meets the polygon: 1, 0 or UNSURE.
 
-    Parameters
-    ----------
-    start, end : ndarray, shape (N, 2)
-        Ends of the ways.
-    at_start, at_end : ndarray, shape (N,)
-        Signed distances of both from the boundary, negative inside.
-    edges : ndarray, shape (V, 4)
-        Edges of the polygon.
-
     Examples
     --------
     >>> edges = np.array([[0.0, 0.0, 4.0, 0.0], [4.0, 0.0, 0.0, 4.0], [0.0, 4.0, 0.0, 0.0]])

@@ -21,11 +21,6 @@ _TINY = 1e-280  # below, products may have underflowed
 def turn(a0, a1, b0, b1, c0, c1):
     """Sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE.
 
-    Parameters
-    ----------
-    a0, a1, b0, b1, c0, c1 : float
-        Coordinates of the three points.
-
     Examples
     --------
     >>> turn(0.0, 0.0, 1.0, 0.0, 0.0, 1.0), turn(0.0, 0.0, 1.0, 0.0, 3.0, 0.0), turn(0.0, 0.0, 0.1, 0.1, 0.3, 0.3)
@@ -61,13 +56,6 @@ def _volume(a, b, c, d):
 @njit(cache=True)
 def meet(c, d, a, b):
     """Whether two closed segments with overlapping boxes meet in the plane: 1, 0 or UNSURE.
-
-    Parameters
-    ----------
-    c, d : int
-        Turns of the first segment towards the ends of the second.
-    a, b : int
-        Turns of the second segment towards the ends of the first.
 
     Examples
     --------
@@ -105,15 +93,6 @@ def _overlap(a, b, c, planes):
 @njit(cache=True)
 def cross(x, i, j, g, h, planes):
     """Whether the links i–j and g–h cross: 1, 0 or UNSURE.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n, 3)
-        Positions, padded with zeros.
-    i, j, g, h : int
-        Agents.
-    planes : int
-        1 in the plane and on a line, 3 in space.
 
     Examples
     --------
@@ -154,11 +133,6 @@ def cross(x, i, j, g, h, planes):
 def foot(p, a, b):
     """Distance of a point from a segment.
 
-    Parameters
-    ----------
-    p, a, b : ndarray, shape (3,)
-        The point and the segment's ends.
-
     Examples
     --------
     >>> foot(np.array([1.0, 2.0, 0.0]), np.zeros(3), np.array([3.0, 0.0, 0.0]))
@@ -178,11 +152,6 @@ def foot(p, a, b):
 @njit(cache=True)
 def between(a, b, c, d):
     """Distance of two segments that do not cross: at an end of one, or along their common normal.
-
-    Parameters
-    ----------
-    a, b, c, d : ndarray, shape (3,)
-        Ends of the one and of the other.
 
     Examples
     --------

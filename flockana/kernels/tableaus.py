@@ -36,11 +36,6 @@ class Tableau(NamedTuple):
 def tableau(method: str) -> Tableau:
     """That of DOP853, RK45, RK23, or RK4.
 
-    Parameters
-    ----------
-    method : str
-        Its name.
-
     Examples
     --------
     >>> classical = tableau("RK4")

@@ -24,13 +24,6 @@ def panel_edges(left: float, right: float, centre: float) -> FloatArray:
     Each panel is about as wide as its distance from the poles, so their number grows with the logarithm of the
     interval only.
 
-    Parameters
-    ----------
-    left, right : float
-        The interval.
-    centre : float
-        Real part of the poles.
-
     Examples
     --------
     >>> panel_edges(0.0, 4.0, 1.0).tolist()
@@ -47,23 +40,6 @@ def integral_panels(
     """Panels of the antiderivative of `function` that equals `value` at the edge `anchor`.
 
     It is summed from there to both sides: what rounds far away, where the integral may be large, stays there.
-
-    Parameters
-    ----------
-    function : callable
-        Analytic within each panel; takes and returns a one-dimensional array.
-    edges : ndarray, shape (K + 1,)
-        Rising panel boundaries.
-    anchor : float
-        One of the edges.
-    value : float
-        Value of the antiderivative there.
-
-    Returns
-    -------
-    ndarray, shape (K, 3 + NODES)
-        A row per panel: left end, right end, coefficients of the powers of x, which is −1 and 1 there. The series falls
-        faster than those powers' Chebyshev coefficients grow, so that nothing is lost by them.
 
     Examples
     --------
@@ -92,15 +68,6 @@ def series_nodes() -> FloatArray:
 
 def series_of(values: FloatArray) -> FloatArray:
     """Coefficients of the Chebyshev polynomials, of functions on [−1, 1].
-
-    Parameters
-    ----------
-    values : ndarray, shape (..., NODES)
-        Their values at `series_nodes`.
-
-    Returns
-    -------
-    ndarray, shape (..., NODES)
 
     Examples
     --------

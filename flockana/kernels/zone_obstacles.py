@@ -149,13 +149,7 @@ def push(distance, c, inside, outward, repulsive):
 
 @njit(cache=True)
 def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
-    """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`.
-
-    Parameters
-    ----------
-    x, h : ndarray, shape (m,)
-        Position and unit heading; `moving` is False where there is no heading, and then there is no zone either.
-    """
+    """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`."""
     m, buffer = x.size, choices.obstacle_zone == 1
     outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
     for k in range(m):

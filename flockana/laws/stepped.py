@@ -112,13 +112,7 @@ class Stepped(DiscreteLaw):
         return self.law.hamiltonian(t, q, p)
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The past: before the start the flock moved with its initial velocities.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """The past: before the start the flock moved with its initial velocities."""
         rows = (self.past_steps, *q.shape)
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
         back, still = self.dt * np.arange(1 - self.past_steps, 1)[:, None, None], np.zeros(rows)

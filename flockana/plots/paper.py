@@ -24,13 +24,6 @@ _SHAPE = 0.75  # height over width of each Axes
 def column_size(name: str, rows: int = 1, columns: int = 1) -> tuple[float, float]:
     """Return width and height in inches of a figure that fills a journal's column.
 
-    Parameters
-    ----------
-    name : str
-        One of `COLUMNS`.
-    rows, columns : int
-        Numbers of Axes below and beside each other.
-
     Examples
     --------
     >>> column_size("ieee"), column_size("elsevier-wide", 1, 2)

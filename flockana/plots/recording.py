@@ -18,18 +18,7 @@ if TYPE_CHECKING:
 
 
 def recorded_measure(seen: xarray.Dataset, name: str, *, ax: Axes | None = None) -> Axes:
-    """Draw one measure of a recording over time, its error as a band.
-
-    Parameters
-    ----------
-    seen : xarray.Dataset
-        Measures, as `Recording.metrics` returns them.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such measure.
-    """
+    """Draw one measure of a recording over time, its error as a band."""
     names = [str(key) for key in seen if f"{key}_error" in seen]
     values, ax = seen[ensure_known("measure", name, names)], ensure_axes(ax)
     t, error = seen["time"].values, seen[f"{name}_error"].values
@@ -45,13 +34,7 @@ def recorded_measure(seen: xarray.Dataset, name: str, *, ax: Axes | None = None)
 
 
 def residuals(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
-    """Draw the residual acceleration of each agent over time: darker is more.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        A recording held against a law.
-    """
+    """Draw the residual acceleration of each agent over time: darker is more."""
     ax = ensure_axes(ax)
     size = lengths(comparison.residual).T
     t = comparison.t

@@ -42,18 +42,7 @@ class Accelerations(NamedTuple):
 
 
 def accelerations(rec: Recording) -> Accelerations:
-    """Return the accelerations of a recording, the recorded ones if there are any.
-
-    Parameters
-    ----------
-    rec : Recording
-        The recording.
-
-    Raises
-    ------
-    ArgumentError
-        If there are too few samples, or agents are missing at all times.
-    """
+    """Return the accelerations of a recording, the recorded ones if there are any."""
     if rec.u is not None and rec.p is not None and not rec.gaps:
         return Accelerations("accelerations", rec.t, rec.u, np.zeros(rec.q.shape[:2]), (rec.t, rec.q, rec.p), None)
     noisy = rec.sd is not None and bool(np.max(rec.sd) > 0.0)

@@ -37,11 +37,6 @@ class Contribution:
 def contributions(law: Any) -> tuple[Contribution, ...]:
     """Return the parts of a law: one for each gain, or the law as a whole.
 
-    Parameters
-    ----------
-    law : Law
-        A continuous law.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

@@ -101,11 +101,6 @@ CODES: Mapping[str, Acceleration] = {"A": code_a, "B": code_b, "C": code_c, "D":
 def faulty_recording(name: str) -> Recording:
     """Return the recording of a faulty implementation, "A" to "D": positions and velocities every 0.02 time units.
 
-    Parameters
-    ----------
-    name : str
-        The implementation.
-
     Examples
     --------
     >>> from flockana.recorded.compare import compare

@@ -89,15 +89,7 @@ class Regression:
 
 
 def explained(data: Accelerations, law: Any) -> Explained:
-    """Return what a law explains of some accelerations, and what differs, forms first.
-
-    Parameters
-    ----------
-    data : Accelerations
-        The accelerations.
-    law : Law
-        A continuous law.
-    """
+    """Return what a law explains of some accelerations, and what differs, forms first."""
     work, parts = Regression(data, law), contributions(law)
     columns = [data.of(part.acts) for part in parts]
     residual = work.target - sum(part.stated * column for part, column in zip(parts, columns, strict=True))

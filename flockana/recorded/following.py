@@ -54,20 +54,7 @@ class Following:
 
 
 def following(rec: Recording, law: Any) -> Following:
-    """Return whether a recording follows a law: from sample to sample, or where noise is stated over windows.
-
-    Parameters
-    ----------
-    rec : Recording
-        Complete.
-    law : Law or DiscreteLaw
-        The law.
-
-    Raises
-    ------
-    ArgumentError
-        If there is one sample only, or noisy positions under a map.
-    """
+    """Return whether a recording follows a law: from sample to sample, or where noise is stated over windows."""
     if len(rec.t) < 2:
         raise ArgumentError("one sample shows no motion: expected two or more")
     if rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0)):

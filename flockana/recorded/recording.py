@@ -326,13 +326,6 @@ def ensure_recording(rec: Any) -> Recording:
 def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
     """Return the samples of a run as a recording.
 
-    Parameters
-    ----------
-    run : Trajectory
-        The run.
-    **accuracy
-        As of `Recording`.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

@@ -34,11 +34,6 @@ def kinematic_scheme(rec: Recording) -> Found | None:
 
     Explicit Euler has q' = q + h p, semi-implicit Euler q' = q + h p', a Taylor step q' = q + h (p + p')/2; whatever
     the law is.
-
-    Parameters
-    ----------
-    rec : Recording
-        Complete, with velocities.
     """
     if rec.p is None or rec.gaps or not _even(rec):
         return None

@@ -83,17 +83,7 @@ def windows(rec: Recording, duration: float) -> list[Window]:
 
 
 def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> Matched:
-    """Return the parameters by which solutions of a law match windows of samples best, the starts found with them.
-
-    Parameters
-    ----------
-    parts : list of Window
-        The windows.
-    with_values : callable
-        The law with some parameters.
-    first : ndarray, shape (P,)
-        Where the search begins; what is positive stays so.
-    """
+    """Return the parameters by which solutions of a law match windows of samples best, the starts found with them."""
     theta, starts, damping = first.copy(), [part.start for part in parts], 0.0
     now = _evaluated(parts, with_values, theta, starts)
     if now is None:
@@ -134,15 +124,7 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
 
 
 def match_start(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
-    """Return the start from which a law's solution matches a window best, and the residuals over their deviations.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    part : Window
-        The samples.
-    """
+    """Return the start from which a law's solution matches a window best, and the residuals over their deviations."""
     start, now = part.start, part.residual(law, part.start, [])
     for _ in range(_ROUNDS):
         moved = np.linalg.lstsq(now.by_start, now.residual, rcond=None)[0]
@@ -207,21 +189,7 @@ def _follower(corner: FloatArray, along_basis: FloatArray, across: FloatArray) -
 def along(
     law: Any, t: FloatArray, start: FloatArray, shape: tuple[int, ...], nearby: list[tuple[Any, Any, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the places of a law's solution (K, n m), and their slopes in the start and in parameters.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    t : ndarray, shape (K,)
-        Times.
-    start : ndarray, shape (2 n m,)
-        Positions and velocities at the first.
-    shape : tuple of int
-        (n, m).
-    nearby : list of (law, law, float)
-        For each parameter the law with more and with less of it, and the difference.
-    """
+    """Return the places of a law's solution (K, n m), and their slopes in the start and in parameters."""
     size = start.size // 2
     q, p = start[:size].reshape(shape).copy(), start[size:].reshape(shape).copy()
     slope = np.concatenate([np.eye(2 * size), np.zeros((2 * size, len(nearby)))], axis=1)

@@ -41,17 +41,6 @@ class _Filtered(NamedTuple):
 def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
     """Return the smoothing spline through each series, with the largest intensity of its jerk that they allow.
 
-    Parameters
-    ----------
-    t : ndarray, shape (T,)
-        Sample times.
-    y : ndarray, shape (T, K)
-        Series; NaN in gaps.
-    noise : ndarray, shape (T, K), optional
-        Standard deviation of each sample; estimated, one for all, if it is not given.
-    groups : int
-        How many series in a row share an intensity: the coordinates of an agent.
-
     Examples
     --------
     >>> t = np.linspace(0.0, 1.0, 21)

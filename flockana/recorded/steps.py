@@ -35,15 +35,6 @@ def predicted(
 ) -> tuple[FloatArray, FloatArray]:
     """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m).
 
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        The law: integrated by the classical Runge-Kutta scheme, or stepped.
-    t, q, p : ndarray
-        The samples.
-    refine : int
-        Factor of the number of integration steps.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

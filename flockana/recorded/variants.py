@@ -27,11 +27,6 @@ class Variant:
 def variants(law: Any) -> tuple[Variant, ...]:
     """Return the forms to try in place of a law's own.
 
-    Parameters
-    ----------
-    law : Law
-        The law that a recording is compared with.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

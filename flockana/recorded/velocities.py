@@ -39,18 +39,7 @@ class Motions:
 
 
 def motions(rec: Recording) -> Motions:
-    """Return the smoothing splines of a recording; its noise is the stated one, else the likeliest.
-
-    Parameters
-    ----------
-    rec : Recording
-        The recording; of a bound, half of it counts as standard deviation.
-
-    Raises
-    ------
-    ArgumentError
-        If an agent has fewer than four samples.
-    """
+    """Return the smoothing splines of a recording; its noise is the stated one, else the likeliest."""
     return rec.cached("motions", lambda: _motions(rec))
 
 

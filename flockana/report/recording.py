@@ -43,21 +43,7 @@ def recording_page(
     verdicts: Sequence[Verdict] = (),
     notes: Iterable[str] = (),
 ) -> str:
-    """Return a page that needs no other file.
-
-    Parameters
-    ----------
-    rec : Recording
-        The recording.
-    seen : xarray.Dataset
-        Its measures.
-    trajectory : Trajectory, optional
-        What the player shows.
-    comparison, fitted, verdicts : optional
-        What it was held against.
-    notes : iterable of str
-        Sentences at the top.
-    """
+    """Return a page that needs no other file."""
     title = f"Recording {rec.source}".strip()
     parts = [f"<h1>{escape(title)}</h1>", f"<p>{escape(repr(rec).strip('<>'))}.</p>"]
     parts += [f"<p>{escape(note)}</p>" for note in notes]

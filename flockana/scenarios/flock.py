@@ -155,11 +155,6 @@ def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = N
 def as_scenario(given: Any, seed: int = 0) -> Scenario:
     """Return a scenario from its name, a flock, or itself.
 
-    Raises
-    ------
-    ArgumentError
-        On anything else.
-
     Examples
     --------
     >>> as_scenario("hexagon").name

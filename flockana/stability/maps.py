@@ -218,19 +218,6 @@ def stepped_equation(
 ) -> tuple[Any, Any]:
     """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse.
 
-    Parameters
-    ----------
-    stiffness, damping : sparse array, shape (n m, n m)
-        K and D of the law that is stepped.
-    dt : float
-        Step h.
-    factor : float
-        f of q' = q + h p + f h² u.
-    m : int
-        Dimension.
-    in_place : bool
-        Agents move one after the other, and each sees those before it already moved.
-
     Examples
     --------
     >>> from scipy.sparse import csr_array
@@ -258,15 +245,7 @@ def _moved_before(matrix: Any, m: int) -> Any:
 
 
 def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
-    """Linearisation of a map q' = q + h p + f h² u, p' = p + h u from that of the law that it steps.
-
-    Parameters
-    ----------
-    law : DiscreteLaw
-        With `position_factor`.
-    flow : Linearisation
-        Of the continuous law.
-    """
+    """Linearisation of a map q' = q + h p + f h² u, p' = p + h u from that of the law that it steps."""
     q, (n, m), size = flow.q, flow.q.shape, flow.q.size
     ensure_fits("A", flow.A_sparse.shape, "linearise fewer agents")
     h, f = law.dt, float(law.position_factor or 0.0)
@@ -287,22 +266,7 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
-    """Linearisation of a map of headings about parallel motion: its net then stays as it is.
-
-    Parameters
-    ----------
-    law : DiscreteLaw
-        With `averaging_matrix`.
-    q, p : ndarray, shape (n, 2)
-        Positions, and one velocity of all agents.
-    t : float
-        Time.
-
-    Raises
-    ------
-    ArgumentError
-        If velocities differ, or two agents are at the edge of each other's circle, where the map jumps.
-    """
+    """Linearisation of a map of headings about parallel motion: its net then stays as it is."""
     if not p.any():
         raise ArgumentError(f"{type(law).__name__} is a map of its own: expected the velocities p of a parallel motion")
     law.check_start(q, p)

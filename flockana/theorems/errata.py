@@ -93,29 +93,12 @@ def _claim(text: str) -> tuple[str, str]:
 
 
 def erratum_of(theorem: str) -> Erratum | None:
-    """Return the erratum that a theorem checks, if it checks one.
-
-    Parameters
-    ----------
-    theorem : str
-        Its id.
-    """
+    """Return the erratum that a theorem checks, if it checks one."""
     return next((item for item in errata() if item.id == theorem), None)
 
 
 def printed(theorem: str) -> str:
-    """Return what a source prints, which is the title of the theorem that checks it.
-
-    Parameters
-    ----------
-    theorem : str
-        Id of an erratum.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is none.
-    """
+    """Return what a source prints, which is the title of the theorem that checks it."""
     if (item := erratum_of(theorem)) is None:
         raise UnknownNameError("erratum", theorem, [item.id for item in errata()])
     return f"{item.printed[:1].upper()}{item.printed[1:]} (as printed)"

@@ -16,13 +16,7 @@ _SHORT = 60  # characters of a statement that is quoted; a longer one is named
 
 
 def headline(verdict: Verdict) -> str:
-    """Return the counts of the author's claims by status, then each correction and extension with its status.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        On any case.
-    """
+    """Return the counts of the author's claims by status, then each correction and extension with its status."""
     by_author = _counts(verdict, verdict.main_claims)
     others = sorted(verdict.further_claims, key=lambda claim: claim.by)
     return "; ".join(
@@ -56,11 +50,6 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
 def does_not_hold(need: str) -> str:
     """Say of a hypothesis that it does not hold; a name in words is quoted.
 
-    Parameters
-    ----------
-    need : str
-        Name of the hypothesis.
-
     Examples
     --------
     >>> does_not_hold("H(0) < c*"), does_not_hold("connected")
@@ -70,13 +59,7 @@ def does_not_hold(need: str) -> str:
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
-    """Return claims with their names; neighbours that are vacuous for one reason as one, with all their names.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-        In the order in which they are shown.
-    """
+    """Return claims with their names; neighbours that are vacuous for one reason as one, with all their names."""
 
     def reason(claim: Claim) -> tuple[str, str]:
         silent = claim.status == "vacuous" and claim.computed is None

@@ -160,13 +160,7 @@ class Observed(ResultCache):
         return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
-        """Return both runs as seen from another frame, in which no distance between agents is another.
-
-        Parameters
-        ----------
-        change : callable
-            Of one run.
-        """
+        """Return both runs as seen from another frame, in which no distance between agents is another."""
         given, run, other = (change(each) for each in (self.given, self.run, self.other))
         return replace(self, given=given, run=run, other=other)
 
@@ -185,15 +179,7 @@ class Observed(ResultCache):
     # observables ---------------------------------------------------------------------------------------------------
 
     def series(self, observable: Callable[[Trajectory], Any], *, floor: Any = 0.0) -> Enclosure:
-        """Return an observable over time, enclosed by its own difference between the two runs.
-
-        Parameters
-        ----------
-        observable : callable
-            Of a run: the series, shape (T, ...).
-        floor : float or ndarray
-            Least half width: rounding, and what the solver allows.
-        """
+        """Return an observable over time, enclosed by its own difference between the two runs."""
         best, loose = (np.asarray(observable(run), dtype=np.float64) for run in (self.run, self.other))
         if self.doubt or len(best) != len(loose):
             return Enclosure.around(best, np.inf)
@@ -218,13 +204,7 @@ class Observed(ResultCache):
         return ()
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> Any:
-        """Return by how much an observable differs between states that are known alike: 0 of a run.
-
-        Parameters
-        ----------
-        observable : callable
-            Of a run.
-        """
+        """Return by how much an observable differs between states that are known alike: 0 of a run."""
         return 0.0
 
     @cached_property
@@ -270,13 +250,7 @@ class Observed(ResultCache):
         return self.velocity_spread.square() / (2.0 * self.n)
 
     def distances(self, i: Any, j: Any) -> Enclosure:
-        """Return distances of pairs of agents at each sample, shape (T, pairs).
-
-        Parameters
-        ----------
-        i, j : int array
-            The pairs.
-        """
+        """Return distances of pairs of agents at each sample, shape (T, pairs)."""
         apart = lengths(self.run.q[:, j] - self.run.q[:, i])
         return Enclosure.around(apart, self.shape_error[:, i] + self.shape_error[:, j]).clip(0.0)
 
@@ -288,13 +262,7 @@ class Observed(ResultCache):
     # spans ---------------------------------------------------------------------------------------------------------
 
     def known_samples(self, known: Any) -> int:
-        """Return how many samples from the start on are known, without a gap; 0 if they span less than a law time.
-
-        Parameters
-        ----------
-        known : bool array, shape (T,)
-            Whether something is known at each sample.
-        """
+        """Return how many samples from the start on are known, without a gap; 0 if they span less than a law time."""
         unknown = np.flatnonzero(~np.asarray(known))
         count = int(unknown[0]) if unknown.size else len(self.t)
         whole = count == len(self.t) and count > 1
@@ -308,11 +276,6 @@ class Observed(ResultCache):
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
     """Return a run of a law as observed: what errata show their cases on.
-
-    Parameters
-    ----------
-    law, q0, p0, t_span, **options
-        As `flockana.simulate` takes them.
 
     Examples
     --------

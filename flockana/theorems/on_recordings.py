@@ -120,28 +120,7 @@ def verify_recording(
     r: float | None = None,
     subject: str = "",
 ) -> Verdict:
-    """Return the verdict of a theorem on a recording, under a law or, of definitions about samples, without one.
-
-    Parameters
-    ----------
-    item : Theorem
-        The theorem, about motion.
-    rec : Recording
-        The recording, without gaps.
-    tolerances : Tolerances
-        Thresholds.
-    law : Law or DiscreteLaw, optional
-        The law that it may follow.
-    d, r : float, optional
-        Without a law: scale and range.
-    subject : str
-        A name for the case.
-
-    Raises
-    ------
-    ArgumentError
-        If the theorem is not about motion, needs a law, or the recording has gaps.
-    """
+    """Return the verdict of a theorem on a recording, under a law or, of definitions about samples, without one."""
     if item.kind != "trajectory":
         raise ArgumentError(f"{item.id} is not about motion: expected a theorem that is checked on a run")
     rec.ensure_complete("a verdict")
@@ -214,17 +193,7 @@ def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
 
 
 def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedRecording:
-    """Return the law's solution from the recorded start, with enclosures that hold the recording.
-
-    Parameters
-    ----------
-    rec : Recording
-        Complete, with two samples or more.
-    law : Law or DiscreteLaw
-        The law.
-    follow : Following
-        The start, and the velocities at the samples.
-    """
+    """Return the law's solution from the recorded start, with enclosures that hold the recording."""
     run = simulate(law, follow.q0, follow.p0, (float(rec.t[0]), float(rec.t[-1])), t_eval=rec.t)
     seen = Observed.of(run)
     p = np.broadcast_to(follow.p, rec.q.shape)

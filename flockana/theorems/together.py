@@ -68,15 +68,6 @@ def _title(name: str) -> str:
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
     """Return the ids of theorems whose law hypothesis a law meets; errata are left out.
 
-    Parameters
-    ----------
-    law : Law or DiscreteLaw
-        The law of motion.
-    q0, p0 : ndarray, shape (n, m)
-        A state.
-    t0 : float
-        Its time.
-
     Examples
     --------
     >>> from flockana.laws.cucker_smale import CuckerSmale
@@ -98,17 +89,6 @@ def verify_together(
     run: Trajectory, *, tolerances: Tolerances | None = None, subject: str = "", progress: bool = False
 ) -> Verdicts:
     """Check every theorem about the law of a run.
-
-    Parameters
-    ----------
-    run : Trajectory
-        A run.
-    tolerances : Tolerances, optional
-        Thresholds.
-    subject : str
-        A name for the case.
-    progress : bool
-        Show a progress bar.
 
     Examples
     --------

@@ -24,17 +24,6 @@ def named_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p and u among arrays by name.
 
-    Parameters
-    ----------
-    arrays : mapping of str to array_like
-        As they are in a file.
-    where : str
-        The file, for messages.
-    columns : mapping, optional
-        Their names, by "t", "q", "p", "u".
-    dt : float, optional
-        Interval between samples, where there are no times.
-
     Examples
     --------
     >>> sorted(named_arrays({"time": [0.0], "pos": [[[1.0]]], "mass": 2.0}, "it.npz"))

@@ -77,18 +77,6 @@ def coordinate(name: str) -> tuple[str, int] | None:
 def layout_of(names: Sequence[Any], where: str) -> Layout:
     """Return the layout of a table by its header.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The header.
-    where : str
-        The file, for messages.
-
-    Raises
-    ------
-    ArgumentError
-        If no coordinates are found, or axes are missing.
-
     Examples
     --------
     >>> layout_of(["time", "id", "x", "y", "mass"], "flock.csv").long["q"]

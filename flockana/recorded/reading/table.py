@@ -24,17 +24,6 @@ def table_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p, u and ids of a table, as `Recording` takes them.
 
-    Parameters
-    ----------
-    frame : pandas.DataFrame
-        The table.
-    columns : mapping, optional
-        Columns by what they hold; by default by their names.
-    dt : float, optional
-        Time of a frame, where the table has frames and no times.
-    clock : float, optional
-        Seconds in one time unit, where times are dates.
-
     Examples
     --------
     >>> import pandas as pd

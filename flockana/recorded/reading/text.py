@@ -17,20 +17,7 @@ _QUOTE, _NEWLINE = ord('"'), ord("\n")
 
 
 def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
-    """Return a table as a pandas frame: delimiter by its first line, header by its names or `names`.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    names : sequence of str, optional
-        Names of the columns of a file without a header.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read, is no text, has no header, or a row has other columns than the first.
-    """
+    """Return a table as a pandas frame: delimiter by its first line, header by its names or `names`."""
     import pandas as pd
 
     data = _bytes(path)

@@ -98,11 +98,6 @@ def root_enclosure(share: Fraction) -> Any:
 
     Of another λ the root is λ times this one, at τ over λ: λτ alone counts.
 
-    Parameters
-    ----------
-    share : Fraction
-        Of the margin.
-
     Examples
     --------
     >>> bool(root_enclosure(Fraction(99, 100)).real < 0), bool(root_enclosure(Fraction(101, 100)).real > 0)

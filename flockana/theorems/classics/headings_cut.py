@@ -14,13 +14,6 @@ _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turn
 def averaged(headings: tuple[Fraction, ...], zero: Fraction = Fraction(0)) -> Fraction:
     """The mean of headings in turns, each counted in [zero, zero + 1), as a direction in [0, 1).
 
-    Parameters
-    ----------
-    headings : tuple of Fraction
-        In turns.
-    zero : Fraction
-        Direction from which they are counted.
-
     Examples
     --------
     >>> averaged((Fraction(1, 8), Fraction(7, 8)))

@@ -109,23 +109,6 @@ def never_rises(
 
     A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state.
     Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
-
-    Parameters
-    ----------
-    seen : Observed
-        The run.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    since : int
-        First sample.
-    rate, cancels : callable
-        Of a run: dH/dt in closed form, and the magnitude of those of its terms that may cancel.
-    squares : bool
-        Whether all terms of the rate are squares.
-    name : str
-        Of the claim.
-    proof : str, optional
-        Id of its proof.
     """
     cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
     share = falling_share(seen, rate, cancels)
