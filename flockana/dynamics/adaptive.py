@@ -19,7 +19,7 @@ from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.sample import Sample, Samples, Tally, finite, has_energy
 from flockana.dynamics.stepping import ONE_STEP, Balance, Check, EncounterCheck, FiniteEnergy, Flow, Frame, Stepper
 from flockana.dynamics.switches import Switches
-from flockana.dynamics.tolerance import Floors
+from flockana.dynamics.tolerance import Control
 from flockana.kernels.advance import TOO_SMALL
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
@@ -33,21 +33,20 @@ def adaptive(
     p0: FloatArray,
     t_span: tuple[float, float],
     method: str,
-    rtol: float,
-    floor: Floors,
+    control: Control,
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample | Samples]:
     """Samples and steps of a run, each kept as soon as it is made.
 
-    A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more than
-    `rtol` of it, is made again, and shorter. A law with jumps is integrated from switch to switch; one that slides ends
-    the run. `tally.notes` gets the numbers of steps made again and of switches.
+    A step that leaps over an encounter, or (with a method that has no past) breaks the energy's balance by more
+    than the relative tolerance of it, is made again, and shorter. A law with jumps is integrated from switch to switch;
+    one that slides ends the run. `tally.notes` gets the numbers of steps made again and of switches.
     """
     switches = Switches(law, q0) if isinstance(law, SwitchedLaw) and law.located else None
-    engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, rtol, floor)
+    engine = None if switches is not None else engine_of(law, q0, p0, t_span[0], method, control)
     if engine is None:
-        yield from _by_scipy(law, q0, p0, t_span, method.removeprefix(SCIPY), rtol, floor, keep, tally, switches)
+        yield from _by_scipy(law, q0, p0, t_span, method.removeprefix(SCIPY), control, keep, tally, switches)
         return
     ends, due = np.array([t_span[1]]), np.empty(0) if keep is None else keep
     yield from stepped(engine, q0, p0, ends, due, keep, tally, lambda *at: _gave_up(method, *at))
@@ -59,8 +58,7 @@ def _by_scipy(
     p0: FloatArray,
     t_span: tuple[float, float],
     method: str,
-    rtol: float,
-    floor: Floors,
+    control: Control,
     keep: FloatArray | None,
     tally: Tally,
     switches: Switches | None,
@@ -68,8 +66,8 @@ def _by_scipy(
     """The same by one of scipy's solvers, stepped as `solve_ivp` does."""
     flow: Flow = law.flow if switches is None else switches.flow
     frame = Frame.of(t_span[0], q0, p0, energetic=has_energy(law, t_span[0], q0, p0))
-    solver = _solver(frame, _counted(flow, tally, method), q0, p0, t_span, method, rtol, floor)
-    checks = _checks(law, frame, method, rtol, floor) if switches is None else ()
+    solver = _solver(frame, _counted(flow, tally, method), q0, p0, t_span, method, control)
+    checks = _checks(law, frame, method, control) if switches is None else ()
 
     def work(y: FloatArray) -> dict[str, FloatArray]:
         return {"work": np.array(y[-1])} if frame.energetic else {}
@@ -142,21 +140,20 @@ def _solver(
     p0: FloatArray,
     t_span: tuple[float, float],
     method: str,
-    rtol: float,
-    floor: Floors,
+    control: Control,
 ) -> Stepper:
     """One of scipy's solvers at the start of a run."""
     sizes = (frame.size, frame.size, int(frame.energetic))
-    atol = np.concatenate([np.full(size, value) for size, value in zip(sizes, floor, strict=True)])
-    return Stepper(method, frame, flow, t_span[0], frame.start(q0, p0), t_span[1], rtol=rtol, atol=atol)
+    atol = np.concatenate([np.full(size, value) for size, value in zip(sizes, control.floor, strict=True)])
+    return Stepper(method, frame, flow, t_span[0], frame.start(q0, p0), t_span[1], control=control, atol=atol)
 
 
-def _checks(law: Law, frame: Frame, method: str, rtol: float, floor: Floors) -> tuple[Check, ...]:
+def _checks(law: Law, frame: Frame, method: str, control: Control) -> tuple[Check, ...]:
     """What every step of a law without jumps must stand up to."""
     encounters = Encounters.of(law, frame.shape[0])
     checks: list[Check] = [EncounterCheck(encounters)] if encounters.any else []
     if frame.energetic:
-        checks.append(Balance(law, rtol, floor.work) if method in ONE_STEP else FiniteEnergy(law))
+        checks.append(Balance(law, control.rtol, control.floor.work) if method in ONE_STEP else FiniteEnergy(law))
     return tuple(checks)
 
 

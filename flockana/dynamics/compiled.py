@@ -17,7 +17,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import Encounters, at_a_pole
 from flockana.dynamics.sample import Sample, Samples, Tally
 from flockana.dynamics.stepping import BALANCED, ONE_STEP, Frame
-from flockana.dynamics.tolerance import Floors
+from flockana.dynamics.tolerance import Control, Floors
 from flockana.jit import thawed
 from flockana.kernels.advance import CROWDED, RUNNING, SINGULAR, Around, Kept, Method, advance
 from flockana.kernels.blocks import BLOCK
@@ -30,14 +30,13 @@ from flockana.laws.terms.term import Compiled
 METHODS = ("DOP853", "RK45", "RK23", "RK4")  # that there are compiled
 _STEPS, _NUMBERS = 512, 6_000_000  # in one call, at most: steps, and numbers kept of them
 _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
-EXACT = Floors(0.0, 0.0, 0.0)
+EXACT = Control(0.0, Floors(0.0, 0.0, 0.0))
 
 
 class StepTolerances(NamedTuple):
-    """Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by."""
+    """What a step may be off by: by the error's estimate, and (share of the energy, energy) in its balance."""
 
-    rtol: float
-    floor: Floors
+    control: Control
     balance: tuple[float, float]
 
 
@@ -96,8 +95,9 @@ class Engine:
         shell = float(met.shell), float(met.skirt)
         around = Around(thawed(met.radii), float(met.far), met.bodies is not None, shell, thawed(met.poles))
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in self.method]
-        floor, balance = (tuple(float(x) for x in each) for each in (self.allowed.floor, self.allowed.balance))
-        given += [float(self.allowed.rtol), floor, balance]
+        control, balance = self.allowed
+        floor = tuple(float(x) for x in control.floor)
+        given += [float(control.rtol), floor, float(control.longest), tuple(float(x) for x in balance)]
         return system, around, Method(*given)
 
     def run(self, now: Point, stops: FloatArray, due: FloatArray, ledger: FloatArray) -> tuple[Any, ...]:
@@ -121,8 +121,7 @@ def engine_of(
     p0: FloatArray,
     t0: float,
     method: str,
-    rtol: float = 0.0,
-    floor: Floors = EXACT,
+    control: Control = EXACT,
 ) -> Engine | None:
     """The law and the method, compiled; None where one has no such form, or pairs are too many (RK4: no tolerances)."""
     form = law.compiled(q0.shape[1]) if method in METHODS else None
@@ -132,9 +131,9 @@ def engine_of(
     bodies = 0 if encounters.bodies is None else len(encounters.bodies.kinds)
     if sum(term.guard is not None for term in form.terms) != bodies:
         return None  # obstacles that no term, or more than one, keeps from being leapt over
-    balance = (BALANCED * rtol, BALANCED * floor.work) if method in ONE_STEP else (0.0, 0.0)
+    balance = (BALANCED * control.rtol, BALANCED * control.floor.work) if method in ONE_STEP else (0.0, 0.0)
     frame = Frame.of(t0, q0, p0, energetic=True)
-    engine = Engine(law, form, frame, tableau(method), encounters, StepTolerances(rtol, floor, balance))
+    engine = Engine(law, form, frame, tableau(method), encounters, StepTolerances(control, balance))
     return engine if engine.fits(q0, p0) else None
 
 

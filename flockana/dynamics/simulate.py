@@ -32,7 +32,7 @@ from flockana.dynamics.first_call import check_first_call
 from flockana.dynamics.iterate import count_steps, discrete
 from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Samples, Tally, copied, start_sample
-from flockana.dynamics.tolerance import error_floor
+from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
@@ -52,8 +52,9 @@ def simulate(
     *,
     method: str = "DOP853",
     rtol: float = 1e-8,
-    atol: float | None = None,
+    atol: float | tuple[float, float] | None = None,
     dt: float | None = None,
+    max_step: float | None = None,
     t_eval: Any = None,
     progress: bool = False,
     watch: Callable[[Sample], object] | None = None,
@@ -80,11 +81,14 @@ def simulate(
         Relative tolerance of the adaptive solvers: relative to the state as seen from the mean motion of the start, so
         that neither the origin nor a common drift matters. The default keeps energy residuals well below 1e-6 of the
         energy in a run; scipy's own 1e-3 is never used.
-    atol : float, optional
+    atol : float or (float, float), optional
         Absolute tolerance of positions, a length; velocities and energies are allowed the same share of the law's own
-        speed and energy. By default a hundredth of `rtol` times the law's own length.
+        speed and energy. Or a pair: of positions, a length, and of velocities, a speed. By default a hundredth of
+        `rtol` times the law's own length.
     dt : float, optional
         Step of RK4 and of wrapped laws (required there, meaningless elsewhere). RK4's last step ends on time.
+    max_step : float, optional
+        Longest step of the adaptive solvers: what is narrower than their steps may be leapt over without a trace.
     t_eval : array_like, optional
         Rising times at which to keep the state; by default every step that the integrator takes. Bounds at all times,
         such as `Trajectory.min_distance`, rest on the steps in either case.
@@ -122,8 +126,8 @@ def simulate(
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
     tally, how = Tally(), dict[str, Any]()
     if isinstance(law, DiscreteLaw):
-        if dt is not None or method != "DOP853":
-            raise ArgumentError("a discrete law brings its own step: expected neither dt nor method")
+        if dt is not None or max_step is not None or method != "DOP853":
+            raise ArgumentError("a discrete law brings its own step: expected neither dt, max_step nor method")
         method, how = "discrete", {"dt": _ensure_step("law.dt", law.dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples: Iterator[Sample | Samples]
@@ -131,15 +135,16 @@ def simulate(
             samples = followed(law, q0, p0, t_span, keep, tally)
         else:
             samples = discrete(law, q0, p0, t_span, keep, tally)
-    elif _ensure_method(method, dt) == "RK4":
+    elif _ensure_method(method, dt, max_step) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
         samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
     else:
-        how = {"rtol": ensure_positive("rtol", rtol), "atol": None if atol is None else ensure_positive("atol", atol)}
+        how = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
         floor = error_floor(law, q0, p0, t_span, **how)
-        samples = adaptive(law, q0, p0, t_span, method, how["rtol"], floor, keep, tally)
-        how["floors"] = list(floor)
+        longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
+        samples = adaptive(law, q0, p0, t_span, method, Control(how["rtol"], floor, longest), keep, tally)
+        how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
@@ -196,10 +201,12 @@ def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, 
         ensure_fits(f"a sample at each step of {dt:g}", (samples, 3, *q0.shape), "take longer steps, or give t_eval")
 
 
-def _ensure_method(method: str, dt: float | None) -> str:
+def _ensure_method(method: str, dt: float | None, max_step: float | None) -> str:
     ensure_known("method", method, METHODS)
     if method == "RK4" and dt is None:
         raise ArgumentError("dt = None: method RK4 needs a fixed step, such as dt=0.005")
+    if method == "RK4" and max_step is not None:
+        raise ArgumentError(f"max_step = {max_step!r}: RK4 takes steps of dt; make dt shorter")
     if method != "RK4" and dt is not None:
         raise ArgumentError(f"dt = {dt!r}: {method} chooses its own steps; give t_eval to choose output times")
     return method

@@ -15,6 +15,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import Encounters, State, at_a_pole
+from flockana.dynamics.tolerance import Control
 from flockana.kernels.advance import FALLS, HALVINGS, HELPS, PATIENCE, ROUNDINGS
 from flockana.laws.law import Law
 
@@ -196,8 +197,8 @@ class Stepper:
         Start and end.
     y : ndarray, shape (N,)
         The start.
-    rtol : float
-        Relative tolerance.
+    control : Control
+        Relative tolerance and longest step.
     atol : ndarray, shape (N,)
         Absolute tolerances.
     """
@@ -211,10 +212,11 @@ class Stepper:
         y: FloatArray,
         end: float,
         *,
-        rtol: float,
+        control: Control,
         atol: FloatArray,
     ) -> None:
-        self.method, self.frame, self.end, self.rtol, self.atol = method, frame, end, rtol, atol
+        self.method, self.frame, self.end, self.atol = method, frame, end, atol
+        self.rtol, self.longest = control.rtol, control.longest
         self.redone, self.message = 0, ""
         self.begin(flow, t, y)
 
@@ -228,9 +230,9 @@ class Stepper:
         """A new solver from here until some time, whose first step is as long as that if it can be."""
         import scipy.integrate
 
-        options: dict[str, Any] = {"rtol": self.rtol, "atol": self.atol}
+        options: dict[str, Any] = {"rtol": self.rtol, "atol": self.atol, "max_step": self.longest}
         if first is not None and self.method in ONE_STEP:
-            options["first_step"] = min(first, until - t)
+            options["first_step"] = min(first, until - t, self.longest)
         self._solver = getattr(scipy.integrate, self.method)(self._rhs, t, y, until, **options)
 
     def _moment(self) -> Moment:

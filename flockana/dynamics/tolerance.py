@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
+from flockana.base.units import times
 from flockana.laws.law import Law
+
+Atol = float | tuple[float, float] | None  # a length, (length, speed), or by default a share of rtol
 
 FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go
@@ -24,10 +29,50 @@ class Floors(NamedTuple):
     work: float
 
 
+class Control(NamedTuple):
+    """How an adaptive solver chooses its steps: relative tolerance, absolute ones, and the longest step."""
+
+    rtol: float
+    floor: Floors
+    longest: float = np.inf
+
+
+def ensure_atol(name: str, value: Any) -> Atol:
+    """Return an absolute tolerance: a length, a pair (length, speed), or None.
+
+    Examples
+    --------
+    >>> ensure_atol("atol", [1e-9, 1e-8])
+    (1e-09, 1e-08)
+    """
+    if value is None or np.ndim(value) == 0:
+        return None if value is None else ensure_positive(name, value)
+    if np.shape(value) != (2,):
+        raise ArgumentError(f"{name} = {value!r}: expected a length, or a pair (length, speed)")
+    return ensure_positive(f"{name}[0]", value[0]), ensure_positive(f"{name}[1]", value[1])
+
+
+def options_in_units(options: Mapping[str, Any], length: float, time: float) -> dict[str, Any]:
+    """Return options of `simulate`, or the statistics of a run, in other units.
+
+    Examples
+    --------
+    >>> options_in_units({"rtol": 1e-8, "atol": (1.0, 1.0), "dt": 1.0}, 3.0, 2.0)
+    {'rtol': 1e-08, 'atol': (3.0, 1.5), 'dt': 2.0}
+    """
+    speed = length / time
+    factors = {"t_eval": time, "dt": time, "max_step": time, "atol": length}
+    scaled = {key: times(value, factors[key]) if key in factors else value for key, value in options.items()}
+    for key, powers in (("atol", (length, speed)), ("floors", (length, speed, speed**2))):
+        if isinstance(options.get(key), tuple | list):
+            scaled[key] = tuple(value * factor for value, factor in zip(options[key], powers, strict=True))
+    return scaled
+
+
 def error_floor(
-    law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: float | None
+    law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: Atol
 ) -> Floors:
-    """Absolute tolerances: shares of the law's own scales, `atol` of its length or by default a hundredth of `rtol`.
+    """Absolute tolerances: a pair as it is, a length and the law's own speed, or a hundredth of `rtol`.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
@@ -38,8 +83,12 @@ def error_floor(
         duration = t_span[1] - t_span[0]
         extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
         scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
-    share = FLOOR * rtol if atol is None else atol / scales.length
-    length, speed, energy = share * scales.length, share * scales.speed, share * len(q0) * scales.energy
+    if isinstance(atol, tuple):
+        length, speed = atol
+    else:
+        length = FLOOR * rtol * scales.length if atol is None else atol
+        speed = length / scales.length * scales.speed
+    energy = min(length / scales.length, speed / scales.speed) * len(q0) * scales.energy
     reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))
     blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
     length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)

@@ -18,11 +18,11 @@ from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.seals import replace_sealed
 from flockana.base.tables import facts_html
-from flockana.base.units import rescale, times
+from flockana.base.units import rescale
 from flockana.base.vectors import centres, lengths
 from flockana.dynamics import saved
 from flockana.dynamics.between import Between, Course, merged
-from flockana.dynamics.tolerance import Floors, rounding_floors
+from flockana.dynamics.tolerance import Floors, ensure_atol, options_in_units, rounding_floors
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
@@ -102,9 +102,10 @@ class Trajectory(ResultCache):
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected {_KINDS[name]}")
         ensure_choice("status", self.status, STATUSES)
-        for name in ("rtol", "atol", "dt"):
+        for name in ("rtol", "dt", "max_step"):
             if self.stats.get(name) is not None:
                 ensure_positive(f"stats[{name!r}]", self.stats[name])
+        ensure_atol("stats['atol']", self.stats.get("atol"))
         try:
             shape = np.shape(self.q)
             others = [np.shape(each) for each in (self.t, self.p, self.u)]
@@ -170,11 +171,7 @@ class Trajectory(ResultCache):
             for name, series in self.extra.items()
         }
         q, p, u = self.q * length, self.p * (length / time), self.u * (length / time**2)
-        units = {"dt": time, "atol": length}
-        stats = {key: times(value, units[key]) if key in units else value for key, value in self.stats.items()}
-        if "floors" in stats:
-            factors = length, length / time, (length / time) ** 2
-            stats["floors"] = [value * factor for value, factor in zip(stats["floors"], factors, strict=True)]
+        stats = options_in_units(self.stats, length, time)
         law = rescale(self.law, length=length, time=time)
         between = None if self.between is None else rescale(self.between, length=length, time=time)
         return replace_sealed(self, t=self.t * time, q=q, p=p, u=u, law=law, extra=extra, stats=stats, between=between)

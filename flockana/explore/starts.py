@@ -26,7 +26,7 @@ from flockana.theorems import Tolerances
 _FLOCK = 50  # agents of a law that is tried
 _SPREAD, _SPEED = 0.9, 0.2  # side of the square over √n lengths of the law; speeds over the length per time unit
 _SPANS = {"Algorithm1": 20.0, "Algorithm2": 20.0, "Algorithm3": 40.0, "CuckerSmale": 10.0, "DeadZoneFlocking": 10.0}
-_OPTIONS = ("method", "rtol", "atol", "dt")
+_OPTIONS = ("method", "rtol", "atol", "dt", "max_step")
 FILES = (".nc", ".json")
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from flockana.base.checks import FloatArray
+from flockana.base.units import times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
@@ -77,5 +78,5 @@ def tightened_options(options: Mapping[str, Any]) -> dict[str, Any]:
         del finer["method"]
     finer["rtol"] = max(THOUSANDTH * options.get("rtol", _DEFAULT), FINEST)
     if options.get("atol") is not None:
-        finer["atol"] = THOUSANDTH * options["atol"]
+        finer["atol"] = times(options["atol"], THOUSANDTH)
     return finer

@@ -25,7 +25,7 @@ from flockana.theorems import Theorem, Tolerances, Verdict, verify
 
 FORMAT = "flockana-counterexample"
 FORMAT_VERSION = 1
-_OPTIONS = ("method", "rtol", "atol", "dt", "t_eval")  # of `simulate`, as a file may give them
+_OPTIONS = ("method", "rtol", "atol", "dt", "max_step", "t_eval")  # of `simulate`, as a file may give them
 _KEYS = (
     *("format", "format_version", "flockana_version", "theorem", "claim", "scenario", "margin", "error"),
     *("law", "q0", "p0", "t_span", "options", "tolerances"),

@@ -35,8 +35,9 @@ class Method(NamedTuple):
     ----------
     a, c, estimates, interpolant, rows, stages, exponent
         The tableau.
-    rtol, floor, balance : float, (float, float, float), (float, float)
-        Relative tolerance, absolute ones, and (share of the energy, energy) that a step's balance may be off by.
+    rtol, floor, longest, balance : float, (float, float, float), float, (float, float)
+        Relative tolerance, absolute ones, longest step, and (share of the energy, energy) that a step's balance may be
+        off by.
     """
 
     a: Any
@@ -48,6 +49,7 @@ class Method(NamedTuple):
     exponent: Any
     rtol: Any
     floor: Any
+    longest: Any
     balance: Any
 
 
@@ -269,7 +271,7 @@ def advance(system, around, method, kept, stops, due, most):
         evaluations += 1
     while made < most and stop < stops.size and status == RUNNING:
         shortest, rejected, later, at, stands = 10.0 * _spacing(t), False, h, t, False
-        h = min(stops[stop] - t, h) if fixed else max(h, shortest)
+        h = min(stops[stop] - t, h) if fixed else max(min(h, method.longest), shortest)
         while status == RUNNING and not stands:
             if h < shortest and not fixed:
                 status = TOO_SMALL

@@ -191,7 +191,8 @@ def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) ->
 
 def _facts(scenario: Scenario, run: Trajectory) -> tuple[tuple[str, str], ...]:
     stats = run.stats
-    tolerances = ", ".join(f"{key} {stats[key]:g}" for key in ("rtol", "atol", "dt") if stats.get(key) is not None)
+    knobs = [(key, stats[key]) for key in ("rtol", "atol", "dt", "max_step") if stats.get(key) is not None]
+    tolerances = ", ".join(f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}" for key, value in knobs)
     return (
         ("agents", f"{run.n} in {run.m} dimension{'s' if run.m > 1 else ''}"),
         ("time", f"{run.t[0]:g} to {run.t[-1]:g}, {len(run.t)} samples"),

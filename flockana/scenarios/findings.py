@@ -81,7 +81,7 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
 
 def same_accuracy(run: Trajectory) -> dict[str, Any]:
     """Return options of `simulate` that integrate a second run as accurately as the first."""
-    return {name: run.stats[name] for name in ("rtol", "atol") if run.stats.get(name) is not None}
+    return {name: run.stats[name] for name in ("rtol", "atol", "max_step") if run.stats.get(name) is not None}
 
 
 def component_count(run: Trajectory, k: int = -1) -> int:

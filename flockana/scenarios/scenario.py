@@ -11,6 +11,7 @@ from flockana.base.checks import FloatArray, ensure_known, ensure_seed
 from flockana.base.modules import modules
 from flockana.base.units import rescale, times
 from flockana.dynamics.simulate import simulate
+from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
@@ -173,7 +174,6 @@ class Scenario:
         length, time : float
             Factors.
         """
-        factors = {"t_eval": time, "dt": time, "atol": length}
         return replace(
             self,
             law=rescale(self.law, length=length, time=time),
@@ -181,9 +181,7 @@ class Scenario:
             p0=self.p0 * (length / time),
             t_span=times(self.t_span, time),
             instants=times(self.instants, time),
-            options={
-                key: times(value, factors[key]) if key in factors else value for key, value in self.options.items()
-            },
+            options=options_in_units(self.options, length, time),
         )
 
     def surprises(self, verdict: Verdict) -> tuple[str, ...]:

@@ -84,7 +84,9 @@ def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *,
 
 def _scaled(atol: Any, factor: float) -> Any:
     """Return an absolute tolerance, or several, times a factor; None stays None."""
-    return None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple) else factor * atol
+    return (
+        None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple | list) else factor * atol
+    )
 
 
 def doubt_of(run: Trajectory) -> str:

@@ -8,7 +8,7 @@ import pytest
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.tolerance import Floors
+from flockana.dynamics.tolerance import Control, Floors
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.polygon import Polygon
@@ -105,7 +105,7 @@ def laws():
 @pytest.mark.parametrize(("m", "law"), list(laws()))
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
-    engine = engine_of(law, q0, p0, 0.5, "DOP853", 1e-10, Floors(1e-10, 1e-10, 1e-10))
+    engine = engine_of(law, q0, p0, 0.5, "DOP853", Control(1e-10, Floors(1e-10, 1e-10, 1e-10)))
     ledger = np.array([np.nan, 0.0, 0.0, 0.0])
     _, t, y, f, *_ = engine.run(engine.start(q0, p0)[1], np.array([0.7]), np.empty(0), ledger)
     q, p = engine.frame.state(t, y)
@@ -271,8 +271,8 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Doubled(target=TARGETS[1], obstacles=[Sphere((50.0, 50.0), 1.0)]),
     ]
     for law in plain:
-        assert engine_of(law, q, p, 0.0, "DOP853", 1e-8, Floors(1e-8, 1e-8, 1e-8)) is None, law
-    assert engine_of(Algorithm1(), q, p, 0.0, "LSODA", 1e-8, Floors(1e-8, 1e-8, 1e-8)) is None
+        assert engine_of(law, q, p, 0.0, "DOP853", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None, law
+    assert engine_of(Algorithm1(), q, p, 0.0, "LSODA", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None
     lied = simulate(plain[1], q, p, (0.0, 0.5), rtol=1e-9)
     np.testing.assert_allclose(lied.u[-1], plain[1].acceleration(0.5, lied.q[-1], lied.p[-1]), rtol=1e-9, atol=1e-9)
 
@@ -280,7 +280,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
     monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
-    assert engine_of(Algorithm1(), q, p, 0.0, "DOP853", 1e-8, Floors(1e-8, 1e-8, 1e-8)) is None
+    assert engine_of(Algorithm1(), q, p, 0.0, "DOP853", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None
     monkeypatch.undo()
     run = compiled.Engine.run
     monkeypatch.setattr(compiled.Engine, "run", lambda *arguments: (compiled.CROWDED, *run(*arguments)[1:]))
