@@ -145,13 +145,7 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
 
 
 def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int32]:
-    """Return links as an int32 array (M, 2) of agents 0 … n − 1.
-
-    Examples
-    --------
-    >>> ensure_links([[0, 1]], 2).tolist()
-    [[0, 1]]
-    """
+    """Return links as an int32 array (M, 2) of agents 0 … n − 1."""
     ensure_fits(f"the data of n = {format_value(n)} agents,", (3, n), "ask for fewer agents")
     array = np.asarray(links)
     if array.size == 0:
@@ -205,26 +199,14 @@ def ensure_seed(seed: Any) -> int:
 
 
 def ensure_flag(name: str, value: Any) -> bool:
-    """Return `value` if it is True or False.
-
-    Examples
-    --------
-    >>> ensure_flag("strict", True)
-    True
-    """
+    """Return `value` if it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ArgumentError(f"{name} = {format_value(value)}: expected True or False")
     return bool(value)
 
 
 def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
-    """Return `name` if it is one of the known names.
-
-    Examples
-    --------
-    >>> ensure_known("method", "RK4", ("RK4", "DOP853"))
-    'RK4'
-    """
+    """Return `name` if it is one of the known names."""
     if not isinstance(name, str) or name not in known:
         raise UnknownNameError(kind, name, known)
     return name

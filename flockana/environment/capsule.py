@@ -64,11 +64,6 @@ class Capsule(Obstacle):
     radius : float
         R > 0.
 
-    Raises
-    ------
-    ArgumentError
-        If the ends coincide or lie on a line (m = 1), the radius is not positive, or a vector is not finite.
-
     Examples
     --------
     >>> agents = Capsule((0.0, 0.0), (4.0, 0.0), 1.0).beta_agents([[2.0, 3.0], [7.0, 0.0]], [[1.0, 1.0], [1.0, 1.0]])

@@ -95,13 +95,7 @@ class Obstacle(ABC):
         return inside
 
     def check_dimension(self, m: int, name: str = "the obstacle") -> None:
-        """Raise unless the obstacle lives in m dimensions.
-
-        Parameters
-        ----------
-        name : str
-            How to call it in the message.
-        """
+        """Raise unless the obstacle lives in m dimensions."""
         if self.dimension != m:
             raise ArgumentError(
                 f"{name} = {self} has {self.dimension} components but the agents have {m}: expected equal dimensions"
@@ -156,11 +150,6 @@ class Sphere(Obstacle):
     radius : float
         R > 0.
 
-    Raises
-    ------
-    ArgumentError
-        If the radius is not positive or the centre no finite vector.
-
     Examples
     --------
     >>> agents = Sphere((0.0, 0.0), 2.0).beta_agents([[4.0, 0.0]], [[1.0, 1.0]])
@@ -200,11 +189,6 @@ class Wall(Obstacle):
         y, any point of the hyperplane.
     normal : array_like, shape (m,)
         Direction of the normal a, towards the free side; its length does not matter.
-
-    Raises
-    ------
-    ArgumentError
-        If the normal is zero, or a vector is not finite.
 
     Examples
     --------

@@ -136,13 +136,7 @@ class SimplePolygon:
 
 
 def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return least signed distances from a ball along straight paths, exact, shape (N,).
-
-    Examples
-    --------
-    >>> ball_clearance_along(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()
-    [2.0]
-    """
+    """Return least signed distances from a ball along straight paths, exact, shape (N,)."""
     way, away = end - start, np.array(ball.centre) - start
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
@@ -159,11 +153,6 @@ class Box:
     ----------
     low, high : array_like, shape (m,)
         Opposite corners.
-
-    Raises
-    ------
-    ArgumentError
-        If a side has no length.
 
     Examples
     --------

@@ -34,11 +34,6 @@ class Alien:
     speed : float
         Of its pursuit. A step is not shortened when the prey is nearer than it.
 
-    Raises
-    ------
-    ArgumentError
-        If it begins outside its territory, or a number is out of range.
-
     Examples
     --------
     >>> Alien((15.0, 30.0), SimplePolygon([(8.0, 22.0), (24.0, 24.0), (14.0, 42.0)])).speed
@@ -78,11 +73,6 @@ class ZoneWorld:
         Walls around all.
     aliens : sequence of Alien
         Hunters.
-
-    Raises
-    ------
-    ArgumentError
-        On other things than these, or things of different dimensions.
 
     Examples
     --------

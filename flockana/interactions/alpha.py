@@ -75,11 +75,6 @@ class AlphaInteraction(PairInteraction):
     c_star : float
         ψ_α(0), the energy of a coincident pair.
 
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> alpha = AlphaInteraction(d=7.0, r=8.4)

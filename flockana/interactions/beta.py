@@ -45,11 +45,6 @@ class BetaInteraction:
     d_beta, r_beta : float
         σ-norms of d and r.
 
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> beta = BetaInteraction(d=4.2, r=5.04)

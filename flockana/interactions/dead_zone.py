@@ -77,11 +77,6 @@ class DeadZoneInteraction(PairInteraction):
     contact_force : float
         |f| ρ/√(1 + ηρ²) at d₁ without the ramp: the scale of forces.
 
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> pair = DeadZoneInteraction()

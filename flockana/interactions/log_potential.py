@@ -24,11 +24,6 @@ class LogPotential:
     d : float
         d > 0, the distance at which it is least.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers that are not positive.
-
     Examples
     --------
     >>> potential = LogPotential(2.0, 3.0)

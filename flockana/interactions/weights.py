@@ -63,11 +63,6 @@ class RationalWeight(Weight):
     length : float
         ℓ > 0.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers out of range.
-
     Examples
     --------
     >>> RationalWeight(2.0, 1.0)(1.0)

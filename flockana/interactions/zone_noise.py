@@ -30,11 +30,6 @@ class ZoneNoise:
     seed : int
         Which of the runs, >= 0.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers out of range.
-
     Examples
     --------
     >>> ZoneNoise(weights=0.5).quiet, ZoneNoise().quiet

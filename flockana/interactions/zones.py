@@ -89,13 +89,7 @@ class ZoneRadii:
             raise ArgumentError(f"{found}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return (r, c, a, s) of n agents, each of shape (n,).
-
-        Raises
-        ------
-        ArgumentError
-            If there are radii for another number of agents.
-        """
+        """Return (r, c, a, s) of n agents, each of shape (n,)."""
         r, c, a = (_spread(name, getattr(self, name), n) for name in ("r", "c", "a"))
         return r, c, a, r if self.s is None else _spread("s", self.s, n)
 
@@ -166,11 +160,6 @@ class ZoneWeights:
         ----------
         aliens : int
             Number of aliens, K.
-
-        Raises
-        ------
-        ArgumentError
-            If there are weights for another number of agents or aliens.
         """
         values = {}
         for field in fields(self)[:6]:

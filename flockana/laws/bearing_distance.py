@@ -112,11 +112,6 @@ class ZoneFlocking(DiscreteLaw):
     polygons : {"nearest", "each"}
         One term for each polygon that the zone meets, at its closest point, (8), or for each of its edges, (21).
 
-    Raises
-    ------
-    ArgumentError
-        On parameters out of range, an unknown choice, or a box smaller than a zone.
-
     Examples
     --------
     Two agents in each other's zone of conflict, at the desired speed side by side:

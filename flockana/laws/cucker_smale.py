@@ -31,11 +31,6 @@ class CuckerSmale(SumOfTerms):
     mean : bool
         Whether the sum is divided by n (Ha and Liu); it is not by default (Cucker and Smale).
 
-    Raises
-    ------
-    ArgumentError
-        On another weight, or if `mean` is no truth value.
-
     Examples
     --------
     >>> law = CuckerSmale(RationalWeight(strength=2.0, decay=1.0))
@@ -78,12 +73,6 @@ class CuckerSmale(SumOfTerms):
 
 
 def spread(x: FloatArray) -> FloatArray:
-    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,).
-
-    Examples
-    --------
-    >>> spread(np.array([[[0.0], [2.0]]])) ** 2
-    array([2.])
-    """
+    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,)."""
     root: FloatArray = np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
     return root

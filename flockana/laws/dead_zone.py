@@ -43,11 +43,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     k2 : float
         Gain k₂ ≥ 0 of velocity consensus.
 
-    Raises
-    ------
-    ArgumentError
-        On a negative gain or another interaction.
-
     Examples
     --------
     Nothing but k₁ acts within the dead zone, and two agents too near repel each other:
@@ -87,11 +82,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Return the control input u(q, p).
 
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-
         Raises
         ------
         ArgumentError
@@ -119,13 +109,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
 
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
-        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
-
-        Parameters
-        ----------
-        t : float
-            Time (it does not depend on it).
-        """
+        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse."""
         q = ensure_points("q", q)
         ensure_apart(q)
         return super().stiffness(q, t)
@@ -175,8 +159,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Zones.
-        t : float
-            Time (the law does not depend on it).
         """
         u = np.zeros_like(q)
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
@@ -244,12 +226,7 @@ def contact_scales(interaction: DeadZoneInteraction) -> Scales:
 
 
 def ensure_apart(q: FloatArray, force: str = "the dead-zone force") -> None:
-    """Raise if two agents coincide: their force, in words, has no direction.
-
-    Examples
-    --------
-    >>> ensure_apart(np.array([[0.0], [1.0]]))
-    """
+    """Raise if two agents coincide: their force, in words, has no direction."""
     from scipy.spatial import KDTree
 
     if len(q) > 1:

@@ -33,13 +33,6 @@ class GainedLaw(SumOfTerms):
 
 
 def timed(pair: PairInteraction | Weight | None) -> bool:
-    """Return whether a pair law or a weight depends on the unit of time.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction, DeadZoneInteraction
-    >>> timed(AlphaInteraction()), timed(DeadZoneInteraction())
-    (False, True)
-    """
+    """Return whether a pair law or a weight depends on the unit of time."""
     of_formula = (power for _, _, power in getattr(pair, "powers", ()))
     return any(power for _, power in getattr(pair, "units", {}).values()) or any(of_formula)

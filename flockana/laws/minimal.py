@@ -242,13 +242,7 @@ class MinimalFlocking(Law):
         return semi_implicit_steps(q, p, *self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN.
-
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-        """
+        """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN."""
         u = np.zeros_like(q)
         if self._one_weight:
             perceived_forces(q, p, *self._alike(len(q)), u)
@@ -257,13 +251,7 @@ class MinimalFlocking(Law):
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time (H does not depend on it).
-        """
+        """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked."""
         if not self.reciprocal:
             return float("nan")
         head, tail, mu, rho, _ = self._frozen
@@ -296,11 +284,6 @@ class MinimalFlocking(Law):
 
         ∂u_i/∂q_j = μ ((1 − ρ/‖x‖) I + ρ/‖x‖ b bᵀ) with the bearing b = x/‖x‖, and ∂u_i/∂p_j = a I; the blocks of an
         agent sum to zero. Where an agent comes or goes the law jumps and has no derivative: that is not seen here.
-
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
 
         Raises
         ------
@@ -359,11 +342,6 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
     ----------
     dt : float
         Step δ; 0.1 in the paper.
-
-    Raises
-    ------
-    ArgumentError
-        On another law, or a step that is not positive.
 
     Examples
     --------

@@ -28,13 +28,6 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
     """Return the push's part of Σ_j φ_α n_ij, for each pair closer than min_distance.
 
     Returns ndarray, shape (n, m) It sums to zero over the agents.
-
-    Examples
-    --------
-    >>> q = np.array([[0.0], [0.04], [0.2]])
-    >>> f = extra_push(AlphaInteraction(), q, min_distance=0.05, factor=10.0)
-    >>> bool(f[0, 0] < 0.0), float(f.sum()), float(f[2, 0])
-    (True, 0.0, 0.0)
     """
     f = np.zeros_like(q)
     for i, j in pair_blocks(q, min_distance):

@@ -21,11 +21,6 @@ class Scheme(DiscreteLaw):
     ----------
     dt : float
         Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
     """
 
     law: Law

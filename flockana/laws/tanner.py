@@ -39,11 +39,6 @@ class FixedNetFlocking(Law):
     k2 : float
         k₂ > 0; the paper has 1.
 
-    Raises
-    ------
-    ArgumentError
-        On edges that are none, or a gain that is not positive.
-
     Examples
     --------
     >>> law = FixedNetFlocking(edges=((0, 1),))
@@ -119,11 +114,6 @@ class ProximityFlocking(SwitchedLaw):
     k2 : float
         k₂ > 0; the paper has 1.
 
-    Raises
-    ------
-    ArgumentError
-        On R that is not beyond d, or a gain that is not positive.
-
     Examples
     --------
     >>> law = ProximityFlocking(r=2.0)
@@ -180,8 +170,6 @@ class ProximityFlocking(SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        t : float
-            Time (the law does not depend on it).
         """
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)

@@ -56,11 +56,6 @@ class HeadingAveraging(DiscreteLaw):
     seed : int
         Of the noise, >= 0; every number is a function of (seed, step, agent).
 
-    Raises
-    ------
-    ArgumentError
-        On parameters out of range, or a start that is not in the plane or has another speed.
-
     Examples
     --------
     Two neighbours at 0.2 and 0.4 radians agree after one step:
@@ -134,11 +129,6 @@ class HeadingAveraging(DiscreteLaw):
     def links(self, q: FloatArray) -> LinkArray:
         """Unordered pairs in or on each other's circle, each once, unchecked.
 
-        Parameters
-        ----------
-        q : ndarray, shape (n, 2)
-            Positions.
-
         Examples
         --------
         >>> HeadingAveraging(range=1.0).links(np.array([[0.0, 0.0], [1.0, 0.0], [2.5, 0.0]])).tolist()
@@ -149,13 +139,7 @@ class HeadingAveraging(DiscreteLaw):
         return within
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The headings of a start in [zero, zero + 2π); with noise, step 0.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, 2)
-            Initial positions and velocities.
-        """
+        """The headings of a start in [zero, zero + 2π); with noise, step 0."""
         heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
         return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
 
@@ -178,8 +162,6 @@ class HeadingAveraging(DiscreteLaw):
 
         Parameters
         ----------
-        q : ndarray, shape (n, 2)
-            Positions.
         heading : ndarray, shape (n,)
             Headings, in radians.
 

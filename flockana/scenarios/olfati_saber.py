@@ -151,14 +151,7 @@ _MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_
 
 
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
-    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
-
-    Examples
-    --------
-    >>> q, p = random_start(0, 150, 2)
-    >>> q.shape, bool(p.min() >= -2.0), bool(p.max() <= -1.0)
-    ((150, 2), True, True)
-    """
+    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m."""
     generator = np.random.default_rng(seed)
     return generator.normal(0.0, 50.0, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
 
