@@ -98,13 +98,7 @@ class Copies:
         return motion_from(np.array(self.q), np.array(self.p), self.time, acceleration)
 
     def in_units(self, length: float, time: float) -> Copies:
-        """Return the motion in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the motion in other units (`flockana.rescale`)."""
         return replace(
             self,
             q=np.array(self.q) * length,

@@ -68,13 +68,7 @@ class SystemTarget(Target):
         return motion_from(np.array(self.q), np.array(self.p), self.time, lambda q, p: accelerations(self.force, q, p))
 
     def in_units(self, length: float, time: float) -> SystemTarget:
-        """Return the motion in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the motion in other units (`flockana.rescale`)."""
         q, p = np.array(self.q) * length, np.array(self.p) * (length / time)
         return replace(self, q=q, p=p, force=force_in_units(self.force, length, time), time=self.time * time)
 

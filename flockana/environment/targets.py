@@ -326,13 +326,7 @@ class CallableTarget(Target):
             )
 
     def in_units(self, length: float, time: float) -> CallableTarget:
-        """Return the path in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the path in other units (`flockana.rescale`)."""
 
         def scaled(t: float) -> tuple[FloatArray, FloatArray]:
             q, p = self._call(t / time)

@@ -171,13 +171,7 @@ class AlphaInteraction(PairInteraction):
         return float(np.abs(forces).max())
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ_α(‖x‖_σ) at Euclidean distances x.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return ψ_α(‖x‖_σ) at Euclidean distances x."""
         values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
         return values
 
@@ -251,41 +245,17 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI, np.asarray(s, dtype=np.float64) / self.unit**2, self.a, self.b, self.c)
 
     def phi_alpha(self, z: Any) -> Any:
-        """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α); negative repels.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α); negative repels."""
         return evaluate(_PHI_ALPHA, z, self.par)
 
     def phi_alpha_slope(self, z: Any) -> Any:
-        """Return dφ_α/dz, the stiffness of a link of σ-length z.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return dφ_α/dz, the stiffness of a link of σ-length z."""
         return evaluate(_PHI_ALPHA_SLOPE, z, self.par)
 
     def psi_alpha(self, z: Any) -> Any:
-        """Return ψ_α(z) = ∫_{d_α}^{z} φ_α, with error 1e-13 c*, or rounding of the value where that is larger.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return ψ_α(z) = ∫_{d_α}^{z} φ_α, with error 1e-13 c*, or rounding of the value where that is larger."""
         return evaluate(_PSI_ALPHA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ."""
         return evaluate(_ADJACENCY_ALPHA, z, self.par)

@@ -109,31 +109,13 @@ class BetaInteraction:
         return self._parts[1]
 
     def phi_beta(self, z: Any) -> Any:
-        """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0."""
         return evaluate(_PHI_BETA, z, self.par)
 
     def psi_beta(self, z: Any) -> Any:
-        """Return ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0."""
         return evaluate(_PSI_BETA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return the weight b_ik as a function of z = ‖q̂_ik − q_i‖_σ.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return the weight b_ik as a function of z = ‖q̂_ik − q_i‖_σ."""
         return evaluate(_ADJACENCY_BETA, z, self.par)

@@ -174,13 +174,7 @@ class DeadZoneInteraction(PairInteraction):
         return self.contact_force
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return `psi` at each distance.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return `psi` at each distance."""
         values: FloatArray = self.psi(lengths)
         return values
 
@@ -232,33 +226,15 @@ class DeadZoneInteraction(PairInteraction):
         return self._parts[1]
 
     def action(self, s: Any) -> Any:
-        """Return f(ρ), the paper's φ_z without its direction; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return f(ρ), the paper's φ_z without its direction; negative repels."""
         return evaluate(_ACTION, s, self.par)
 
     def force(self, s: Any) -> Any:
-        """Return F(ρ), the force between two agents along their line; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return F(ρ), the force between two agents along their line; negative repels."""
         return evaluate(_FORCE, s, self.par)
 
     def psi(self, s: Any) -> Any:
-        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0."""
         return evaluate(_POTENTIAL, s, self.par, self.panels)
 
     def jumps(self) -> tuple[Jump, ...]:

@@ -173,45 +173,21 @@ class FormulaInteraction(PairInteraction):
         return self._parts.panels
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ at each distance, constant beyond the range.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return ψ at each distance, constant beyond the range."""
         square = np.square(np.asarray(lengths, dtype=np.float64))
         values: FloatArray = evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
         return values
 
     def force(self, s: Any) -> Any:
-        """Return the force between two agents along their line; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the force between two agents along their line; negative repels."""
         return self._of_pair(s, 0, times_distance=True)
 
     def stress(self, s: Any) -> Any:
-        """Return the weight w of the pair force w (q_j − q_i).
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the weight w of the pair force w (q_j − q_i)."""
         return self._of_pair(s, 0)
 
     def weight(self, s: Any) -> Any:
-        """Return the adjacency a_ij at each distance.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the adjacency a_ij at each distance."""
         return self._of_pair(s, 1)
 
     def _of_pair(self, s: Any, row: int, *, times_distance: bool = False) -> Any:
@@ -244,11 +220,6 @@ class FormulaInteraction(PairInteraction):
 
     def in_units(self, length: float, time: float) -> FormulaInteraction:
         """Return the law in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Units before, in units after.
 
         Raises
         ------

@@ -43,8 +43,6 @@ class Algorithm3(GainedLaw):
     ----------
     gains : Gains
         All six are used.
-    target : Target
-        The γ-agent.
     beta : BetaInteraction
         The law between an agent and its β-agents.
     obstacles : sequence of Obstacle

@@ -74,8 +74,6 @@ class ZoneFlocking(DiscreteLaw):
         v^d of the global speed behaviour.
     u_max, v_max : float
         Bounds of input and speed.
-    dt : float
-        Step.
     growth : float
         How fast the radius of attraction of an agent grows while nobody is in its zones of conflict and attraction
         (Remark 2), farther than r from it; it is a again as soon as somebody is there. By default 0: it stays a.

@@ -64,8 +64,6 @@ class Composition(GainedLaw):
         Gains of all terms but the last.
     net : PairInteraction or Weight, optional
         Range and adjacency of the consensus, if they are not those of `alpha`, or any weight of the distance.
-    target : Target, optional
-        The γ-agent.
     unit : float, optional
         ℓ of a bounded pull −c1γ ℓ σ₁((q_i − q_r)/ℓ); None for the linear one.
     feedforward : bool

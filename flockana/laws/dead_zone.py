@@ -129,8 +129,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
         Parameters
         ----------
-        dt : float
-            Step.
         steps : int
             How many; after the last that is wanted none is made.
         wanted : ndarray of int, shape (S,), optional

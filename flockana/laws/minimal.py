@@ -111,11 +111,6 @@ class MinimalFlocking(Law):
     def in_units(self, length: float, time: float) -> MinimalFlocking:
         """Return the law in other units (`flockana.rescale`).
 
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-
         Raises
         ------
         ArgumentError
@@ -234,8 +229,6 @@ class MinimalFlocking(Law):
 
         Parameters
         ----------
-        dt : float
-            Step.
         steps : int
             How many.
         """
@@ -315,13 +308,7 @@ class MinimalFlocking(Law):
         return summed(stiffness), summed(align[:, None, None] * identity)
 
     def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
-        """Return the law in steps, as the paper simulates it.
-
-        Parameters
-        ----------
-        dt : float
-            Step.
-        """
+        """Return the law in steps, as the paper simulates it."""
         return DiscreteMinimalFlocking(self, dt)
 
 

@@ -132,8 +132,6 @@ class Algorithm2(GainedLaw):
     ----------
     gains : Gains
         c1 and c2 of α and γ are used.
-    target : Target
-        The γ-agent.
 
     Examples
     --------

@@ -15,13 +15,7 @@ from flockana.laws.law import Law
 
 @dataclass(frozen=True)
 class Scheme(DiscreteLaw):
-    """A map that approximates the flow of a law; a subclass says how it steps.
-
-    Parameters
-    ----------
-    dt : float
-        Step.
-    """
+    """A map that approximates the flow of a law; a subclass says how it steps."""
 
     law: Law
     dt: float = 0.01

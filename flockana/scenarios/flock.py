@@ -82,13 +82,7 @@ class Flock:
         return Scenario(self.name, self.name, _SOURCE, law, q, p, self.t_span, seed, options=self.options)
 
     def run(self, seed: int = 0, *, progress: bool = False) -> Trajectory:
-        """Simulate the flock.
-
-        Parameters
-        ----------
-        progress : bool
-            Show a progress bar.
-        """
+        """Simulate the flock."""
         return self.scenario(seed).run(progress=progress)
 
     def theorems(self, seed: int = 0) -> tuple[str, ...]:
@@ -96,13 +90,7 @@ class Flock:
         return theorems_about(self.law, *self.start(seed), self.t_span[0])
 
     def verify(self, seed: int = 0, *, tolerances: Tolerances | None = None, progress: bool = False) -> Verdicts:
-        """Simulate the flock and check every theorem that is about its law.
-
-        Parameters
-        ----------
-        progress : bool
-            Show a progress bar.
-        """
+        """Simulate the flock and check every theorem that is about its law."""
         run = self.run(seed, progress=progress)
         return verify_together(run, tolerances=tolerances, subject=self.name, progress=progress)
 

@@ -115,11 +115,6 @@ class Scenario:
     def run(self, *, progress: bool = False) -> Trajectory:
         """Simulate the scenario.
 
-        Parameters
-        ----------
-        progress : bool
-            Show a progress bar.
-
         Raises
         ------
         UnknownNameError
@@ -149,13 +144,7 @@ class Scenario:
         return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
-        """Return the scenario in other units (`flockana.rescale`); reports keep their source's units.
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the scenario in other units (`flockana.rescale`); reports keep their source's units."""
         return replace(
             self,
             law=rescale(self.law, length=length, time=time),

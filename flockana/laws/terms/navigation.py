@@ -28,8 +28,6 @@ class Navigation(Term):
 
     Parameters
     ----------
-    target : Target
-        The γ-agent.
     gains : Gains
         c1_gamma and c2_gamma are used.
     unit : float, optional
