@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,19 @@ def ensure_nonnegative(name: str, value: Any) -> float:
     if number < 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
     return number
+
+
+def normalise(item: Any, check: Callable[[str, Any], Any], *names: str) -> None:
+    """Replace fields of a frozen dataclass by what a check returns for their names and values."""
+    for name in names:
+        object.__setattr__(item, name, check(name, getattr(item, name)))
+
+
+def freeze_vector(item: Any, name: str, m: int | None = None) -> FloatArray:
+    """Replace a vector field of a frozen dataclass by a tuple of finite numbers, and return it as an array."""
+    vector = ensure_vector(name, getattr(item, name), m)
+    object.__setattr__(item, name, tuple(vector.tolist()))
+    return vector
 
 
 def _real(value: Any) -> Any:

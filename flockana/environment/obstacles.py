@@ -21,7 +21,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.jit import register_jitable
@@ -102,13 +102,6 @@ class Obstacle(ABC):
             )
 
 
-def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatArray:
-    """Validate a vector field of a frozen obstacle, keep it as a tuple, and return it as an array."""
-    vector = ensure_vector(name, getattr(obstacle, name), m)
-    object.__setattr__(obstacle, name, tuple(vector.tolist()))
-    return vector
-
-
 @register_jitable
 def _onto_sphere(q, p, par, gap, rate):  # type: ignore[no-untyped-def]
     """Project onto a sphere: q̂ = μq + (1 − μ)y, p̂ = μPp with μ = R/‖q − y‖."""
@@ -166,7 +159,7 @@ class Sphere(Obstacle):
 
     def __post_init__(self) -> None:
         freeze_vector(self, "centre")
-        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+        normalise(self, ensure_positive, "radius")
 
     @property
     def par(self) -> FloatArray:

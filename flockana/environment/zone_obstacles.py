@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_vector
+from flockana.base.checks import FloatArray, ensure_points, freeze_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
@@ -166,12 +166,10 @@ class Box:
     units: ClassVar[Mapping[str, Powers]] = {"low": (1, 0), "high": (1, 0)}
 
     def __post_init__(self) -> None:
-        low = ensure_vector("low", self.low)
-        high = ensure_vector("high", self.high, low.size)
+        low = freeze_vector(self, "low")
+        high = freeze_vector(self, "high", low.size)
         if not (low < high).all():
             raise ArgumentError(f"low = {low.tolist()}, high = {high.tolist()}: expected low < high on every axis")
-        object.__setattr__(self, "low", tuple(low.tolist()))
-        object.__setattr__(self, "high", tuple(high.tolist()))
 
     def clearance(self, q: Any) -> FloatArray:
         """Return distances of points from the nearest wall; negative outside the box.

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
@@ -49,10 +49,8 @@ class Alien:
     units: ClassVar[Mapping[str, Powers]] = {"start": (1, 0), "detection": (1, 0), "speed": (1, -1)}
 
     def __post_init__(self) -> None:
-        start = ensure_vector("start", self.start)
-        object.__setattr__(self, "start", tuple(start.tolist()))
-        for name in ("detection", "speed"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        start = freeze_vector(self, "start")
+        normalise(self, ensure_positive, "detection", "speed")
         if self.territory is None:
             return
         if not isinstance(self.territory, SimplePolygon) or start.size != 2:

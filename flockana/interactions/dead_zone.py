@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, evaluate
@@ -106,13 +106,8 @@ class DeadZoneInteraction(PairInteraction):
     }
 
     def __post_init__(self) -> None:
-        for name in ("r", "r_b", "delta", "r_d", "k_r"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        for name in ("k_delta", "eta", "k1", "ramp"):
-            value = ensure_finite_scalar(name, getattr(self, name))
-            if value < 0.0:
-                raise ArgumentError(f"{name} = {value:g}: expected a number >= 0")
-            object.__setattr__(self, name, value)
+        normalise(self, ensure_positive, "r", "r_b", "delta", "r_d", "k_r")
+        normalise(self, ensure_nonnegative, "k_delta", "eta", "k1", "ramp")
         if self.delta >= self.r_b:
             raise ArgumentError(
                 f"delta = {self.delta:g} and r_b = {self.r_b:g}: expected delta < r_b, or nothing repels (d1 <= 0)"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
@@ -74,8 +74,7 @@ class FormulaInteraction(PairInteraction):
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):
             raise ArgumentError("expected a potential or a force, one of the two")
-        for name in ("r", "d"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "r", "d")
         if self.d > self.r:
             raise ArgumentError(f"length = {self.d:g} and range = {self.r:g}: expected a length within the range")
         pairs = tuple(sorted((str(k), ensure_finite_scalar(f"parameters[{k!r}]", v)) for k, v in self.parameters))

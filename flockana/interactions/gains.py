@@ -68,7 +68,11 @@ class Gains:
             several = name in PER_AGENT and isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1
             if several and len(value) == 0:
                 raise ArgumentError(f"{name} is empty: expected one gain, or one per agent")
-            gain = tuple(_gain(f"{name}[{i}]", x) for i, x in enumerate(value)) if several else _gain(name, value)
+            gain = (
+                tuple(ensure_gain(f"{name}[{i}]", x) for i, x in enumerate(value))
+                if several
+                else ensure_gain(name, value)
+            )
             object.__setattr__(self, name, gain)
 
     @cached_property
@@ -102,7 +106,8 @@ def gains_of(values: Mapping[str, Any]) -> Gains:
     return Gains(**values)
 
 
-def _gain(name: str, value: Any) -> float:
+def ensure_gain(name: str, value: Any) -> float:
+    """Return a finite gain >= 0."""
     gain = ensure_finite_scalar(name, value)
     if gain < 0.0:
         raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")

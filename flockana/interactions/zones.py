@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 
@@ -144,14 +144,12 @@ class ZoneWeights:
     }
 
     def __post_init__(self) -> None:
-        for name in (*_PAIRS, "alien"):
-            object.__setattr__(self, name, _table(name, getattr(self, name)))
+        normalise(self, _table, *_PAIRS, "alien")
         for name in ("cohesion", "alignment"):
             _check_sums(name, getattr(self, name))
         for name in ("speed", "obstacle"):
             object.__setattr__(self, name, _each(name, getattr(self, name), ensure_nonnegative))
-        for name in ("cohesion_gain", "alignment_gain"):
-            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+        normalise(self, ensure_nonnegative, "cohesion_gain", "alignment_gain")
 
     def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
         """Return the weights by name as arrays: (n, n) of pairs or (1, 1), (n, K) of aliens, (n,) of agents.

@@ -21,6 +21,7 @@ from flockana.base.checks import (
     ensure_points,
     ensure_positive,
     ensure_state,
+    normalise,
 )
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
@@ -194,9 +195,8 @@ class ZoneFlocking(DiscreteLaw):
         for name, kind in parts:
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a {kind.__name__}")
-        for name in ("desired_speed", "u_max", "v_max", "dt", "base"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        object.__setattr__(self, "growth", ensure_nonnegative("growth", self.growth))
+        normalise(self, ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
+        normalise(self, ensure_nonnegative, "growth")
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():

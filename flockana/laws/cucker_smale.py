@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag
+from flockana.base.checks import FloatArray, ensure_flag, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
@@ -46,7 +46,7 @@ class CuckerSmale(SumOfTerms):
     def __post_init__(self) -> None:
         if not isinstance(self.weight, RationalWeight):
             raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
-        object.__setattr__(self, "mean", ensure_flag("mean", self.mean))
+        normalise(self, ensure_flag, "mean")
 
     @property
     def scales(self) -> Scales:

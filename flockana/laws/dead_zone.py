@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_state
+from flockana.base.checks import FloatArray, ensure_points, ensure_state, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.interactions.gains import ensure_gain
 from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
 from flockana.kernels.dead_zone_steps import semi_implicit_steps
 from flockana.laws.discrete import IndexArray
@@ -64,10 +65,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def __post_init__(self) -> None:
         if not isinstance(self.interaction, DeadZoneInteraction):
             raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
-        gain = ensure_finite_scalar("k2", self.k2)
-        if gain < 0.0:
-            raise ArgumentError(f"k2 = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
-        object.__setattr__(self, "k2", gain)
+        normalise(self, ensure_gain, "k2")
 
     @property
     def scales(self) -> Scales:

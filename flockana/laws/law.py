@@ -275,7 +275,7 @@ class Law(LawOfMotion):
         return self.checked_flow(*self._checked(t, q, p))[1]
 
     def compiled(self, m: int) -> Compiled | None:
-        """The law for integrators that are compiled too (`flockana.dynamics.compiled`); None, unless it has that form."""
+        """Return the law for compiled integrators (`flockana.dynamics.compiled`); None if it has no such form."""
         return None
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_points
+from flockana.base.checks import FloatArray, ensure_flag, ensure_points, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
@@ -84,12 +84,11 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        object.__setattr__(self, "normalised", ensure_flag("normalised", self.normalised))
+        normalise(self, ensure_flag, "normalised")
         for name in ("radius", "beta", "spacing"):
             if name == "radius" or getattr(self, name) is not None:
                 object.__setattr__(self, name, per_agent(name, getattr(self, name)))
-        for name in ("mu", "sigma"):
-            object.__setattr__(self, name, per_pair(name, getattr(self, name)))
+        normalise(self, per_pair, "mu", "sigma")
         if self.edges is not None:
             object.__setattr__(self, "edges", ensure_edges(self.edges))
         self._check_sizes()

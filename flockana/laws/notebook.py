@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
@@ -92,8 +92,7 @@ class _Push:
             raise ArgumentError(
                 f"alpha = {self.alpha!r}: expected AlphaInteraction(...), whose action the push multiplies"
             )
-        for name in ("min_distance", "factor"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "min_distance", "factor")
         if self.factor < 1.0:
             raise ArgumentError(f"factor = {self.factor:g}: expected at least 1; a smaller one is no push")
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -56,7 +56,7 @@ class FixedNetFlocking(Law):
     def __post_init__(self) -> None:
         object.__setattr__(self, "edges", _edges(self.edges))
         _ensure_potential(self.potential)
-        object.__setattr__(self, "k2", ensure_positive("k2", self.k2))
+        normalise(self, ensure_positive, "k2")
 
     @property
     def scales(self) -> Scales:
@@ -130,8 +130,7 @@ class ProximityFlocking(SwitchedLaw):
 
     def __post_init__(self) -> None:
         _ensure_potential(self.potential)
-        for name in ("r", "k2"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "r", "k2")
         if self.r <= self.potential.d:
             raise ArgumentError(f"r = {self.r:g}: expected more than d = {self.potential.d:g}, where V is least")
 

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_finite_scalar, ensure_nonnegative, ensure_positive
+from flockana.base.checks import (
+    FloatArray,
+    ensure_choice,
+    ensure_finite_scalar,
+    ensure_nonnegative,
+    ensure_positive,
+    normalise,
+)
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -81,10 +88,9 @@ class HeadingAveraging(DiscreteLaw):
     references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
 
     def __post_init__(self) -> None:
-        for name in ("range", "speed", "dt"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        object.__setattr__(self, "zero", ensure_finite_scalar("zero", self.zero))
-        object.__setattr__(self, "noise", ensure_nonnegative("noise", self.noise))
+        normalise(self, ensure_positive, "range", "speed", "dt")
+        normalise(self, ensure_finite_scalar, "zero")
+        normalise(self, ensure_nonnegative, "noise")
         ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
             raise ArgumentError(f"noise = {self.noise:g}: expected radians, at most 2π, a heading that forgets itself")
