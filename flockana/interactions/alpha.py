@@ -64,17 +64,6 @@ class AlphaInteraction(PairInteraction):
         ℓ > 0, the length that σ₁ counts in. The source's lengths are pure numbers, and its φ takes the square of a
         length for one: ℓ = 1 is the printed law, and with ℓ the same law in any length unit (`flockana.rescale`).
 
-    Attributes
-    ----------
-    c : float
-        |a − b|/√(4ab), which makes φ(0) = 0.
-    d_alpha, r_alpha : float
-        σ-norms of d and r.
-    kappa : float
-        r/d.
-    c_star : float
-        ψ_α(0), the energy of a coincident pair.
-
     Examples
     --------
     >>> alpha = AlphaInteraction(d=7.0, r=8.4)
@@ -111,17 +100,17 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def c(self) -> float:
-        """|a − b|/√(4ab)."""
+        """|a − b|/√(4ab), which makes φ(0) = 0."""
         return (self.b - self.a) / (2.0 * sqrt(self.a) * sqrt(self.b))
 
     @cached_property
     def d_alpha(self) -> float:
-        """‖d‖_σ."""
+        """σ-norm ‖d‖_σ of the desired distance."""
         return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_alpha(self) -> float:
-        """‖r‖_σ."""
+        """σ-norm ‖r‖_σ of the range."""
         return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property
@@ -131,7 +120,7 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def c_star(self) -> float:
-        """ψ_α(0)."""
+        """Energy of a coincident pair, ψ_α(0)."""
         return float(self.psi_alpha(0.0))
 
     @property

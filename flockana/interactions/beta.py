@@ -40,11 +40,6 @@ class BetaInteraction:
     unit : float
         ℓ > 0, the length that σ₁ counts in; 1 as printed (see `AlphaInteraction`).
 
-    Attributes
-    ----------
-    d_beta, r_beta : float
-        σ-norms of d and r.
-
     Examples
     --------
     >>> beta = BetaInteraction(d=4.2, r=5.04)
@@ -70,12 +65,12 @@ class BetaInteraction:
 
     @cached_property
     def d_beta(self) -> float:
-        """‖d'‖_σ."""
+        """σ-norm ‖d'‖_σ of the clearance."""
         return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_beta(self) -> float:
-        """‖r'‖_σ."""
+        """σ-norm ‖r'‖_σ of the range."""
         return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property

@@ -70,13 +70,6 @@ class DeadZoneInteraction(PairInteraction):
         Length over which the force rises from 0 beside the dead zone. 0 gives the printed jumps; at r the force jumps
         in either case.
 
-    Attributes
-    ----------
-    d1, d2 : float
-        Ends of the dead zone.
-    contact_force : float
-        |f| ρ/√(1 + ηρ²) at d₁ without the ramp: the scale of forces.
-
     Examples
     --------
     >>> pair = DeadZoneInteraction()
@@ -135,7 +128,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def contact_force(self) -> float:
-        """Force at the end of repulsion, (2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
+        """Scale of forces: |F| at d₁ without the ramp, (2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
         return (2.0 * self.k_r / self.d1**2 + self.k_delta) * self.d1 / sqrt(1.0 + self.eta * self.d1**2)
 
     @property
