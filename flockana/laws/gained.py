@@ -17,13 +17,7 @@ class GainedLaw(SumOfTerms):
     gains: Gains
 
     def in_units(self, length: float, time: float) -> Self:
-        """Return the law in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors of lengths and times.
-        """
+        """Return the law in other units (`flockana.rescale`)."""
         changed: dict[str, Any] = scaled_fields(self, length, time)
         if timed(getattr(self, "alpha", None)):
             changed["gains"] = replace(changed["gains"], c1_alpha=self.gains.c1_alpha)
