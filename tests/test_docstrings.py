@@ -26,9 +26,10 @@ RESULTS = ("flockana.falsify.counterexample", "flockana.stability.decay", "flock
 
 # Names that mean the same in every signature: a sentence is written where they mean more.
 EVIDENT = {
-    *("ax", "fps", "path", "seconds", "title", "velocities"),  # of figures
-    *("d", "m", "n", "q", "p", "r", "t"),
-    *("alpha", "gains", "interaction", "law", "mode", "name", "options", "seed", "t_span", "tolerances", "trajectory"),
+    *("ax", "fps", "path", "progress", "seconds", "title", "velocities"),  # of figures
+    *("d", "dt", "lengths", "m", "n", "q", "p", "r", "s", "t", "z"),  # s: distances, z: σ-norms
+    *("alpha", "gains", "interaction", "law", "mode", "name", "options", "seed", "t_span", "target", "tolerances"),
+    "trajectory",
 }
 
 
@@ -77,8 +78,9 @@ def interface(item):
     for key, member in vars(item).items():
         function = getattr(member, "__func__", member)
         if not key.startswith("_") and inspect.isfunction(function):
-            # an override says no more than what it overrides
-            yield f"{item.__qualname__}.{key}", inspect.getdoc(getattr(item, key)), arguments(function)
+            # an override says no more than what it overrides, and `rescale` documents the factors of `in_units`
+            names = set() if key == "in_units" else arguments(function)
+            yield f"{item.__qualname__}.{key}", inspect.getdoc(getattr(item, key)), names
 
 
 def lacking(text: str, names: set[str]) -> list[str]:

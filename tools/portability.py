@@ -34,13 +34,13 @@ LEVERS = (
     *("NUMBA_CACHE_DIR", "NPY_DISABLE_CPU_FEATURES", "NPY_ENABLE_CPU_FEATURES"),
 )
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-# OpenBLAS core types, and what a processor must have for each; OpenBLAS itself reports Prescott as Katmai.
+# OpenBLAS core types, and the flags in /proc/cpuinfo that each needs; OpenBLAS itself reports Prescott as Katmai.
 CORES: dict[str, set[str]] = {
     "Prescott": set(),
-    "Nehalem": {"SSE42"},
-    "Sandybridge": {"AVX"},
-    "Haswell": {"AVX2", "FMA3"},
-    "SkylakeX": {"AVX512F", "AVX512_SKX"},
+    "Nehalem": {"sse4_2"},
+    "Sandybridge": {"avx"},
+    "Haswell": {"avx2", "fma"},
+    "SkylakeX": {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"},
 }
 # Units of length and time, in the entry's own: micrometres and milliseconds, kilometres and minutes, and odd ones.
 UNITS = {"small": (1e6, 1e3), "large": (1e-3, 1.0 / 60.0), "odd": (2.54, 0.37)}
@@ -70,7 +70,7 @@ def environments(native: Mapping[str, Any]) -> dict[str, dict[str, str]]:
     found["libm"] = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"} if native["libc"] == "glibc" else {}
     found["numba-generic"] = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
     found["numpy-generic"] = {"NPY_DISABLE_CPU_FEATURES": " ".join(numpy)} if numpy else {}
-    if {"AVX2", "FMA3"} <= has:
+    if CORES["Haswell"] <= has:
         newer = [one for one in numpy if "AVX512" in one or one == "X86_V4"]
         found["numba-haswell"] = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": ""}
         found["numpy-haswell"] = {"NPY_DISABLE_CPU_FEATURES": " ".join(newer)} if newer else {}
@@ -121,22 +121,21 @@ def openblas() -> dict[str, str]:
 def machine() -> dict[str, Any]:
     """Return the machine code that this process computes with, and the entries of the catalogue."""
     import numpy as np
-    from llvmlite import binding
-    from numpy._core import _multiarray_umath as core  # type: ignore[attr-defined]
 
     from flockana import scenarios, theorem, theorems
 
     points = (0.1 + 0.0137 * k for k in range(4000))
     values = [(math.exp(x), math.log(x), math.sin(x), math.cos(x), math.pow(x, 1.37)) for x in points]
-    has = core.__cpu_features__
+    known = Path("/proc/cpuinfo")
+    flags = re.search(r"^flags\s*:(.*)", known.read_text() if known.exists() else "", re.MULTILINE)
     return {
         "machine": platform.machine(),
         "libc": platform.libc_ver()[0],
         "libm": hashlib.sha256(np.array(values).tobytes()).hexdigest()[:8],  # another digest: another libm
         "openblas": openblas(),
-        "numba": os.environ.get("NUMBA_CPU_NAME") or binding.get_host_cpu_name(),
-        "numpy": [one for one in core.__cpu_dispatch__ if has.get(one)],
-        "processor": sorted(one for one, here in has.items() if here),
+        "numba": os.environ.get("NUMBA_CPU_NAME", "the processor's own"),
+        "numpy": np.show_config(mode="dicts")["SIMD Extensions"]["found"],
+        "processor": flags[1].split() if flags else [],
         "scenarios": scenarios(),
         "fixed": [one for one in theorems() if theorem(one).kind == "fixed"],
     }

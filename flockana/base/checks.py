@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,19 @@ def ensure_nonnegative(name: str, value: Any) -> float:
     if number < 0.0:
         raise ArgumentError(f"{name} = {number:g}: expected a number >= 0")
     return number
+
+
+def normalise(item: Any, check: Callable[[str, Any], Any], *names: str) -> None:
+    """Replace fields of a frozen dataclass by what a check returns for their names and values."""
+    for name in names:
+        object.__setattr__(item, name, check(name, getattr(item, name)))
+
+
+def freeze_vector(item: Any, name: str, m: int | None = None) -> FloatArray:
+    """Replace a vector field of a frozen dataclass by a tuple of finite numbers, and return it as an array."""
+    vector = ensure_vector(name, getattr(item, name), m)
+    object.__setattr__(item, name, tuple(vector.tolist()))
+    return vector
 
 
 def _real(value: Any) -> Any:
@@ -145,13 +158,7 @@ def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArra
 
 
 def ensure_links(links: Any, n: int, name: str = "links") -> npt.NDArray[np.int32]:
-    """Return links as an int32 array (M, 2) of agents 0 … n − 1.
-
-    Examples
-    --------
-    >>> ensure_links([[0, 1]], 2).tolist()
-    [[0, 1]]
-    """
+    """Return links as an int32 array (M, 2) of agents 0 … n − 1."""
     ensure_fits(f"the data of n = {format_value(n)} agents,", (3, n), "ask for fewer agents")
     array = np.asarray(links)
     if array.size == 0:
@@ -205,26 +212,14 @@ def ensure_seed(seed: Any) -> int:
 
 
 def ensure_flag(name: str, value: Any) -> bool:
-    """Return `value` if it is True or False.
-
-    Examples
-    --------
-    >>> ensure_flag("strict", True)
-    True
-    """
+    """Return `value` if it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ArgumentError(f"{name} = {format_value(value)}: expected True or False")
     return bool(value)
 
 
 def ensure_known(kind: str, name: Any, known: Collection[str]) -> str:
-    """Return `name` if it is one of the known names.
-
-    Examples
-    --------
-    >>> ensure_known("method", "RK4", ("RK4", "DOP853"))
-    'RK4'
-    """
+    """Return `name` if it is one of the known names."""
     if not isinstance(name, str) or name not in known:
         raise UnknownNameError(kind, name, known)
     return name

@@ -21,13 +21,7 @@ class Fact:
 
 
 def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
-    """Return the conjunction of facts: unmet if one is, else assumed if one is, else met.
-
-    Examples
-    --------
-    >>> conjunction([Fact("met"), Fact("unmet", "a"), Fact("assumed", "b")]).detail
-    'a'
-    """
+    """Return the conjunction of facts: unmet if one is, else assumed if one is, else met."""
     facts = list(facts)
     met: FactStatus = "met"
     worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), met)

@@ -15,13 +15,7 @@ _MOST = 2**28  # bytes of a text that is read at once
 
 
 def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose another name") -> Path:
-    """Return a path, or raise if the value is no path or holds characters that no file name can hold.
-
-    Examples
-    --------
-    >>> ensure_path("runs/one.nc").name
-    'one.nc'
-    """
+    """Return a path, or raise if the value is no path or holds characters that no file name can hold."""
     name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
     if not isinstance(name, str):
         raise FileError(f"cannot {action} {path!r}: it is no path; {remedy}")
@@ -55,14 +49,7 @@ def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
 
 
 def ensure_folder_of(path: Any) -> Path:
-    """Return a path whose folder exists and can be written to; raise if it does not, rather than make it.
-
-    Examples
-    --------
-    >>> ensure_folder_of("no-such-folder/run.nc")
-    Traceback (most recent call last):
-    flockana.base.errors.FileError: cannot write no-such-folder/run.nc: ... mkdir -p no-such-folder
-    """
+    """Return a path whose folder exists and can be written to; raise if it does not, rather than make it."""
     target = ensure_path(path, action="write")
     folder = target.parent
     if not folder.exists():
@@ -105,15 +92,7 @@ def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another 
 def write_atomic(
     path: str | os.PathLike[str], content: str | bytes | memoryview, *, remedy: str = "choose another file"
 ) -> Path:
-    """Write a file atomically, text as UTF-8.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_atomic(Path(folder) / "it.txt", "whole").read_text()
-    'whole'
-    """
+    """Write a file atomically, text as UTF-8."""
     with atomic_write(path, remedy=remedy) as partial:
         partial.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     return Path(path)

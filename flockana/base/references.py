@@ -33,11 +33,6 @@ def cite(item: Any) -> str:
     item : str or object
         A key such as ``"olfati-saber-2006"``, or a theorem, scenario or law with a `references` attribute.
 
-    Raises
-    ------
-    ArgumentError
-        If nothing is known of it.
-
     Examples
     --------
     >>> cite("olfati-saber-2006").splitlines()[0]

@@ -94,15 +94,7 @@ def replace_sealed(evidence: _Evidence, **changes: Any) -> _Evidence:
 
 
 def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
-    """Raise unless a dataclass has a valid seal; the message names the changed fields.
-
-    Examples
-    --------
-    >>> from flockana.base.scales import Scales
-    >>> ensure_sealed("scales", Scales(1.0, 2.0), "those of a law", "take law.scales")
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: scales: this Scales was made or changed by hand: expected ...
-    """
+    """Raise unless a dataclass has a valid seal; the message names the changed fields."""
     seal = vars(evidence).get(_ATTRIBUTE)
     if seal is None:
         fault = "was made or changed by hand"

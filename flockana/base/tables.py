@@ -72,13 +72,7 @@ def _cell(text: str) -> str:
 
 
 def number(value: float | None) -> str:
-    """Return a margin as text of four digits; empty for None.
-
-    Examples
-    --------
-    >>> number(0.123456), number(None)
-    ('0.1235', '')
-    """
+    """Return a margin as text of four digits; empty for None."""
     return "" if value is None else f"{value:.4g}"
 
 

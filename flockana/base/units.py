@@ -84,13 +84,7 @@ def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
 
 
 def times(value: Any, factor: float) -> Any:
-    """Return a number, or numbers in tuples and arrays, times a factor; None stays None.
-
-    Examples
-    --------
-    >>> times((1.0, (2.0, None)), 3.0)
-    (3.0, (6.0, None))
-    """
+    """Return a number, or numbers in tuples and arrays, times a factor; None stays None."""
     if value is None:
         return None
     if isinstance(value, tuple | list):

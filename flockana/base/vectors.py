@@ -12,13 +12,7 @@ _SQUARED = 2.0**-400, 2.0**400  # between which the largest number may be square
 
 
 def lengths(x: FloatArray) -> FloatArray:
-    """Return Euclidean norms along the last axis, equal to `numpy.linalg.norm` bit by bit but faster.
-
-    Examples
-    --------
-    >>> lengths(np.array([[3.0, 4.0], [0.0, -2.0]])).tolist()
-    [5.0, 2.0]
-    """
+    """Return Euclidean norms along the last axis, equal to `numpy.linalg.norm` bit by bit but faster."""
     squares = x[..., 0] ** 2
     for k in range(1, x.shape[-1]):
         squares += x[..., k] ** 2
@@ -26,13 +20,7 @@ def lengths(x: FloatArray) -> FloatArray:
 
 
 def centres(x: FloatArray) -> FloatArray:
-    """Return the means over agents at each instant, (T, n, m) -> (T, m), equal to ``x.mean(axis=1)`` bit by bit.
-
-    Examples
-    --------
-    >>> centres(np.array([[[0.0, 1.0], [2.0, 5.0]]])).tolist()
-    [[1.0, 3.0]]
-    """
+    """Return the means over agents at each instant, (T, n, m) -> (T, m), equal to ``x.mean(axis=1)`` bit by bit."""
     if x.shape[2] == 1:  # numpy's sums of what lies side by side are fast, and are summed in pairs
         means: FloatArray = x.mean(axis=1)
         return means

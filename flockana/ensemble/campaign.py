@@ -168,13 +168,7 @@ def ensemble(
 
 
 def ensure_seeds(seeds: Any) -> tuple[int, ...]:
-    """Return seeds as a tuple of whole numbers >= 0, each of them once.
-
-    Examples
-    --------
-    >>> ensure_seeds(range(3))
-    (0, 1, 2)
-    """
+    """Return seeds as a tuple of whole numbers >= 0, each of them once."""
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ArgumentError(f"seeds = {seeds!r}: expected several whole numbers, such as range(200)")
     given = tuple(islice(seeds, MOST + 1))  # there may be no end of them

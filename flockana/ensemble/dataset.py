@@ -27,13 +27,7 @@ RESERVED = (
 
 
 def job_grid(axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seeds: Sequence[int]) -> list[Job]:
-    """Return all runs of an ensemble in dataset order: parameters as given, seeds fastest.
-
-    Examples
-    --------
-    >>> [job.seed for job in job_grid({"n": [3, 4]}, {}, [0, 1])]
-    [0, 1, 0, 1]
-    """
+    """Return all runs of an ensemble in dataset order: parameters as given, seeds fastest."""
     points = (dict(zip(axes, values, strict=True)) | dict(fixed) for values in product(*axes.values()))
     return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in seeds]
 

@@ -34,13 +34,7 @@ _ENSEMBLE = ("ensemble/work.py",)  # of the ensemble, what makes a record
 
 @cache
 def numerics_version() -> str:
-    """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits.
-
-    Examples
-    --------
-    >>> len(numerics_version())
-    16
-    """
+    """Return the version of all sources that decide a run's numbers, 16 hexadecimal digits."""
     root = Path(__file__).resolve().parent.parent
     sources = {str(p.relative_to(root)): p.read_bytes() for p in source_files(root)}
     return cached_digest(sources, Path(cache_from_source(__file__)).parent)

@@ -31,15 +31,6 @@ def phases(
     Olfati-Saber (2006); *other*, connected, but still moving or strained. A phase is of the end time, not of a limit.
 
     Returns xarray.DataArray Codes into `PHASES`, of the dimensions of the runs; -1 where a run did not complete.
-
-    Examples
-    --------
-    >>> import xarray
-    >>> end = {"end_distance": [0.9, 0.9, 0.01], "components": [1.0, 3.0, 1.0]}
-    >>> end |= {"slip": [0.0] * 3, "normalised_deviation_energy": [0.001] * 3}
-    >>> runs = xarray.Dataset({name: ("seed", values) for name, values in end.items()})
-    >>> [PHASES[code] for code in phases(runs).values]
-    ['flocking', 'fragmentation', 'collapse']
     """
     dataset = dataset.rename({old: new for old, new in _FORMER.items() if old in dataset and new not in dataset})
     missing = [name for name in _NEEDED if name not in dataset]

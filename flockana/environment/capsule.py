@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.environment.obstacles import Obstacle, freeze_vector
+from flockana.environment.obstacles import Obstacle
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 
@@ -64,11 +64,6 @@ class Capsule(Obstacle):
     radius : float
         R > 0.
 
-    Raises
-    ------
-    ArgumentError
-        If the ends coincide or lie on a line (m = 1), the radius is not positive, or a vector is not finite.
-
     Examples
     --------
     >>> agents = Capsule((0.0, 0.0), (4.0, 0.0), 1.0).beta_agents([[2.0, 3.0], [7.0, 0.0]], [[1.0, 1.0], [1.0, 1.0]])
@@ -92,7 +87,7 @@ class Capsule(Obstacle):
         side = b - a
         if not float(side @ side) > 0.0:
             raise ArgumentError(f"a = {self.a} and b = {self.b}: expected two different points; a ball is a Sphere")
-        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+        normalise(self, ensure_positive, "radius")
 
     @property
     def par(self) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_points, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.motion import Motion, accelerations, ensure_force, force_in_units, motion_from
@@ -71,9 +71,8 @@ class Copies:
             raise ArgumentError(f"q has shape {q.shape}, p has shape {p.shape}: expected equal shapes")
         for name, value in (("q", q), ("p", p)):
             object.__setattr__(self, name, tuple(map(tuple, value.tolist())))
-        for name in ("position_coupling", "velocity_coupling"):
-            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
-        object.__setattr__(self, "time", ensure_positive("time", self.time))
+        normalise(self, ensure_nonnegative, "position_coupling", "velocity_coupling")
+        normalise(self, ensure_positive, "time")
         ensure_force(self.force)
         _ = self._motion
 
@@ -98,13 +97,7 @@ class Copies:
         return motion_from(np.array(self.q), np.array(self.p), self.time, acceleration)
 
     def in_units(self, length: float, time: float) -> Copies:
-        """Return the motion in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the motion in other units (`flockana.rescale`)."""
         return replace(
             self,
             q=np.array(self.q) * length,

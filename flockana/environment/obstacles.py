@@ -21,7 +21,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, ensure_vector
+from flockana.base.checks import FloatArray, ensure_points, ensure_positive, ensure_state, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.jit import register_jitable
@@ -95,24 +95,11 @@ class Obstacle(ABC):
         return inside
 
     def check_dimension(self, m: int, name: str = "the obstacle") -> None:
-        """Raise unless the obstacle lives in m dimensions.
-
-        Parameters
-        ----------
-        name : str
-            How to call it in the message.
-        """
+        """Raise unless the obstacle lives in m dimensions."""
         if self.dimension != m:
             raise ArgumentError(
                 f"{name} = {self} has {self.dimension} components but the agents have {m}: expected equal dimensions"
             )
-
-
-def freeze_vector(obstacle: Obstacle, name: str, m: int | None = None) -> FloatArray:
-    """Validate a vector field of a frozen obstacle, keep it as a tuple, and return it as an array."""
-    vector = ensure_vector(name, getattr(obstacle, name), m)
-    object.__setattr__(obstacle, name, tuple(vector.tolist()))
-    return vector
 
 
 @register_jitable
@@ -156,11 +143,6 @@ class Sphere(Obstacle):
     radius : float
         R > 0.
 
-    Raises
-    ------
-    ArgumentError
-        If the radius is not positive or the centre no finite vector.
-
     Examples
     --------
     >>> agents = Sphere((0.0, 0.0), 2.0).beta_agents([[4.0, 0.0]], [[1.0, 1.0]])
@@ -177,7 +159,7 @@ class Sphere(Obstacle):
 
     def __post_init__(self) -> None:
         freeze_vector(self, "centre")
-        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
+        normalise(self, ensure_positive, "radius")
 
     @property
     def par(self) -> FloatArray:
@@ -200,11 +182,6 @@ class Wall(Obstacle):
         y, any point of the hyperplane.
     normal : array_like, shape (m,)
         Direction of the normal a, towards the free side; its length does not matter.
-
-    Raises
-    ------
-    ArgumentError
-        If the normal is zero, or a vector is not finite.
 
     Examples
     --------

@@ -8,7 +8,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, ensure_vector
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_nonnegative,
+    ensure_positive,
+    freeze_vector,
+    normalise,
+)
 from flockana.base.units import Powers
 
 
@@ -50,14 +57,14 @@ class Spring:
     }
 
     def __post_init__(self) -> None:
-        centre = ensure_vector("centre", self.centre)
-        push = np.zeros(centre.size) if np.isscalar(self.push) and self.push == 0 else self.push
-        object.__setattr__(self, "centre", tuple(centre.tolist()))
-        object.__setattr__(self, "push", tuple(ensure_vector("push", push, centre.size).tolist()))
-        object.__setattr__(self, "stiffness", ensure_finite_scalar("stiffness", self.stiffness))
-        object.__setattr__(self, "damping", ensure_nonnegative("damping", self.damping))
+        m = freeze_vector(self, "centre").size
+        if np.isscalar(self.push) and self.push == 0:
+            object.__setattr__(self, "push", np.zeros(m))
+        freeze_vector(self, "push", m)
+        normalise(self, ensure_finite_scalar, "stiffness")
+        normalise(self, ensure_nonnegative, "damping")
         if self.reach is not None:
-            object.__setattr__(self, "reach", ensure_positive("reach", self.reach))
+            normalise(self, ensure_positive, "reach")
 
     def __call__(self, q: FloatArray, p: FloatArray) -> FloatArray:
         """Return the acceleration at one position or at several (…, m)."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.base.units import Powers
 from flockana.environment.motion import Motion, accelerations, ensure_force, force_in_units, motion_from
 from flockana.environment.target import Target
@@ -52,10 +52,8 @@ class SystemTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1), "time": (0, 1)}
 
     def __post_init__(self) -> None:
-        q = ensure_vector("q", self.q)
-        object.__setattr__(self, "q", tuple(q.tolist()))
-        object.__setattr__(self, "p", tuple(ensure_vector("p", self.p, q.size).tolist()))
-        object.__setattr__(self, "time", ensure_positive("time", self.time))
+        freeze_vector(self, "p", freeze_vector(self, "q").size)
+        normalise(self, ensure_positive, "time")
         ensure_force(self.force)
         _ = self._motion
 
@@ -68,13 +66,7 @@ class SystemTarget(Target):
         return motion_from(np.array(self.q), np.array(self.p), self.time, lambda q, p: accelerations(self.force, q, p))
 
     def in_units(self, length: float, time: float) -> SystemTarget:
-        """Return the motion in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the motion in other units (`flockana.rescale`)."""
         q, p = np.array(self.q) * length, np.array(self.p) * (length / time)
         return replace(self, q=q, p=p, force=force_in_units(self.force, length, time), time=self.time * time)
 

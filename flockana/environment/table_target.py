@@ -32,11 +32,6 @@ class TableTarget(Target):
     p : array_like, shape (T, m), optional
         Velocities.
 
-    Raises
-    ------
-    ArgumentError
-        On shapes that do not fit, numbers that are not finite, or times that do not rise.
-
     Examples
     --------
     >>> path = TableTarget([0.0, 1.0, 2.0], [[0.0, 0.0], [1.0, 0.5], [2.0, 2.0]])
@@ -90,13 +85,7 @@ class TableTarget(Target):
         return place
 
     def rate(self, t: float) -> FloatArray:
-        """Return dq_r/dt, 0 beyond the table.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """Return dq_r/dt, 0 beyond the table."""
         (k, s), c = self._at(t), self._pieces
         rate: FloatArray = (3.0 * c[0, k] * s + 2.0 * c[1, k]) * s + c[2, k]
         return rate if self._times[0] <= t <= self._times[-1] else np.zeros(rate.shape)

@@ -13,7 +13,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_vector
+from flockana.base.checks import (
+    FloatArray,
+    ensure_finite_scalar,
+    ensure_positive,
+    ensure_vector,
+    freeze_vector,
+    normalise,
+)
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.environment.target import Harmonic, Target
@@ -25,12 +32,6 @@ _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the
 def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:
     """Return a path from its summands; omitted ones are zero."""
     return Harmonic(np.array([np.broadcast_to(one, np.shape(a)) for one in (a, b, c, s, e)], dtype=np.float64), omega)
-
-
-def _freeze_vector(target: Target, name: str, m: int | None = None) -> FloatArray:
-    vector = ensure_vector(name, getattr(target, name), m)
-    object.__setattr__(target, name, tuple(vector.tolist()))
-    return vector
 
 
 @dataclass(frozen=True)
@@ -54,10 +55,10 @@ class StaticTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        m = _freeze_vector(self, "q").size
+        m = freeze_vector(self, "q").size
         if np.isscalar(self.p) and self.p == 0:
             object.__setattr__(self, "p", np.zeros(m))
-        _freeze_vector(self, "p", m)
+        freeze_vector(self, "p", m)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return np.array(self.q)
@@ -96,7 +97,7 @@ class LinearTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"q": (1, 0), "p": (1, -1)}
 
     def __post_init__(self) -> None:
-        _freeze_vector(self, "p", _freeze_vector(self, "q").size)
+        freeze_vector(self, "p", freeze_vector(self, "q").size)
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return np.array(self.q) + np.array(self.p) * t
@@ -149,10 +150,9 @@ class SineTarget(Target):
     }
 
     def __post_init__(self) -> None:
-        m = _freeze_vector(self, "start").size
-        _freeze_vector(self, "velocity", m)
-        for name in ("amplitude", "frequency", "phase"):
-            object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
+        m = freeze_vector(self, "start").size
+        freeze_vector(self, "velocity", m)
+        normalise(self, ensure_finite_scalar, "amplitude", "frequency", "phase")
         if isinstance(self.axis, bool | np.ndarray) or self.axis not in range(m):
             raise ArgumentError(f"axis = {format_value(self.axis)}: expected a coordinate of the flock, 0 to {m - 1}")
         object.__setattr__(self, "axis", int(self.axis))
@@ -205,11 +205,10 @@ class CircleTarget(Target):
     units: ClassVar[Mapping[str, Powers]] = {"centre": (1, 0), "radius": (1, 0), "frequency": (0, -1)}
 
     def __post_init__(self) -> None:
-        if _freeze_vector(self, "centre").size < 2:
+        if freeze_vector(self, "centre").size < 2:
             raise ArgumentError(f"centre = {self.centre}: expected 2 or 3 components; a line holds no circle")
-        object.__setattr__(self, "radius", ensure_positive("radius", self.radius))
-        for name in ("frequency", "phase"):
-            object.__setattr__(self, name, ensure_finite_scalar(name, getattr(self, name)))
+        normalise(self, ensure_positive, "radius")
+        normalise(self, ensure_finite_scalar, "frequency", "phase")
 
     def _plane(self, x: float, y: float) -> FloatArray:
         return np.array([x, y, 0.0])[: len(self.centre)]
@@ -256,7 +255,7 @@ class RescaledVelocity(Target):
     def __post_init__(self) -> None:
         if not isinstance(self.target, Target):
             raise ArgumentError(f"target = {self.target!r}: expected a Target such as CircleTarget(...)")
-        object.__setattr__(self, "factor", ensure_finite_scalar("factor", self.factor))
+        normalise(self, ensure_finite_scalar, "factor")
 
     def position(self, t: float) -> FloatArray:  # noqa: D102
         return self.target.position(t)
@@ -308,7 +307,7 @@ class CallableTarget(Target):
     span: tuple[float, float] = (-inf, inf)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "time", ensure_positive("time", self.time))
+        normalise(self, ensure_positive, "time")
         if not callable(self.function):
             raise ArgumentError(f"function = {self.function!r}: expected a callable t -> (q_r, p_r)")
         try:
@@ -326,13 +325,7 @@ class CallableTarget(Target):
             )
 
     def in_units(self, length: float, time: float) -> CallableTarget:
-        """Return the path in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the path in other units (`flockana.rescale`)."""
 
         def scaled(t: float) -> tuple[FloatArray, FloatArray]:
             q, p = self._call(t / time)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_points, ensure_vector
+from flockana.base.checks import FloatArray, ensure_points, freeze_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
@@ -136,13 +136,7 @@ class SimplePolygon:
 
 
 def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return least signed distances from a ball along straight paths, exact, shape (N,).
-
-    Examples
-    --------
-    >>> ball_clearance_along(Sphere((0.0, 0.0), 1.0), np.array([[-9.0, 3.0]]), np.array([[9.0, 3.0]])).tolist()
-    [2.0]
-    """
+    """Return least signed distances from a ball along straight paths, exact, shape (N,)."""
     way, away = end - start, np.array(ball.centre) - start
     length2 = np.sum(way**2, axis=1)
     share = np.divide(np.sum(way * away, axis=1), length2, out=np.zeros(len(way)), where=length2 > 0.0)
@@ -160,11 +154,6 @@ class Box:
     low, high : array_like, shape (m,)
         Opposite corners.
 
-    Raises
-    ------
-    ArgumentError
-        If a side has no length.
-
     Examples
     --------
     >>> Box((0.0, 0.0), (50.0, 50.0)).clearance([[1.0, 30.0], [51.0, 3.0]]).tolist()
@@ -177,12 +166,10 @@ class Box:
     units: ClassVar[Mapping[str, Powers]] = {"low": (1, 0), "high": (1, 0)}
 
     def __post_init__(self) -> None:
-        low = ensure_vector("low", self.low)
-        high = ensure_vector("high", self.high, low.size)
+        low = freeze_vector(self, "low")
+        high = freeze_vector(self, "high", low.size)
         if not (low < high).all():
             raise ArgumentError(f"low = {low.tolist()}, high = {high.tolist()}: expected low < high on every axis")
-        object.__setattr__(self, "low", tuple(low.tolist()))
-        object.__setattr__(self, "high", tuple(high.tolist()))
 
     def clearance(self, q: Any) -> FloatArray:
         """Return distances of points from the nearest wall; negative outside the box.

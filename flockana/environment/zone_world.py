@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive, ensure_vector
+from flockana.base.checks import FloatArray, ensure_positive, freeze_vector, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
@@ -34,11 +34,6 @@ class Alien:
     speed : float
         Of its pursuit. A step is not shortened when the prey is nearer than it.
 
-    Raises
-    ------
-    ArgumentError
-        If it begins outside its territory, or a number is out of range.
-
     Examples
     --------
     >>> Alien((15.0, 30.0), SimplePolygon([(8.0, 22.0), (24.0, 24.0), (14.0, 42.0)])).speed
@@ -54,10 +49,8 @@ class Alien:
     units: ClassVar[Mapping[str, Powers]] = {"start": (1, 0), "detection": (1, 0), "speed": (1, -1)}
 
     def __post_init__(self) -> None:
-        start = ensure_vector("start", self.start)
-        object.__setattr__(self, "start", tuple(start.tolist()))
-        for name in ("detection", "speed"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        start = freeze_vector(self, "start")
+        normalise(self, ensure_positive, "detection", "speed")
         if self.territory is None:
             return
         if not isinstance(self.territory, SimplePolygon) or start.size != 2:
@@ -78,11 +71,6 @@ class ZoneWorld:
         Walls around all.
     aliens : sequence of Alien
         Hunters.
-
-    Raises
-    ------
-    ArgumentError
-        On other things than these, or things of different dimensions.
 
     Examples
     --------

@@ -52,11 +52,6 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
 
     Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
     the first is at least c*; and V(q) < the first minimum, with V not rising along the flow, excludes every collision.
-
-    Examples
-    --------
-    >>> round(collision_barrier(AlphaInteraction(), 3, starts=4).height, 3)
-    52.384
     """
     from flockana.equilibria.program import Program
 
@@ -134,14 +129,7 @@ def turan_pairs(n: int, clique: int) -> int:
 
 
 def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
-    """Return a proved lower bound of V over all configurations of n agents.
-
-    Examples
-    --------
-    >>> alpha = AlphaInteraction()
-    >>> energy_floor(alpha, 22) < alpha.c_star < energy_floor(alpha, 23)
-    True
-    """
+    """Return a proved lower bound of V over all configurations of n agents."""
     shortest, longest = bound_range(alpha)
     clique = largest_clique((1.0 + _ABOVE) * longest / shortest if shortest else inf, m)
     if clique is None:
@@ -150,25 +138,13 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
 
 
 def least_infeasible_size(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown.
-
-    Examples
-    --------
-    >>> least_infeasible_size(AlphaInteraction())
-    23
-    """
+    """Return the least n from which provably no state has V < c* (Theorem 1(iii) is empty); None if unknown."""
     # the floor rises with n: every agent more adds pairs outside the cliques
     return next((n for n in range(2, _LARGEST) if energy_floor(alpha, n, m) >= alpha.c_star > 0.0), None)
 
 
 def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
-    """Return the largest n whose exact α-lattice has V < c*; None where κ is too large, or m = 3.
-
-    Examples
-    --------
-    >>> lattice_reach(AlphaInteraction())
-    14
-    """
+    """Return the largest n whose exact α-lattice has V < c*; None where κ is too large, or m = 3."""
     if m == 3 or alpha.kappa > (2.0 if m == 1 else sqrt(3.0)):
         return None
     links = {n: n - 1 if m == 1 else harborth(n) for n in range(1, _LARGEST)}

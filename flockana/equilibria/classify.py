@@ -31,12 +31,7 @@ class Spectrum(NamedTuple):
 
 
 def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
-    """Raise if the equilibrium of n agents would take many minutes.
-
-    Examples
-    --------
-    >>> ensure_small(1000, 3)
-    """
+    """Raise if the equilibrium of n agents would take many minutes."""
     if n * m > most:
         raise ArgumentError(f"n = {n} agents in m = {m} dimensions: expected n m <= {most}, or it takes many minutes")
 
@@ -59,14 +54,6 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
 
     What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
     no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> chain = np.array([[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]])
-    >>> _, rigid, index, soft = spectrum(Potential(Algorithm1()), chain)  # it bends at the middle agent
-    >>> rigid, index, soft
-    (3, 0, 1)
     """
     here = landscape(potential, q)
     values, signs, _ = here.curvatures()
@@ -74,14 +61,7 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
-    """Return the unit direction (n, m) of steepest second-order descent, if there is one.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> falling(Potential(Algorithm1()), np.array([[0.0], [7.0]])) is None
-    True
-    """
+    """Return the unit direction (n, m) of steepest second-order descent, if there is one."""
     here = landscape(potential, q)
     signs = here.curvatures().signs
     return descent_direction(here) if signs.size and signs[0] < 0 else None

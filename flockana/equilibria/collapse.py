@@ -41,48 +41,23 @@ class CollapseDiagram:
 
 
 def pulled_law(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
-    """Return Algorithm 2 with c1α = 1, c1γ = ratio and a γ-agent at rest at the origin.
-
-    Examples
-    --------
-    >>> pulled_law(AlphaInteraction(), 0.5).gains.c1_gamma
-    0.5
-    """
+    """Return Algorithm 2 with c1α = 1, c1γ = ratio and a γ-agent at rest at the origin."""
     return Algorithm2(alpha, Gains(c1_alpha=1.0, c1_gamma=ensure_positive("ratio", ratio)), StaticTarget((0.0,) * m))
 
 
 def perturbed(q: FloatArray, d: float) -> FloatArray:
-    """Return a configuration with a fixed perturbation of 1e-4 d, to leave symmetric saddles.
-
-    Examples
-    --------
-    >>> bool(0.0 < np.abs(perturbed(np.zeros((3, 2)), 7.0)).max() < 7e-3)
-    True
-    """
+    """Return a configuration with a fixed perturbation of 1e-4 d, to leave symmetric saddles."""
     disturbed: FloatArray = q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
     return disturbed
 
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:
-    """Return the minimum of U_λ that IPOPT finds from a slightly disturbed hexagonal spiral of n agents.
-
-    Examples
-    --------
-    >>> relaxed(AlphaInteraction(), 7, 0.1).strain() < 0.05
-    True
-    """
+    """Return the minimum of U_λ that IPOPT finds from a slightly disturbed hexagonal spiral of n agents."""
     return find_equilibrium(pulled_law(alpha, ratio), perturbed(hexagonal_spiral(n, alpha.d), alpha.d))
 
 
 def collapse_diagram(alpha: AlphaInteraction, sizes: Sequence[int], ratios: Sequence[float]) -> CollapseDiagram:
-    """Return shortest distance and coincident pairs of the minima of U_λ over sizes and ratios.
-
-    Examples
-    --------
-    >>> diagram = collapse_diagram(AlphaInteraction(), [7], [0.1, 4.5])
-    >>> diagram.coincident[0, 0], diagram.onset().tolist()
-    (np.int64(0), [4.5])
-    """
+    """Return shortest distance and coincident pairs of the minima of U_λ over sizes and ratios."""
     counts, rising = [ensure_count("sizes", n) for n in sizes], np.array([ensure_positive("ratios", x) for x in ratios])
     if np.any(np.diff(rising) <= 0.0):
         raise ArgumentError(f"ratios = {list(ratios)}: expected rising numbers")
@@ -143,14 +118,7 @@ def threshold(
 
 
 def collapse_threshold(alpha: AlphaInteraction, n: int, *, halvings: int = 4) -> tuple[float, float]:
-    """Bracket the ratio c1γ/c1α from which on the relaxed spiral of n agents holds coincident pairs.
-
-    Examples
-    --------
-    >>> low, high = collapse_threshold(AlphaInteraction(), 7, halvings=2)
-    >>> 1.0 < low < high < 8.0
-    True
-    """
+    """Bracket the ratio c1γ/c1α from which on the relaxed spiral of n agents holds coincident pairs."""
     return threshold(
         lambda ratio: coincident_pairs(relaxed(alpha, n, ratio).q, CONTACT * alpha.d) > 0,
         lowest=_LOWEST * natural_ratio(alpha),

@@ -15,13 +15,7 @@ _FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in
 
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:
-    """Return all pairwise distances in rising order; configurations with the same are rarely incongruent.
-
-    Examples
-    --------
-    >>> spectrum_of_distances(np.array([[0.0], [3.0], [1.0]])).tolist()
-    [1.0, 2.0, 3.0]
-    """
+    """Return all pairwise distances in rising order; configurations with the same are rarely incongruent."""
     from scipy.spatial.distance import pdist
 
     return np.sort(pdist(q))

@@ -25,14 +25,7 @@ _CONCENTRIC = 1e-12  # of unit axes, or of the lengths at hand: what is less is 
 
 
 def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
-    """Return the law; raise unless its forces are gradients without jumps in m dimensions.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> ensure_flock_law(Algorithm1(), 2) == Algorithm1()
-    True
-    """
+    """Return the law; raise unless its forces are gradients without jumps in m dimensions."""
     if not (isinstance(law, SumOfTerms) and law.conservative and law.term(PairTerm)):
         raise ArgumentError(
             f"law = {law!r}: expected a sum of a pair term and others whose forces are gradients, such as Algorithm1, "

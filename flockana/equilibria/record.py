@@ -100,11 +100,5 @@ def smallest_strained() -> Equilibrium:
 
     Thirteen agents, 24 links of 6.849 to 7.116 for d = 7: one more than a rigid net needs, so the lengths cannot all
     be d. Found from random starts of 15, by taking away what its stress does not need; no smaller one turned up.
-
-    Examples
-    --------
-    >>> q13 = smallest_strained()
-    >>> q13.q.shape, q13.kind, round(q13.strain(), 4), q13.curvature > 0.03
-    ((13, 2), 'minimum', 0.0216, True)
     """
     return read_equilibrium(str(files("flockana.equilibria") / "strained13.json"))

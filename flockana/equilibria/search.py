@@ -25,13 +25,7 @@ _LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one eq
 
 
 def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, density: float = 1.3) -> list[FloatArray]:
-    """Return starts uniform in a ball, denser than a lattice of spacing d by the given factor.
-
-    Examples
-    --------
-    >>> [start.shape for start in random_starts(5, 3, 7.0, 2)]
-    [(5, 3), (5, 3)]
-    """
+    """Return starts uniform in a ball, denser than a lattice of spacing d by the given factor."""
     rng = np.random.default_rng([n, m, seed])
     volume = {1: 2.0, 2: np.pi, 3: 4.0 * np.pi / 3.0}[m]
     radius = d * (n / (ensure_positive("density", density) * volume)) ** (1.0 / m)
@@ -124,15 +118,7 @@ def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
 
 
 def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executor: Executor | None = None) -> Search:
-    """Find the distinct equilibria reached from many starts.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> result = search(Algorithm1(), random_starts(3, 2, 7.0, 4))
-    >>> result.best.kind, len(result.best.links), len(result.failures)
-    ('minimum', 3, 0)
-    """
+    """Find the distinct equilibria reached from many starts."""
     ensure_known("method", method, METHODS)
     points = [ensure_points(f"starts[{k}]", start) for k, start in enumerate(starts)]
     if not points or any(point.shape != points[0].shape for point in points):

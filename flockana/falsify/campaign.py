@@ -62,8 +62,6 @@ def falsify(
         Instead of a scenario: the parts of a `Flock`.
     budget : int
         Runs to make at most, the scenario's own start among them.
-    seed : int
-        Of the search, >= 0.
     claim : str, optional
         Which claim to break. By default whichever comes nearest, each margin measured by its size at the scenario's
         own start.

@@ -13,17 +13,7 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 
 
 class Search:
-    """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES).
-
-    Examples
-    --------
-    >>> search = Search(np.full(3, 0.9), 0)
-    >>> for _ in range(60):
-    ...     points = search.ask()
-    ...     search.tell([float(np.sum((x - 0.3) ** 2)) for x in points])
-    >>> bool(np.abs(points[0] - 0.3).max() < 1e-3), search.restarts
-    (True, 0)
-    """
+    """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES)."""
 
     def __init__(self, start: FloatArray, seed: int) -> None:
         self.dimension, self.restarts = len(start), 0

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
@@ -64,22 +64,6 @@ class AlphaInteraction(PairInteraction):
         ℓ > 0, the length that σ₁ counts in. The source's lengths are pure numbers, and its φ takes the square of a
         length for one: ℓ = 1 is the printed law, and with ℓ the same law in any length unit (`flockana.rescale`).
 
-    Attributes
-    ----------
-    c : float
-        |a − b|/√(4ab), which makes φ(0) = 0.
-    d_alpha, r_alpha : float
-        σ-norms of d and r.
-    kappa : float
-        r/d.
-    c_star : float
-        ψ_α(0), the energy of a coincident pair.
-
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> alpha = AlphaInteraction(d=7.0, r=8.4)
@@ -104,8 +88,7 @@ class AlphaInteraction(PairInteraction):
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        for name in ("d", "r", "eps", "a", "b", "unit"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "d", "r", "eps", "a", "b", "unit")
         object.__setattr__(self, "h", ensure_bump_start(self.h))
         if self.r <= self.d:
             raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r = 1.2 d")
@@ -117,17 +100,17 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def c(self) -> float:
-        """|a − b|/√(4ab)."""
+        """|a − b|/√(4ab), which makes φ(0) = 0."""
         return (self.b - self.a) / (2.0 * sqrt(self.a) * sqrt(self.b))
 
     @cached_property
     def d_alpha(self) -> float:
-        """‖d‖_σ."""
+        """σ-norm ‖d‖_σ of the desired distance."""
         return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_alpha(self) -> float:
-        """‖r‖_σ."""
+        """σ-norm ‖r‖_σ of the range."""
         return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property
@@ -137,7 +120,7 @@ class AlphaInteraction(PairInteraction):
 
     @cached_property
     def c_star(self) -> float:
-        """ψ_α(0)."""
+        """Energy of a coincident pair, ψ_α(0)."""
         return float(self.psi_alpha(0.0))
 
     @property
@@ -176,13 +159,7 @@ class AlphaInteraction(PairInteraction):
         return float(np.abs(forces).max())
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ_α(‖x‖_σ) at Euclidean distances x.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return ψ_α(‖x‖_σ) at Euclidean distances x."""
         values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
         return values
 
@@ -256,41 +233,17 @@ class AlphaInteraction(PairInteraction):
         return evaluate(_PHI, np.asarray(s, dtype=np.float64) / self.unit**2, self.a, self.b, self.c)
 
     def phi_alpha(self, z: Any) -> Any:
-        """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α); negative repels.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α); negative repels."""
         return evaluate(_PHI_ALPHA, z, self.par)
 
     def phi_alpha_slope(self, z: Any) -> Any:
-        """Return dφ_α/dz, the stiffness of a link of σ-length z.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return dφ_α/dz, the stiffness of a link of σ-length z."""
         return evaluate(_PHI_ALPHA_SLOPE, z, self.par)
 
     def psi_alpha(self, z: Any) -> Any:
-        """Return ψ_α(z) = ∫_{d_α}^{z} φ_α, with error 1e-13 c*, or rounding of the value where that is larger.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return ψ_α(z) = ∫_{d_α}^{z} φ_α, with error 1e-13 c*, or rounding of the value where that is larger."""
         return evaluate(_PSI_ALPHA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return the weight a_ij as a function of z = ‖q_j − q_i‖_σ."""
         return evaluate(_ADJACENCY_ALPHA, z, self.par)

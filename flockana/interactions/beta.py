@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
@@ -40,16 +40,6 @@ class BetaInteraction:
     unit : float
         ℓ > 0, the length that σ₁ counts in; 1 as printed (see `AlphaInteraction`).
 
-    Attributes
-    ----------
-    d_beta, r_beta : float
-        σ-norms of d and r.
-
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> beta = BetaInteraction(d=4.2, r=5.04)
@@ -67,8 +57,7 @@ class BetaInteraction:
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:
-        for name in ("d", "r", "eps", "unit"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "d", "r", "eps", "unit")
         object.__setattr__(self, "h", ensure_bump_start(self.h))
         if self.r <= self.d:
             raise ArgumentError(f"r = {self.r:g} and d = {self.d:g}: expected r > d; the paper takes r' = 1.2 d'")
@@ -76,12 +65,12 @@ class BetaInteraction:
 
     @cached_property
     def d_beta(self) -> float:
-        """‖d'‖_σ."""
+        """σ-norm ‖d'‖_σ of the clearance."""
         return float(sigma_norm(self.d * self.d, self.eps))
 
     @cached_property
     def r_beta(self) -> float:
-        """‖r'‖_σ."""
+        """σ-norm ‖r'‖_σ of the range."""
         return float(sigma_norm(self.r * self.r, self.eps))
 
     @cached_property
@@ -114,31 +103,13 @@ class BetaInteraction:
         return self._parts[1]
 
     def phi_beta(self, z: Any) -> Any:
-        """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0."""
         return evaluate(_PHI_BETA, z, self.par)
 
     def psi_beta(self, z: Any) -> Any:
-        """Return ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return ψ_β(z) = ∫_{d_β}^{z} φ_β ≥ 0."""
         return evaluate(_PSI_BETA, z, self.par, self.panels)
 
     def adjacency(self, z: Any) -> Any:
-        """Return the weight b_ik as a function of z = ‖q̂_ik − q_i‖_σ.
-
-        Parameters
-        ----------
-        z : float or ndarray
-            σ-norms.
-        """
+        """Return the weight b_ik as a function of z = ‖q̂_ik − q_i‖_σ."""
         return evaluate(_ADJACENCY_BETA, z, self.par)

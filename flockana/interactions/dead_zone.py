@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, evaluate
@@ -70,18 +70,6 @@ class DeadZoneInteraction(PairInteraction):
         Length over which the force rises from 0 beside the dead zone. 0 gives the printed jumps; at r the force jumps
         in either case.
 
-    Attributes
-    ----------
-    d1, d2 : float
-        Ends of the dead zone.
-    contact_force : float
-        |f| ρ/√(1 + ηρ²) at d₁ without the ramp: the scale of forces.
-
-    Raises
-    ------
-    ArgumentError
-        If a parameter is outside the range above.
-
     Examples
     --------
     >>> pair = DeadZoneInteraction()
@@ -111,13 +99,8 @@ class DeadZoneInteraction(PairInteraction):
     }
 
     def __post_init__(self) -> None:
-        for name in ("r", "r_b", "delta", "r_d", "k_r"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        for name in ("k_delta", "eta", "k1", "ramp"):
-            value = ensure_finite_scalar(name, getattr(self, name))
-            if value < 0.0:
-                raise ArgumentError(f"{name} = {value:g}: expected a number >= 0")
-            object.__setattr__(self, name, value)
+        normalise(self, ensure_positive, "r", "r_b", "delta", "r_d", "k_r")
+        normalise(self, ensure_nonnegative, "k_delta", "eta", "k1", "ramp")
         if self.delta >= self.r_b:
             raise ArgumentError(
                 f"delta = {self.delta:g} and r_b = {self.r_b:g}: expected delta < r_b, or nothing repels (d1 <= 0)"
@@ -145,7 +128,7 @@ class DeadZoneInteraction(PairInteraction):
 
     @property
     def contact_force(self) -> float:
-        """Force at the end of repulsion, (2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
+        """Scale of forces: |F| at d₁ without the ramp, (2k_r/d₁² + k_δ) d₁/√(1 + ηd₁²)."""
         return (2.0 * self.k_r / self.d1**2 + self.k_delta) * self.d1 / sqrt(1.0 + self.eta * self.d1**2)
 
     @property
@@ -179,13 +162,7 @@ class DeadZoneInteraction(PairInteraction):
         return self.contact_force
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return `psi` at each distance.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return `psi` at each distance."""
         values: FloatArray = self.psi(lengths)
         return values
 
@@ -237,33 +214,15 @@ class DeadZoneInteraction(PairInteraction):
         return self._parts[1]
 
     def action(self, s: Any) -> Any:
-        """Return f(ρ), the paper's φ_z without its direction; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return f(ρ), the paper's φ_z without its direction; negative repels."""
         return evaluate(_ACTION, s, self.par)
 
     def force(self, s: Any) -> Any:
-        """Return F(ρ), the force between two agents along their line; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return F(ρ), the force between two agents along their line; negative repels."""
         return evaluate(_FORCE, s, self.par)
 
     def psi(self, s: Any) -> Any:
-        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the pair's potential ψ + ½ k₁ρ², with dψ/dρ = F, constant beyond r and ∞ at 0."""
         return evaluate(_POTENTIAL, s, self.par, self.panels)
 
     def jumps(self) -> tuple[Jump, ...]:

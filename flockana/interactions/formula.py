@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
 from flockana.base.units import Powers
@@ -74,8 +74,7 @@ class FormulaInteraction(PairInteraction):
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):
             raise ArgumentError("expected a potential or a force, one of the two")
-        for name in ("r", "d"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "r", "d")
         if self.d > self.r:
             raise ArgumentError(f"length = {self.d:g} and range = {self.r:g}: expected a length within the range")
         pairs = tuple(sorted((str(k), ensure_finite_scalar(f"parameters[{k!r}]", v)) for k, v in self.parameters))
@@ -173,45 +172,21 @@ class FormulaInteraction(PairInteraction):
         return self._parts.panels
 
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return ψ at each distance, constant beyond the range.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return ψ at each distance, constant beyond the range."""
         square = np.square(np.asarray(lengths, dtype=np.float64))
         values: FloatArray = evaluate(generated_potential(self._parts.texts[2]), square, self.par, self.panels)
         return values
 
     def force(self, s: Any) -> Any:
-        """Return the force between two agents along their line; negative repels.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the force between two agents along their line; negative repels."""
         return self._of_pair(s, 0, times_distance=True)
 
     def stress(self, s: Any) -> Any:
-        """Return the weight w of the pair force w (q_j − q_i).
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the weight w of the pair force w (q_j − q_i)."""
         return self._of_pair(s, 0)
 
     def weight(self, s: Any) -> Any:
-        """Return the adjacency a_ij at each distance.
-
-        Parameters
-        ----------
-        s : float or ndarray
-            Distances.
-        """
+        """Return the adjacency a_ij at each distance."""
         return self._of_pair(s, 1)
 
     def _of_pair(self, s: Any, row: int, *, times_distance: bool = False) -> Any:
@@ -244,11 +219,6 @@ class FormulaInteraction(PairInteraction):
 
     def in_units(self, length: float, time: float) -> FormulaInteraction:
         """Return the law in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Units before, in units after.
 
         Raises
         ------

@@ -44,11 +44,6 @@ def pair_law(
     units : mapping of str to (int, int), optional
         Powers of length and time of each parameter, so that `flockana.rescale` knows them.
 
-    Raises
-    ------
-    ArgumentError
-        As `FormulaInteraction`.
-
     Examples
     --------
     >>> law = pair_law("k*(s**2 - d**2)**2*(r**2 - s**2)**2", adjacency="(1 - s/r)**2", range=3.0,

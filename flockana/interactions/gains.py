@@ -18,13 +18,7 @@ PER_AGENT = ("c1_gamma", "c2_gamma")
 
 
 def weighted(gain: Any, values: FloatArray) -> float:
-    """Return Σ_i gain_i values_i, for one gain or one per agent.
-
-    Examples
-    --------
-    >>> weighted(2.0, np.array([1.0, 3.0])), weighted((2.0, 1.0), np.array([1.0, 3.0]))
-    (8.0, 5.0)
-    """
+    """Return Σ_i gain_i values_i, for one gain or one per agent."""
     return float(np.dot(gain, values)) if isinstance(gain, tuple) else float(gain * float(np.sum(values)))
 
 
@@ -74,7 +68,11 @@ class Gains:
             several = name in PER_AGENT and isinstance(value, list | tuple | np.ndarray) and np.ndim(value) == 1
             if several and len(value) == 0:
                 raise ArgumentError(f"{name} is empty: expected one gain, or one per agent")
-            gain = tuple(_gain(f"{name}[{i}]", x) for i, x in enumerate(value)) if several else _gain(name, value)
+            gain = (
+                tuple(ensure_gain(f"{name}[{i}]", x) for i, x in enumerate(value))
+                if several
+                else ensure_gain(name, value)
+            )
             object.__setattr__(self, name, gain)
 
     @cached_property
@@ -93,13 +91,7 @@ class Gains:
         return _column(self.c2_gamma)
 
     def check_agents(self, n: int) -> None:
-        """Raise unless there is one per-agent gain for each agent.
-
-        Raises
-        ------
-        ArgumentError
-            If they are not.
-        """
+        """Raise unless there is one per-agent gain for each agent."""
         for name in PER_AGENT:
             gain = getattr(self, name)
             if isinstance(gain, tuple) and len(gain) != n:
@@ -107,20 +99,15 @@ class Gains:
 
 
 def gains_of(values: Mapping[str, Any]) -> Gains:
-    """Return gains from a mapping; gains that it lacks keep their defaults.
-
-    Examples
-    --------
-    >>> gains_of({"c1_alpha": 2.0}).c1_alpha
-    2.0
-    """
+    """Return gains from a mapping; gains that it lacks keep their defaults."""
     names = [field.name for field in fields(Gains)]
     if (unknown := [name for name in values if name not in names]) != []:
         raise UnknownNameError("gain", unknown[0], names)
     return Gains(**values)
 
 
-def _gain(name: str, value: Any) -> float:
+def ensure_gain(name: str, value: Any) -> float:
+    """Return a finite gain >= 0."""
     gain = ensure_finite_scalar(name, value)
     if gain < 0.0:
         raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.units import Powers
 
 
@@ -24,11 +24,6 @@ class LogPotential:
     d : float
         d > 0, the distance at which it is least.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers that are not positive.
-
     Examples
     --------
     >>> potential = LogPotential(2.0, 3.0)
@@ -42,8 +37,7 @@ class LogPotential:
     units: ClassVar[Mapping[str, Powers]] = {"strength": (2, -2), "d": (1, 0)}
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "strength", ensure_positive("strength", self.strength))
-        object.__setattr__(self, "d", ensure_positive("d", self.d))
+        normalise(self, ensure_positive, "strength", "d")
 
     def energy(self, s2: Any) -> Any:
         """Return V at a squared distance.

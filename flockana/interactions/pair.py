@@ -109,13 +109,7 @@ class PairInteraction(ABC):
 
     @abstractmethod
     def energy_at(self, lengths: FloatArray) -> FloatArray:
-        """Return the potential of a pair at each Euclidean distance.
-
-        Parameters
-        ----------
-        lengths : ndarray
-            Distances.
-        """
+        """Return the potential of a pair at each Euclidean distance."""
 
     @property
     @abstractmethod

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.facts import Fact
 from flockana.base.units import Powers
 from flockana.interactions.pair import evaluate
@@ -63,11 +63,6 @@ class RationalWeight(Weight):
     length : float
         ℓ > 0.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers out of range.
-
     Examples
     --------
     >>> RationalWeight(2.0, 1.0)(1.0)
@@ -83,9 +78,9 @@ class RationalWeight(Weight):
     units: ClassVar[Mapping[str, Powers]] = {"strength": (0, -1), "length": (1, 0)}
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "strength", ensure_positive("strength", self.strength))
-        object.__setattr__(self, "decay", ensure_nonnegative("decay", self.decay))
-        object.__setattr__(self, "length", ensure_positive("length", self.length))
+        normalise(self, ensure_positive, "strength")
+        normalise(self, ensure_nonnegative, "decay")
+        normalise(self, ensure_positive, "length")
 
     @cached_property
     def par(self) -> FloatArray:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
-from flockana.base.checks import ensure_nonnegative
+from flockana.base.checks import ensure_nonnegative, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 
@@ -30,11 +30,6 @@ class ZoneNoise:
     seed : int
         Which of the runs, >= 0.
 
-    Raises
-    ------
-    ArgumentError
-        On numbers out of range.
-
     Examples
     --------
     >>> ZoneNoise(weights=0.5).quiet, ZoneNoise().quiet
@@ -49,8 +44,7 @@ class ZoneNoise:
     units: ClassVar[Mapping[str, Powers]] = {"velocities": (1, -1)}
 
     def __post_init__(self) -> None:
-        for name in ("weights", "velocities"):
-            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+        normalise(self, ensure_nonnegative, "weights", "velocities")
         if self.weights > 1.0:
             raise ArgumentError(f"weights = {self.weights:g}: expected at most 1, so that no weight becomes negative")
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 
@@ -89,13 +89,7 @@ class ZoneRadii:
             raise ArgumentError(f"{found}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return (r, c, a, s) of n agents, each of shape (n,).
-
-        Raises
-        ------
-        ArgumentError
-            If there are radii for another number of agents.
-        """
+        """Return (r, c, a, s) of n agents, each of shape (n,)."""
         r, c, a = (_spread(name, getattr(self, name), n) for name in ("r", "c", "a"))
         return r, c, a, r if self.s is None else _spread("s", self.s, n)
 
@@ -150,14 +144,12 @@ class ZoneWeights:
     }
 
     def __post_init__(self) -> None:
-        for name in (*_PAIRS, "alien"):
-            object.__setattr__(self, name, _table(name, getattr(self, name)))
+        normalise(self, _table, *_PAIRS, "alien")
         for name in ("cohesion", "alignment"):
             _check_sums(name, getattr(self, name))
         for name in ("speed", "obstacle"):
             object.__setattr__(self, name, _each(name, getattr(self, name), ensure_nonnegative))
-        for name in ("cohesion_gain", "alignment_gain"):
-            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+        normalise(self, ensure_nonnegative, "cohesion_gain", "alignment_gain")
 
     def arrays(self, n: int, aliens: int = 0) -> dict[str, FloatArray]:
         """Return the weights by name as arrays: (n, n) of pairs or (1, 1), (n, K) of aliens, (n,) of agents.
@@ -166,11 +158,6 @@ class ZoneWeights:
         ----------
         aliens : int
             Number of aliens, K.
-
-        Raises
-        ------
-        ArgumentError
-            If there are weights for another number of agents or aliens.
         """
         values = {}
         for field in fields(self)[:6]:

@@ -30,8 +30,6 @@ def read_lammps(
 
     Parameters
     ----------
-    path : path
-        The dump.
     law : Law
         The law to hold it against, such as the one that was exported; a continuous one.
     start : float

@@ -39,11 +39,6 @@ def max_ratio(name: str) -> float:
     name : str
         The builder's name, such as ``"hexagonal_patch"`` or ``"bcc"``.
 
-    Raises
-    ------
-    UnknownNameError
-        If there is no such builder.
-
     Examples
     --------
     >>> round(max_ratio("bcc"), 4)  # below the usual 1.2

@@ -214,11 +214,6 @@ def _parts(pairs: Any) -> int:
 
 
 def ensure_plane(m: int) -> None:
-    """Raise unless positions are in the plane.
-
-    Examples
-    --------
-    >>> ensure_plane(2)
-    """
+    """Raise unless positions are in the plane."""
     if m != 2:
         raise ArgumentError(f"q has {m} columns: expected 2, as faces are those of a drawing in the plane")

@@ -21,13 +21,7 @@ from flockana.laws.terms.term import Term
 
 
 def ensure_obstacles(given: Any) -> tuple[Obstacle, ...]:
-    """Return obstacles as a tuple, or raise if something among them is none.
-
-    Examples
-    --------
-    >>> ensure_obstacles([])
-    ()
-    """
+    """Return obstacles as a tuple, or raise if something among them is none."""
     expected = "a sequence such as (Sphere((5, 0), 1),)"
     ensure_part("obstacles", given, Iterable, expected)
     if getattr(given, "ndim", 1) == 0:  # numpy's numbers are iterable by their type alone
@@ -47,12 +41,8 @@ class Algorithm3(GainedLaw):
 
     Parameters
     ----------
-    alpha : PairInteraction
-        The pair law; that of the paper by default.
     gains : Gains
         All six are used.
-    target : Target
-        The γ-agent.
     beta : BetaInteraction
         The law between an agent and its β-agents.
     obstacles : sequence of Obstacle

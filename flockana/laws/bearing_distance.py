@@ -21,6 +21,7 @@ from flockana.base.checks import (
     ensure_points,
     ensure_positive,
     ensure_state,
+    normalise,
 )
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
@@ -74,8 +75,6 @@ class ZoneFlocking(DiscreteLaw):
         v^d of the global speed behaviour.
     u_max, v_max : float
         Bounds of input and speed.
-    dt : float
-        Step.
     growth : float
         How fast the radius of attraction of an agent grows while nobody is in its zones of conflict and attraction
         (Remark 2), farther than r from it; it is a again as soon as somebody is there. By default 0: it stays a.
@@ -111,11 +110,6 @@ class ZoneFlocking(DiscreteLaw):
         One term for each wall that the zone reaches, (21), or the nearest only, (8) (A14).
     polygons : {"nearest", "each"}
         One term for each polygon that the zone meets, at its closest point, (8), or for each of its edges, (21).
-
-    Raises
-    ------
-    ArgumentError
-        On parameters out of range, an unknown choice, or a box smaller than a zone.
 
     Examples
     --------
@@ -201,9 +195,8 @@ class ZoneFlocking(DiscreteLaw):
         for name, kind in parts:
             if not isinstance(getattr(self, name), kind):
                 raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a {kind.__name__}")
-        for name in ("desired_speed", "u_max", "v_max", "dt", "base"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        object.__setattr__(self, "growth", ensure_nonnegative("growth", self.growth))
+        normalise(self, ensure_positive, "desired_speed", "u_max", "v_max", "dt", "base")
+        normalise(self, ensure_nonnegative, "growth")
         if self.base > 1.0:
             raise ArgumentError(f"base = {self.base:g}: expected at most 1, so that the zone lies in that of conflict")
         for name, names in CHOICES.items():

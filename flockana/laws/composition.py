@@ -16,6 +16,7 @@ from flockana.base.checks import (
     ensure_nonnegative,
     ensure_positive,
     ensure_state,
+    normalise,
 )
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.scales import Scales
@@ -64,8 +65,6 @@ class Composition(GainedLaw):
         Gains of all terms but the last.
     net : PairInteraction or Weight, optional
         Range and adjacency of the consensus, if they are not those of `alpha`, or any weight of the distance.
-    target : Target, optional
-        The γ-agent.
     unit : float, optional
         ℓ of a bounded pull −c1γ ℓ σ₁((q_i − q_r)/ℓ); None for the linear one.
     feedforward : bool
@@ -123,7 +122,7 @@ class Composition(GainedLaw):
             ensure_one_dimension(self.obstacles, self.target.dimension, "the target has")
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
-        object.__setattr__(self, "feedforward", ensure_flag("feedforward", self.feedforward))
+        normalise(self, ensure_flag, "feedforward")
         if self.feedforward and (self.target is None or self.target.harmonic is None):
             raise ArgumentError(
                 f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "

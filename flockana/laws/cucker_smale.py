@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag
+from flockana.base.checks import FloatArray, ensure_flag, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
@@ -31,11 +31,6 @@ class CuckerSmale(SumOfTerms):
     mean : bool
         Whether the sum is divided by n (Ha and Liu); it is not by default (Cucker and Smale).
 
-    Raises
-    ------
-    ArgumentError
-        On another weight, or if `mean` is no truth value.
-
     Examples
     --------
     >>> law = CuckerSmale(RationalWeight(strength=2.0, decay=1.0))
@@ -51,7 +46,7 @@ class CuckerSmale(SumOfTerms):
     def __post_init__(self) -> None:
         if not isinstance(self.weight, RationalWeight):
             raise ArgumentError(f"weight = {self.weight!r}: expected RationalWeight(strength, decay, length)")
-        object.__setattr__(self, "mean", ensure_flag("mean", self.mean))
+        normalise(self, ensure_flag, "mean")
 
     @property
     def scales(self) -> Scales:
@@ -78,12 +73,6 @@ class CuckerSmale(SumOfTerms):
 
 
 def spread(x: FloatArray) -> FloatArray:
-    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,).
-
-    Examples
-    --------
-    >>> spread(np.array([[[0.0], [2.0]]])) ** 2
-    array([2.])
-    """
+    """Return √Σ‖x_i − x̄‖² of each sample, shape (T,)."""
     root: FloatArray = np.sqrt(np.sum((x - x.mean(axis=1, keepdims=True)) ** 2, axis=(1, 2)))
     return root

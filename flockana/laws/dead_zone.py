@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points, ensure_state
+from flockana.base.checks import FloatArray, ensure_points, ensure_state, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.interactions.gains import ensure_gain
 from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
 from flockana.kernels.dead_zone_steps import semi_implicit_steps
 from flockana.laws.discrete import IndexArray
@@ -43,11 +44,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     k2 : float
         Gain k₂ ≥ 0 of velocity consensus.
 
-    Raises
-    ------
-    ArgumentError
-        On a negative gain or another interaction.
-
     Examples
     --------
     Nothing but k₁ acts within the dead zone, and two agents too near repel each other:
@@ -69,10 +65,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def __post_init__(self) -> None:
         if not isinstance(self.interaction, DeadZoneInteraction):
             raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
-        gain = ensure_finite_scalar("k2", self.k2)
-        if gain < 0.0:
-            raise ArgumentError(f"k2 = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
-        object.__setattr__(self, "k2", gain)
+        normalise(self, ensure_gain, "k2")
 
     @property
     def scales(self) -> Scales:
@@ -86,11 +79,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Return the control input u(q, p).
-
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
 
         Raises
         ------
@@ -119,13 +107,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return self.hamiltonian(0.0, q, p) - apart * self.interaction.far_potential
 
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
-        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse.
-
-        Parameters
-        ----------
-        t : float
-            Time (it does not depend on it).
-        """
+        """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse."""
         q = ensure_points("q", q)
         ensure_apart(q)
         return super().stiffness(q, t)
@@ -145,8 +127,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
         Parameters
         ----------
-        dt : float
-            Step.
         steps : int
             How many; after the last that is wanted none is made.
         wanted : ndarray of int, shape (S,), optional
@@ -175,8 +155,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Zones.
-        t : float
-            Time (the law does not depend on it).
         """
         u = np.zeros_like(q)
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
@@ -244,12 +222,7 @@ def contact_scales(interaction: DeadZoneInteraction) -> Scales:
 
 
 def ensure_apart(q: FloatArray, force: str = "the dead-zone force") -> None:
-    """Raise if two agents coincide: their force, in words, has no direction.
-
-    Examples
-    --------
-    >>> ensure_apart(np.array([[0.0], [1.0]]))
-    """
+    """Raise if two agents coincide: their force, in words, has no direction."""
     from scipy.spatial import KDTree
 
     if len(q) > 1:

@@ -21,12 +21,6 @@ def law_derivation(law: Any, m: int = 2) -> EnergyIdentity:
 
     The sums are over n agents, whatever n is: the identity is derived from one generic pair and one generic agent, in
     the σ-norm z_ij, of which every function of a pair's distance is one.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> law_derivation(Algorithm1(), 1).holds
-    True
     """
     from flockana.symbolic.energy import algorithm1_identity, structural_identity
 

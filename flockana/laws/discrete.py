@@ -59,8 +59,6 @@ class DiscreteLaw(LawOfMotion):
 
         Parameters
         ----------
-        q : ndarray, shape (n, 2)
-            Positions.
         heading : ndarray, shape (n,)
             Headings, in radians.
         """
@@ -149,23 +147,12 @@ class DiscreteLaw(LawOfMotion):
         return None
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """Return the memory before the first step; empty by default.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Return the memory before the first step; empty by default."""
         return {}
 
 
 def ensure_law(law: Any) -> Law | DiscreteLaw:
     """Return `law` if it is a law or a map; raise otherwise.
-
-    Parameters
-    ----------
-    law : object
-        What the caller gave.
 
     Raises
     ------

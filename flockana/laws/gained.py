@@ -17,13 +17,7 @@ class GainedLaw(SumOfTerms):
     gains: Gains
 
     def in_units(self, length: float, time: float) -> Self:
-        """Return the law in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors of lengths and times.
-        """
+        """Return the law in other units (`flockana.rescale`)."""
         changed: dict[str, Any] = scaled_fields(self, length, time)
         if timed(getattr(self, "alpha", None)):
             changed["gains"] = replace(changed["gains"], c1_alpha=self.gains.c1_alpha)
@@ -33,13 +27,6 @@ class GainedLaw(SumOfTerms):
 
 
 def timed(pair: PairInteraction | Weight | None) -> bool:
-    """Return whether a pair law or a weight depends on the unit of time.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction, DeadZoneInteraction
-    >>> timed(AlphaInteraction()), timed(DeadZoneInteraction())
-    (False, True)
-    """
+    """Return whether a pair law or a weight depends on the unit of time."""
     of_formula = (power for _, _, power in getattr(pair, "powers", ()))
     return any(power for _, power in getattr(pair, "units", {}).values()) or any(of_formula)

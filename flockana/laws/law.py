@@ -160,43 +160,17 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         return None
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Finite positions and velocities.
-        """
+        """The energy whose rate `Law.flow` returns, unchecked; NaN for a law without one."""
         return float("nan")
 
     def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a subclass says so
-        """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """Raise if the law does not live in m dimensions; a law with vectors in its parameters overrides this."""
 
     def check_agents(self, n: int) -> None:  # noqa: B027  # as `check_dimension`
-        """Raise if the law is not for n agents; a law with a parameter per agent overrides this.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+        """Raise if the law is not for n agents; a law with a parameter per agent overrides this."""
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if the law must not be started from this state; `simulate` asks before it integrates.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, m)
-            Initial positions and velocities.
-        """
+        """Raise if the law must not be started from this state; `simulate` asks before it integrates."""
         self.check_agents(len(q))
 
     def measures(
@@ -208,8 +182,6 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         ----------
         t : ndarray, shape (T,)
             Sample times.
-        q, p : ndarray, shape (T, n, m)
-            Positions and velocities at the samples.
         extra : mapping of str to ndarray
             Further series of the run.
 
@@ -240,15 +212,7 @@ class Law(LawOfMotion):
 
     @abstractmethod
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Acceleration u of shape (n, m) and dH/dt in closed form (NaN for a law without energy), unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Finite positions and velocities.
-        """
+        """Acceleration u of shape (n, m) and dH/dt in closed form (NaN for a law without energy), unchecked."""
 
     def _checked(self, t: Any, q: Any, p: Any) -> tuple[float, FloatArray, FloatArray]:
         q, p = ensure_state(q, p)
@@ -257,15 +221,7 @@ class Law(LawOfMotion):
         return ensure_finite_scalar("t", t), q, p
 
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """What `flow` gives; raise unless it is an array of real numbers in the flock's shape and a real number.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Finite positions and velocities.
-        """
+        """Return `flow`; raise unless it is an array of real numbers in the flock's shape and a real number."""
         given: Any = self.flow(t, q, p)
         name, at = type(self).__name__, f"at t = {t:g}"
         if not isinstance(given, tuple) or len(given) != 2:
@@ -280,8 +236,6 @@ class Law(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time.
         q, p : array_like, shape (n, m)
             Positions and velocities, m = 1, 2 or 3.
 
@@ -305,8 +259,6 @@ class Law(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time.
         q, p : array_like, shape (n, m)
             Positions and velocities.
         """
@@ -317,38 +269,17 @@ class Law(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time.
         q, p : array_like, shape (n, m)
             Positions and velocities.
         """
         return self.checked_flow(*self._checked(t, q, p))[1]
 
     def compiled(self, m: int) -> Compiled | None:
-        """The law for integrators that are compiled too (`flockana.dynamics.compiled`); None, unless it has that form.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """Return the law for compiled integrators (`flockana.dynamics.compiled`); None if it has no such form."""
         return None
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[sparray, sparray]:
-        """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; a law that has them overrides this.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Finite positions and velocities.
-
-        Raises
-        ------
-        ArgumentError
-            If the law has none.
-        """
+        """(∂u/∂q, ∂u/∂p), sparse, in the order of ``q.ravel()``, unchecked; a law that has them overrides this."""
         name = type(self).__name__
         raise ArgumentError(f"{name} gives no derivatives: expected a law that implements `derivatives` to linearise")
 
@@ -357,8 +288,6 @@ class Law(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time.
         q, p : array_like, shape (n, m)
             Positions and velocities, an equilibrium or not.
         sparse : bool

@@ -9,11 +9,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar
+from flockana.base.checks import FloatArray, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
+from flockana.interactions.gains import ensure_gain
 from flockana.laws.dead_zone import contact_scales, ensure_apart
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.leaders import Leaders, known_path
@@ -86,11 +87,7 @@ class LedDeadZoneFlocking(SumOfTerms):
             raise ArgumentError(f"interaction = {self.interaction!r}: expected DeadZoneInteraction(...)")
         if self.interaction.ramp == 0.0:
             raise ArgumentError("interaction.ramp = 0: expected a ramp such as 0.25; only DeadZoneFlocking takes jumps")
-        for name in ("k2", "c1", "c2"):
-            gain = ensure_finite_scalar(name, getattr(self, name))
-            if gain < 0.0:
-                raise ArgumentError(f"{name} = {gain:g}: expected a gain >= 0; a negative one feeds energy in")
-            object.__setattr__(self, name, gain)
+        normalise(self, ensure_gain, "k2", "c1", "c2")
         leaders = tuple(self.leaders) if isinstance(self.leaders, Iterable) else ()
         if not leaders:
             raise ArgumentError(f"leaders = {self.leaders!r}: expected one or more, such as (LinearTarget(...),)")

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -43,9 +43,8 @@ class LinkKeeping(SumOfTerms):
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k": (1, -2), "c": (0, -1)}
 
     def __post_init__(self) -> None:
-        for name in ("r", "k"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        object.__setattr__(self, "c", ensure_nonnegative("c", self.c))
+        normalise(self, ensure_positive, "r", "k")
+        normalise(self, ensure_nonnegative, "c")
         ends = np.asarray(self.links)
         if ends.size and (ends.ndim != 2 or ends.shape[1] != 2 or ends.dtype.kind not in "iu" or ends.min() < 0):
             raise ArgumentError(f"links = {self.links!r}: expected pairs of agents such as ((0, 1), (1, 2))")
@@ -116,12 +115,6 @@ class LinkKeeping(SumOfTerms):
         return lengths
 
     def longest(self, energy: float) -> float:
-        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
-
-        Examples
-        --------
-        >>> LinkKeeping(((0, 1),), r=2.0).longest(1.0)
-        1.0
-        """
+        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H."""
         root = sqrt(energy * energy + 4.0 * self.k * energy * self.r)
         return 2.0 * energy * self.r / (energy + root) if energy > 0.0 else 0.0

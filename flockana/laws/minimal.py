@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_points
+from flockana.base.checks import FloatArray, ensure_flag, ensure_points, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
@@ -84,12 +84,11 @@ class MinimalFlocking(Law):
     def __post_init__(self) -> None:
         if self.beta is not None and self.spacing is not None:
             raise ArgumentError(f"beta = {self.beta} and spacing = {self.spacing}: expected one of them, or neither")
-        object.__setattr__(self, "normalised", ensure_flag("normalised", self.normalised))
+        normalise(self, ensure_flag, "normalised")
         for name in ("radius", "beta", "spacing"):
             if name == "radius" or getattr(self, name) is not None:
                 object.__setattr__(self, name, per_agent(name, getattr(self, name)))
-        for name in ("mu", "sigma"):
-            object.__setattr__(self, name, per_pair(name, getattr(self, name)))
+        normalise(self, per_pair, "mu", "sigma")
         if self.edges is not None:
             object.__setattr__(self, "edges", ensure_edges(self.edges))
         self._check_sizes()
@@ -110,11 +109,6 @@ class MinimalFlocking(Law):
 
     def in_units(self, length: float, time: float) -> MinimalFlocking:
         """Return the law in other units (`flockana.rescale`).
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
 
         Raises
         ------
@@ -234,21 +228,13 @@ class MinimalFlocking(Law):
 
         Parameters
         ----------
-        dt : float
-            Step.
         steps : int
             How many.
         """
         return semi_implicit_steps(q, p, *self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN.
-
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-        """
+        """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN."""
         u = np.zeros_like(q)
         if self._one_weight:
             perceived_forces(q, p, *self._alike(len(q)), u)
@@ -257,13 +243,7 @@ class MinimalFlocking(Law):
         return u, -0.5 * dissipated if self.reciprocal else float("nan")
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
-        """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time (H does not depend on it).
-        """
+        """Return H = ½ Σ‖v_i − v̄‖² + ½ Σ μ (‖x‖ − ρ)² over links if `reciprocal`, else NaN; unchecked."""
         if not self.reciprocal:
             return float("nan")
         head, tail, mu, rho, _ = self._frozen
@@ -297,11 +277,6 @@ class MinimalFlocking(Law):
         ∂u_i/∂q_j = μ ((1 − ρ/‖x‖) I + ρ/‖x‖ b bᵀ) with the bearing b = x/‖x‖, and ∂u_i/∂p_j = a I; the blocks of an
         agent sum to zero. Where an agent comes or goes the law jumps and has no derivative: that is not seen here.
 
-        Parameters
-        ----------
-        t : float
-            Time (the law does not depend on it).
-
         Raises
         ------
         ArgumentError
@@ -332,13 +307,7 @@ class MinimalFlocking(Law):
         return summed(stiffness), summed(align[:, None, None] * identity)
 
     def discrete(self, dt: float = 0.1) -> DiscreteMinimalFlocking:
-        """Return the law in steps, as the paper simulates it.
-
-        Parameters
-        ----------
-        dt : float
-            Step.
-        """
+        """Return the law in steps, as the paper simulates it."""
         return DiscreteMinimalFlocking(self, dt)
 
 
@@ -359,11 +328,6 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
     ----------
     dt : float
         Step δ; 0.1 in the paper.
-
-    Raises
-    ------
-    ArgumentError
-        On another law, or a step that is not positive.
 
     Examples
     --------

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_positive
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_flag, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
@@ -57,9 +57,9 @@ class MSNDiscretisation(DiscreteLaw):
             )
         if self.target is not None:
             ensure_one_gain(self.law.gains)
-        object.__setattr__(self, "in_place", ensure_flag("in_place", self.in_place))
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
-        object.__setattr__(self, "position_factor", ensure_finite_scalar("position_factor", self.position_factor))
+        normalise(self, ensure_flag, "in_place")
+        normalise(self, ensure_positive, "dt")
+        normalise(self, ensure_finite_scalar, "position_factor")
 
     @property
     def alpha(self) -> AlphaInteraction:

@@ -35,25 +35,14 @@ PAIR, GAINS, TARGET = (
 
 
 def ensure_gains(law: Any) -> None:
-    """Check the gains of a law; a dictionary of gains becomes `Gains`.
-
-    Examples
-    --------
-    >>> Algorithm1(gains={"c1_alpha": 2.0}).gains.c1_alpha
-    2.0
-    """
+    """Check the gains of a law; a dictionary of gains becomes `Gains`."""
     if isinstance(law.gains, Mapping):
         object.__setattr__(law, "gains", gains_of(law.gains))
     ensure_part("gains", law.gains, Gains, GAINS)
 
 
 def ensure_one_gain(gains: Gains) -> None:
-    """Raise on what is no Gains, and on per-agent gains, for what needs the split into a shape and a centre of mass.
-
-    Examples
-    --------
-    >>> ensure_one_gain(Gains())
-    """
+    """Raise on what is no Gains, and on per-agent gains, for what needs the split into a shape and a centre of mass."""
     ensure_part("gains", gains, Gains, GAINS)
     if gains.per_agent:
         raise ArgumentError(
@@ -63,13 +52,7 @@ def ensure_one_gain(gains: Gains) -> None:
 
 
 def paper_pair(law: Any) -> AlphaInteraction:
-    """The pair law of a law, which must be the paper's: what is proved of φ_α holds of no other.
-
-    Examples
-    --------
-    >>> paper_pair(Algorithm1()).kappa
-    1.2
-    """
+    """The pair law of a law, which must be the paper's: what is proved of φ_α holds of no other."""
     if not isinstance(law.alpha, AlphaInteraction):
         raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), of which this is known")
     return law.alpha
@@ -98,8 +81,6 @@ class Algorithm1(GainedLaw):
 
     Parameters
     ----------
-    alpha : PairInteraction
-        The pair law; that of the paper by default.
     gains : Gains
         Only c1_alpha and c2_alpha are used.
 
@@ -149,17 +130,8 @@ class Algorithm2(GainedLaw):
 
     Parameters
     ----------
-    alpha : PairInteraction
-        The pair law; that of the paper by default.
     gains : Gains
         c1 and c2 of α and γ are used.
-    target : Target
-        The γ-agent.
-
-    Raises
-    ------
-    ArgumentError
-        If no target is given.
 
     Examples
     --------

@@ -32,15 +32,8 @@ class PeerToPeer(SumOfTerms):
     ----------
     copies : Copies
         The γ-agents, one for each agent.
-    alpha : PairInteraction
-        The pair law; that of the paper by default.
     gains : Gains
         c1 and c2 of α and γ are used.
-
-    Raises
-    ------
-    ArgumentError
-        If no copies are given.
 
     Examples
     --------

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.laws.discrete import DiscreteLaw
@@ -15,18 +15,7 @@ from flockana.laws.law import Law
 
 @dataclass(frozen=True)
 class Scheme(DiscreteLaw):
-    """A map that approximates the flow of a law; a subclass says how it steps.
-
-    Parameters
-    ----------
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
-    """
+    """A map that approximates the flow of a law; a subclass says how it steps."""
 
     law: Law
     dt: float = 0.01
@@ -38,7 +27,7 @@ class Scheme(DiscreteLaw):
     def __post_init__(self) -> None:
         if not isinstance(self.law, Law):
             raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
-        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
+        normalise(self, ensure_positive, "dt")
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped

@@ -63,13 +63,7 @@ class SumOfTerms(Law):
         return u, rate
 
     def compiled(self, m: int) -> Compiled | None:
-        """The terms for integrators that are compiled too; None if one has no such form.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """The terms for integrators that are compiled too; None if one has no such form."""
         if not overrides_consistently(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels: list[TermKernel] = []
@@ -81,15 +75,7 @@ class SumOfTerms(Law):
         return Compiled(tuple(kernels), self.moving)
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
-        """Σ U^T, unchecked.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Σ U^T, unchecked."""
         return float(sum(term.energy(t, q) for term in self.terms))
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102

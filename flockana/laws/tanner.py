@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_positive
+from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -39,11 +39,6 @@ class FixedNetFlocking(Law):
     k2 : float
         k₂ > 0; the paper has 1.
 
-    Raises
-    ------
-    ArgumentError
-        On edges that are none, or a gain that is not positive.
-
     Examples
     --------
     >>> law = FixedNetFlocking(edges=((0, 1),))
@@ -61,7 +56,7 @@ class FixedNetFlocking(Law):
     def __post_init__(self) -> None:
         object.__setattr__(self, "edges", _edges(self.edges))
         _ensure_potential(self.potential)
-        object.__setattr__(self, "k2", ensure_positive("k2", self.k2))
+        normalise(self, ensure_positive, "k2")
 
     @property
     def scales(self) -> Scales:
@@ -119,11 +114,6 @@ class ProximityFlocking(SwitchedLaw):
     k2 : float
         k₂ > 0; the paper has 1.
 
-    Raises
-    ------
-    ArgumentError
-        On R that is not beyond d, or a gain that is not positive.
-
     Examples
     --------
     >>> law = ProximityFlocking(r=2.0)
@@ -140,8 +130,7 @@ class ProximityFlocking(SwitchedLaw):
 
     def __post_init__(self) -> None:
         _ensure_potential(self.potential)
-        for name in ("r", "k2"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
+        normalise(self, ensure_positive, "r", "k2")
         if self.r <= self.potential.d:
             raise ArgumentError(f"r = {self.r:g}: expected more than d = {self.potential.d:g}, where V is least")
 
@@ -180,8 +169,6 @@ class ProximityFlocking(SwitchedLaw):
         ----------
         pieces : ndarray of int8
             Where each pair is held.
-        t : float
-            Time (the law does not depend on it).
         """
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)

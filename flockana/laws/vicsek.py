@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_finite_scalar, ensure_nonnegative, ensure_positive
+from flockana.base.checks import (
+    FloatArray,
+    ensure_choice,
+    ensure_finite_scalar,
+    ensure_nonnegative,
+    ensure_positive,
+    normalise,
+)
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
@@ -56,11 +63,6 @@ class HeadingAveraging(DiscreteLaw):
     seed : int
         Of the noise, >= 0; every number is a function of (seed, step, agent).
 
-    Raises
-    ------
-    ArgumentError
-        On parameters out of range, or a start that is not in the plane or has another speed.
-
     Examples
     --------
     Two neighbours at 0.2 and 0.4 radians agree after one step:
@@ -86,10 +88,9 @@ class HeadingAveraging(DiscreteLaw):
     references = ("jadbabaie-lin-morse-2003", "vicsek-1995")
 
     def __post_init__(self) -> None:
-        for name in ("range", "speed", "dt"):
-            object.__setattr__(self, name, ensure_positive(name, getattr(self, name)))
-        object.__setattr__(self, "zero", ensure_finite_scalar("zero", self.zero))
-        object.__setattr__(self, "noise", ensure_nonnegative("noise", self.noise))
+        normalise(self, ensure_positive, "range", "speed", "dt")
+        normalise(self, ensure_finite_scalar, "zero")
+        normalise(self, ensure_nonnegative, "noise")
         ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
             raise ArgumentError(f"noise = {self.noise:g}: expected radians, at most 2π, a heading that forgets itself")
@@ -134,11 +135,6 @@ class HeadingAveraging(DiscreteLaw):
     def links(self, q: FloatArray) -> LinkArray:
         """Unordered pairs in or on each other's circle, each once, unchecked.
 
-        Parameters
-        ----------
-        q : ndarray, shape (n, 2)
-            Positions.
-
         Examples
         --------
         >>> HeadingAveraging(range=1.0).links(np.array([[0.0, 0.0], [1.0, 0.0], [2.5, 0.0]])).tolist()
@@ -149,13 +145,7 @@ class HeadingAveraging(DiscreteLaw):
         return within
 
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The headings of a start in [zero, zero + 2π); with noise, step 0.
-
-        Parameters
-        ----------
-        q, p : ndarray, shape (n, 2)
-            Initial positions and velocities.
-        """
+        """The headings of a start in [zero, zero + 2π); with noise, step 0."""
         heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
         return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
 
@@ -178,8 +168,6 @@ class HeadingAveraging(DiscreteLaw):
 
         Parameters
         ----------
-        q : ndarray, shape (n, 2)
-            Positions.
         heading : ndarray, shape (n,)
             Headings, in radians.
 

@@ -56,16 +56,6 @@ def clearance(
 
     The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
     are too sparse to resolve the motion.
-
-    Examples
-    --------
-    An agent that grazes the unit disc halfway between two samples:
-
-    >>> from flockana.environment.obstacles import Sphere
-    >>> q, p = np.array([[[-2.0, 1.5]], [[2.0, 1.5]]]), np.array([[[4.0, 0.0]]] * 2)
-    >>> closest = clearance(np.array([0.0, 1.0]), q, p, 0.0 * p, [Sphere((0.0, 0.0), 1.0)])
-    >>> round(closest.lower, 6), round(closest.reached, 6), closest.time
-    (0.5, 0.5, 0.5)
     """
     n, m = q.shape[1:]
     least_of = [_Least(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
@@ -196,14 +186,6 @@ def constrained_lattice(
     """Measure a configuration against a constrained α-lattice (Olfati-Saber 2006).
 
     The repulsion ends at d' but N_i^β at r': an agent between the two is a neighbour that nothing pulls to d'.
-
-    Examples
-    --------
-    >>> from flockana.environment.obstacles import Wall
-    >>> wall = Wall((0.0, 0.0), (0.0, 1.0))
-    >>> state = constrained_lattice([[0.0, 4.2], [7.0, 4.7]], [wall], alpha=AlphaInteraction(), beta=BetaInteraction())
-    >>> round(state.alpha_error, 6), round(state.beta_error, 6), state.links, state.beta_links
-    (0.017834, 0.5, 1, 2)
     """
     q = ensure_points("q", q)
     excess = np.abs(link_lengths(q, links(q, alpha.r)) - alpha.d)

@@ -18,15 +18,7 @@ def _has_leader(law: Any) -> bool:
 
 
 def following(run: Any) -> FloatArray:
-    """Return which agents match their leader's velocity at the end, within 1/100 of the law's speed, shape (n,).
-
-    Examples
-    --------
-    >>> from flockana import Algorithm2, StaticTarget, simulate
-    >>> run = simulate(Algorithm2(target=StaticTarget((0.0,))), [[0.0]], [[0.0]], (0.0, 1.0))
-    >>> following(run).tolist()
-    [True]
-    """
+    """Return which agents match their leader's velocity at the end, within 1/100 of the law's speed, shape (n,)."""
     rate = run.law.target.rate(float(run.t[-1]))
     same: FloatArray = np.linalg.norm(run.p[-1] - rate, axis=1) <= FOLLOWS * run.scales.speed
     return same

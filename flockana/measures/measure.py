@@ -93,11 +93,5 @@ class Measure:
 
 @cache
 def measures() -> Mapping[str, Measure]:
-    """Return all measures by name, from the ``MEASURES`` of the files of this package.
-
-    Examples
-    --------
-    >>> measures()["strain"].summary
-    'δ/d, largest |link − d|/d, at the end'
-    """
+    """Return all measures by name, from the ``MEASURES`` of the files of this package."""
     return {it.name: it for module in modules("flockana.measures") for it in getattr(module, "MEASURES", ())}

@@ -45,13 +45,7 @@ def links(q: Any, r: float) -> LinkArray:
 
 
 def link_lengths(q: FloatArray, pairs: LinkArray) -> FloatArray:
-    """Return the Euclidean length of each link.
-
-    Examples
-    --------
-    >>> link_lengths(np.array([[0.0, 0.0], [3.0, 4.0]]), np.array([[0, 1]], dtype=np.int32)).tolist()
-    [5.0]
-    """
+    """Return the Euclidean length of each link."""
     q, _, unit = scaled_near_one(q)
     return lengths(q[pairs[:, 1]] - q[pairs[:, 0]]) * unit
 
@@ -104,11 +98,6 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
     With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
     for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
-
-    Examples
-    --------
-    >>> printed_edge_share(3, np.array([[0, 1]], dtype=np.int32))
-    1.0
     """
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)

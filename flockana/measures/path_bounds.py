@@ -41,15 +41,6 @@ def closest_approach(
 
     Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
     samples are too sparse to resolve the motion.
-
-    Examples
-    --------
-    Two agents that pass each other between the samples, in one dimension:
-
-    >>> q = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
-    >>> p = np.array([[[1.0], [-1.0]]] * 2)
-    >>> closest_approach(np.array([0.0, 1.0]), q, p, 0.0 * p).lower
-    0.0
     """
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
@@ -95,17 +86,7 @@ def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
 def cohesion_bound(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
 ) -> FloatArray:
-    """Return an upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples.
-
-    Examples
-    --------
-    Two agents that swing out and back between the samples, q = ± t (1 − t):
-
-    >>> q, p = np.zeros((2, 2, 1)), np.array([[[1.0], [-1.0]], [[-1.0], [1.0]]])
-    >>> u = np.array([[[-2.0], [2.0]]] * 2)
-    >>> round(float(cohesion_bound(np.array([0.0, 1.0]), q, p, u)[0]), 6)
-    0.25
-    """
+    """Return an upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples."""
     radii, bounds = cohesion_radii(q), np.empty(len(t) - 1)
     for k in range(len(t) - 1):
         points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
@@ -133,14 +114,6 @@ def contacts(
     """Return the pairs that come within `tol` of each other, with their first times, in order of time.
 
     Only in the intervals given, in rising order, if it is known that none comes so near in the others.
-
-    Examples
-    --------
-    >>> q = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
-    >>> p = np.array([[[1.0], [-1.0]]] * 2)
-    >>> (contact,) = contacts(np.array([0.0, 1.0]), q, p, 0.0 * p, tol=1e-9)
-    >>> contact.i, contact.j, contact.crossed, abs(contact.time - 0.5) < 1e-9
-    (0, 1, True, True)
     """
     first: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1) if intervals is None else intervals:

@@ -60,11 +60,6 @@ class Reynolds:
         ----------
         agent : int
             Its number, 0 to n − 1.
-
-        Raises
-        ------
-        ArgumentError
-            If there is no such agent.
         """
         n = len(self.centring)
         if isinstance(agent, bool) or not isinstance(agent, int | np.integer) or not 0 <= agent < n:
@@ -87,8 +82,6 @@ def reynolds(q: Any, p: Any, *, alpha: AlphaInteraction | None = None, gains: Ga
 
     Parameters
     ----------
-    alpha : AlphaInteraction, optional
-        The pair law; the paper's by default.
     gains : Gains, optional
         c1_alpha and c2_alpha are used.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.cucker_smale import CuckerSmale
+from flockana.scenarios.expected import vacuous, verified
 from flockana.scenarios.scenario import Scenario
 from flockana.theorems.theorem import Status
 
@@ -60,30 +61,23 @@ def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int
     return build
 
 
-_ALL: dict[str, Status] = {"ha-liu": "verified", "ha-liu-sharp": "verified"}
+_ALL = verified("ha-liu", "ha-liu-sharp")
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
-    "cucker-smale": _flock("cucker-smale", 0.25, 8.0, {"cucker-smale": "verified", **_ALL}),
-    "cucker-smale-steep": _flock("cucker-smale-steep", 1.0, 0.1, {"cucker-smale": "vacuous", **_ALL}),
+    "cucker-smale": _flock("cucker-smale", 0.25, 8.0, verified("cucker-smale") | _ALL),
+    "cucker-smale-steep": _flock("cucker-smale-steep", 1.0, 0.1, vacuous("cucker-smale") | _ALL),
     "cucker-smale-critical-below": _pair(
         "cucker-smale-critical-below",
         0.76,
-        {
-            "ha-liu": "vacuous",
-            "ha-liu-sharp": "verified",
-            "cucker-smale-pair": "verified",
-            "cucker-smale-pair:bounded": "verified",
-            "cucker-smale-pair:parts": "vacuous",
-        },
+        vacuous("ha-liu")
+        | verified("ha-liu-sharp", "cucker-smale-pair", "cucker-smale-pair:bounded")
+        | vacuous("cucker-smale-pair:parts"),
     ),
     "cucker-smale-critical-above": _pair(
         "cucker-smale-critical-above",
         0.81,
-        {
-            "ha-liu": "vacuous",
-            "ha-liu-sharp": "vacuous",
-            "cucker-smale-pair": "verified",
-            "cucker-smale-pair:bounded": "vacuous",
-            "cucker-smale-pair:parts": "verified",
-        },
+        vacuous("ha-liu", "ha-liu-sharp")
+        | verified("cucker-smale-pair")
+        | vacuous("cucker-smale-pair:bounded")
+        | verified("cucker-smale-pair:parts"),
     ),
 }

@@ -17,6 +17,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.sampled import Sampled
 from flockana.laws.saturated import Saturated
 from flockana.laws.stepped import Stepped
+from flockana.scenarios.expected import vacuous, verified
 from flockana.scenarios.scenario import Scenario
 
 DT, LAG, PERIOD, LOSS, LIMIT, NOISE, WIND = 0.01, 0.01, 0.02, 0.05, 20.0, 0.002, 0.5
@@ -38,7 +39,7 @@ def _as_built(seed: int = 0) -> Scenario:
         np.zeros_like(q),
         (0.0, 20.0),
         seed,
-        {"os-3": "vacuous"},
+        vacuous("os-3"),
     )
 
 
@@ -57,7 +58,7 @@ def _wind(seed: int = 0) -> Scenario:
         np.zeros_like(q),
         (0.0, 30.0),
         seed,
-        {"disturbed-basin": "verified"},
+        verified("disturbed-basin"),
     )
 
 

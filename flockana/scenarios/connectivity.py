@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from flockana.laws.link_keeping import LinkKeeping
+from flockana.scenarios.expected import vacuous, verified
 from flockana.scenarios.scenario import Scenario
 
 _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
@@ -26,7 +27,7 @@ def _chain(seed: int = 0) -> Scenario:
         p,
         (0.0, 6.0),
         seed,
-        {"links-kept": "verified"},
+        verified("links-kept"),
         references=_REFERENCES,
     )
 
@@ -45,7 +46,7 @@ def _pairs(seed: int = 0) -> Scenario:
         p,
         (0.0, 4.0),
         seed,
-        {"links-kept": "verified", "links-kept:connected": "vacuous"},
+        verified("links-kept") | vacuous("links-kept:connected"),
         references=_REFERENCES,
     )
 

@@ -13,6 +13,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana.scenarios.expected import inconclusive, refuted, verified
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -166,23 +167,16 @@ def _scenario(
 
 # what holds from every start, and what holds at every seed of these settings; cohesion, the lattice and how parts of a
 # wide start end differ from seed to seed: shares of seeds tell of them
-_ALWAYS: dict[str, Status] = {
-    "dead-zone-1-printed:collision": "verified",
-    "dead-zone-1-corrected:rate": "verified",
-    "dead-zone-1-corrected:distance": "verified",
-}
-_CONTRACTS: dict[str, Status] = {"dead-zone-1-printed": "refuted", "dead-zone-1-printed:energy": "refuted"}
+_ALWAYS = verified("dead-zone-1-printed:collision", "dead-zone-1-corrected:rate", "dead-zone-1-corrected:distance")
+_CONTRACTS = refuted("dead-zone-1-printed", "dead-zone-1-printed:energy")
 
 
 def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
     expected = dict(_ALWAYS)
     if (n, box, ramp) == (50, 40.0, 0.25):  # of 100 seeds 100, 84, 18, 0 become one flock at 40, 60, 80, 150 (L4)
-        expected |= _CONTRACTS | {
-            "dead-zone-1-printed:velocity": "verified",
-            "dead-zone-1-corrected": "verified",
-            "source:consensus": "verified",
-            "source:together": "verified",
-        }
+        expected |= _CONTRACTS | verified(
+            "dead-zone-1-printed:velocity", "dead-zone-1-corrected", "source:consensus", "source:together"
+        )
     title = "Dead zone: 50 agents contract to a lattice of contacts"
     source = _PRINTED + " r_b is chosen so that the flock fits within r."
     many: dict[str, Any] = {"seeds": 200, "settings": "recommended settings: force ramped"}
@@ -192,7 +186,7 @@ def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) 
 def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
     expected = dict(_ALWAYS)  # k1 is all that attracts: velocities settle over 1/k1 and longer
     if (n, box, ramp) == (50, 40.0, 0.25):
-        expected |= _CONTRACTS | {"source:together": "verified"}
+        expected |= _CONTRACTS | verified("source:together")
     interaction = DeadZoneInteraction(r_b=12.0, k_r=60.0, k1=0.02, ramp=ramp)
     source = _PRINTED + " Here the dead zone ends beyond r, and only k1 attracts."
     title = "Dead zone, large spacing: only k1 attracts, and the flock is wider than r"
@@ -202,7 +196,7 @@ def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0
 def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.25) -> Scenario:
     expected = dict(_ALWAYS)
     if (n, box, ramp) == (50, 150.0, 0.25):
-        expected |= _CONTRACTS | {"source:together": "refuted"}
+        expected |= _CONTRACTS | refuted("source:together")
     title = "Dead zone, wide start: the flock stays in pieces"
     source = _PRINTED + " Here the start is wide."
     interaction = DeadZoneInteraction(ramp=ramp)
@@ -212,12 +206,8 @@ def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.
 def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
     expected = dict(_ALWAYS)
     if (n, box) == (50, 40.0):
-        expected |= _CONTRACTS | {
-            "dead-zone-1-printed:velocity": "inconclusive",  # contacts chatter: nothing comes to rest
-            "dead-zone-1-corrected:components": "inconclusive",
-            "source:consensus": "inconclusive",
-            "source:together": "verified",
-        }
+        names = "dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus"
+        expected |= _CONTRACTS | inconclusive(*names) | verified("source:together")  # contacts chatter for ever
     title = "Dead zone with the printed jumps: contacts chatter"
     source = _PRINTED + " Here the jumps are as printed."
     many: dict[str, Any] = {"seeds": 200, "settings": "printed settings: force jumps"}
@@ -227,12 +217,9 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
 def _flow(seed: int = 0, n: int = 16, box: float = 20.0, ramp: float = 0.25) -> Scenario:
     expected = dict(_ALWAYS)
     if (n, box, ramp) == (16, 20.0, 0.25):
-        expected |= _CONTRACTS | {
-            "dead-zone-1-printed:velocity": "verified",
-            "dead-zone-1-corrected": "verified",
-            "source:consensus": "verified",
-            "source:together": "verified",
-        }
+        expected |= _CONTRACTS | verified(
+            "dead-zone-1-printed:velocity", "dead-zone-1-corrected", "source:consensus", "source:together"
+        )
     title = "Dead zone, the flow itself: 16 agents, energy balance and distances between samples"
     source = f"The continuous law that the other dead-zone runs step: n = {n}; r = 15, δ = 4.5, k_δ = 1.3 as printed."
     interaction = DeadZoneInteraction(ramp=ramp)

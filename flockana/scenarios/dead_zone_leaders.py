@@ -10,10 +10,10 @@ from flockana.environment.targets import LinearTarget
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.dead_zone import DT, describe_choices
+from flockana.scenarios.expected import refuted, verified
 from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.theorem import Status
 
 _N, _PINNED, _BOX, _SPEED, _END = 30, 10, 25.0, 1.0, 60.0
 
@@ -100,11 +100,11 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
         c1=2.0,
         c2=3.0,
     )
-    mixed: dict[str, Status] = {"source:same-leader": "refuted", "source:different-leaders": "refuted"}
-    apart: dict[str, Status] = {"source:same-leader": "verified", "source:different-leaders": "verified"}
-    expected: dict[str, Status] = {"source:pinned": "verified", "source:parts": "verified"}
+    mixed = refuted("source:same-leader", "source:different-leaders")
+    apart = verified("source:same-leader", "source:different-leaders")
+    expected = verified("source:pinned", "source:parts")
     if shift == 0.0:
-        expected |= mixed | {"source": "refuted", "source:within-r": "refuted"}
+        expected |= mixed | refuted("source", "source:within-r")
     elif gap >= law.interaction.r:
         expected |= apart
     where = "in one box" if shift == 0.0 else f"in boxes of side {_BOX:g}, {gap:g} apart"

@@ -11,6 +11,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1
+from flockana.scenarios.expected import verified
 from flockana.scenarios.findings import finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -52,7 +53,7 @@ def _cone(seed: int = 0) -> Scenario:
         generator.uniform((1.0, -1.0), (3.0, 1.0), (_N, 2)),
         (0.0, 3.0),
         seed,
-        {"source": "verified"},
+        verified("source"),
         (
             Report("directed", "most edges are one-way", _one_way),
             Report("momentum", "momentum is not conserved", _momentum_changes),

@@ -14,13 +14,7 @@ from flockana.theorems import Tolerances, Verdict, verify
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Settings for rigorous verdicts on a run: a tube from its start over its time.
-
-    Examples
-    --------
-    >>> Enclosure(("collision-energy",)).limit
-    False
-    """
+    """Settings for rigorous verdicts on a run: a tube from its start over its time."""
 
     theorems: tuple[str, ...]  # ids of the theorems; others are checked on the run
     # whether to certify the basin of the equilibrium next to the end: what claims about limits need

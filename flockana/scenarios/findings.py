@@ -36,11 +36,6 @@ def finding(
     """Return a claim judged by its margin alone.
 
     A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
-
-    Examples
-    --------
-    >>> finding("connected", 0.5, "one component").status
-    'verified'
     """
     if error is None:
         counted = margin != 0.0 and float(2.0 * margin).is_integer()

@@ -12,11 +12,11 @@ from flockana.environment.targets import LinearTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.measures.metrics import velocity_mismatch
+from flockana.scenarios.expected import refuted, verified
 from flockana.scenarios.findings import component_count, finding
 from flockana.scenarios.olfati_saber import random_start
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.theorem import Status
 
 _N, _END = 40, 40.0
 _SETTLED = 1e-6  # of K̃ at the start
@@ -40,10 +40,7 @@ def _settles(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _stepped(name: str, dt: float, *, settles: bool) -> Callable[[int], Scenario]:
     law = TaylorStep(Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0))), dt)
-    statuses: dict[str, Status] = {
-        "source:connected": "verified",
-        "source:settles": "verified" if settles else "refuted",
-    }
+    statuses = verified("source:connected") | (verified if settles else refuted)("source:settles")
 
     def build(seed: int = 0) -> Scenario:
         return Scenario(

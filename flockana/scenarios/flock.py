@@ -28,22 +28,11 @@ class Flock:
 
     Parameters
     ----------
-    law : Law or DiscreteLaw
-        The law of motion.
     q0, p0 : array_like, shape (n, m), or callable
         Positions and velocities, or a function of a seed that returns them; at rest by default. A `q0` that returns
         two arrays gives both.
-    t_span : (float, float)
-        First and last time.
     options : mapping
         Further arguments of `simulate`, such as ``{"rtol": 1e-6}``.
-    name : str
-        A name for tables.
-
-    Raises
-    ------
-    ArgumentError
-        On something that is no law, start or time span.
 
     Examples
     --------
@@ -72,13 +61,7 @@ class Flock:
         return callable(self.q0) or callable(self.p0)
 
     def start(self, seed: int = 0) -> tuple[Any, Any]:
-        """Return positions and velocities, each of shape (n, m).
-
-        Parameters
-        ----------
-        seed : int
-            Seed of a start that is a function.
-        """
+        """Return positions and velocities, each of shape (n, m)."""
         q = self.q0(ensure_seed(seed)) if callable(self.q0) else self.q0
         p = self.p0(seed) if callable(self.p0) else self.p0
         if p is None and isinstance(q, tuple) and len(q) == 2 and np.ndim(q[0]) == 2:
@@ -90,8 +73,6 @@ class Flock:
 
         Parameters
         ----------
-        seed : int
-            Seed of a start that is a function.
         **parameters
             Numbers of the law by dotted name, such as ``{"gains.c1_gamma": 2.0}``.
         """
@@ -101,49 +82,21 @@ class Flock:
         return Scenario(self.name, self.name, _SOURCE, law, q, p, self.t_span, seed, options=self.options)
 
     def run(self, seed: int = 0, *, progress: bool = False) -> Trajectory:
-        """Simulate the flock.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of a start that is a function.
-        progress : bool
-            Show a progress bar.
-        """
+        """Simulate the flock."""
         return self.scenario(seed).run(progress=progress)
 
     def theorems(self, seed: int = 0) -> tuple[str, ...]:
-        """Return the ids of the theorems that are about this law.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of a start that is a function.
-        """
+        """Return the ids of the theorems that are about this law."""
         return theorems_about(self.law, *self.start(seed), self.t_span[0])
 
     def verify(self, seed: int = 0, *, tolerances: Tolerances | None = None, progress: bool = False) -> Verdicts:
-        """Simulate the flock and check every theorem that is about its law.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of a start that is a function.
-        progress : bool
-            Show a progress bar.
-        """
+        """Simulate the flock and check every theorem that is about its law."""
         run = self.run(seed, progress=progress)
         return verify_together(run, tolerances=tolerances, subject=self.name, progress=progress)
 
 
 def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = None, t_span: Any = None) -> Any:
-    """Return the scenario that was given, or the flock made of a law and a start.
-
-    Examples
-    --------
-    >>> chosen("hexagon")
-    'hexagon'
-    """
+    """Return the scenario that was given, or the flock made of a law and a start."""
     parts = {key: v for key, v in {"law": law, "q0": q0, "p0": p0, "t_span": t_span}.items() if v is not None}
     if scenario is not None and parts:
         raise ArgumentError(f"a scenario and {', '.join(parts)}: expected the one or the other")
@@ -153,13 +106,7 @@ def chosen(scenario: Any = None, *, law: Any = None, q0: Any = None, p0: Any = N
 
 
 def as_scenario(given: Any, seed: int = 0) -> Scenario:
-    """Return a scenario from its name, a flock, or itself.
-
-    Examples
-    --------
-    >>> as_scenario("hexagon").name
-    'hexagon'
-    """
+    """Return a scenario from its name, a flock, or itself."""
     if isinstance(given, str):
         return named_scenario(given, seed)
     if isinstance(given, Flock):
@@ -175,14 +122,7 @@ def law_parameter(law: Any, name: str) -> Any:
 
 
 def with_parameter(law: Any, name: str, value: Any) -> Any:
-    """Return the law with another value of a parameter.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> with_parameter(Algorithm1(), "gains.c1_alpha", 2.0).gains.c1_alpha
-    2.0
-    """
+    """Return the law with another value of a parameter."""
     head, _, rest = name.partition(".")
     try:
         return replace(law, **{head: with_parameter(getattr(law, head), rest, value) if rest else value})

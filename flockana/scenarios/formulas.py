@@ -9,14 +9,11 @@ import numpy as np
 from flockana.environment.targets import LinearTarget
 from flockana.interactions import FormulaInteraction, Gains, pair_law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios.expected import vacuous, verified
 from flockana.scenarios.scenario import Scenario
-from flockana.theorems.theorem import Status
 
 _CLAIMS = ("cohesion", "velocities", "critical", "one-instant", "no-collision")
-_VERIFIED: dict[str, Status] = {
-    "any-potential": "verified",
-    **{f"any-potential:{claim}": "verified" for claim in _CLAIMS},
-}
+_VERIFIED = verified("any-potential") | verified(*(f"any-potential:{claim}" for claim in _CLAIMS))
 
 
 def _morse() -> FormulaInteraction:
@@ -45,7 +42,7 @@ def _follows(seed: int = 0) -> Scenario:
         generator.uniform(-1.0, 1.0, grid.shape),
         (0.0, 30.0),
         seed,
-        {"energy": "verified", **_VERIFIED, "os-3": "vacuous", "os-3:i": "verified", "os-3:iii": "verified"},
+        verified("energy") | _VERIFIED | vacuous("os-3") | verified("os-3:i", "os-3:iii"),
         references=("olfati-saber-2006", "flockana"),
     )
 
@@ -64,7 +61,7 @@ def _holds(seed: int = 0) -> Scenario:
         generator.uniform(-1.0, 1.0, rhombus.shape),
         (0.0, 20.0),
         seed,
-        {"energy": "verified", **_VERIFIED, "os-1": "vacuous", "os-1:ii": "verified", "os-1:iii": "verified"},
+        verified("energy") | _VERIFIED | vacuous("os-1") | verified("os-1:ii", "os-1:iii"),
         references=("olfati-saber-2006", "flockana"),
     )
 

@@ -15,6 +15,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.peer_to_peer import PeerToPeer
+from flockana.scenarios.expected import verified
 from flockana.scenarios.findings import ROUNDING, component_count, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -106,7 +107,7 @@ def _system(seed: int = 0) -> Scenario:
         *_start(seed),
         (0.0, 30.0),
         seed,
-        {"energy": "verified", "os-3:i": "verified", "source": "verified"},
+        verified("energy", "os-3:i", "source"),
         (Report("consistent", "p_r is the true velocity of q_r", _tells_the_truth),),
         references=_REFERENCES,
     )
@@ -147,7 +148,7 @@ def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenari
             p,
             (0.0, 25.0),
             seed,
-            {"source": "verified"},
+            verified("source"),
             (
                 Report("predicted", "copies part, or meet, as the linear theory says", _copies_as_predicted),
                 report,

@@ -9,6 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
+from flockana.scenarios.expected import vacuous, verified
 from flockana.scenarios.findings import finding, limit_report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -84,18 +85,10 @@ def _build(
     return build
 
 
-_TOGETHER: dict[str, Status] = {
-    "jlm-headings": "verified",
-    "jlm-headings:contraction": "verified",
-    "jlm-headings:agreement": "verified",
-    "source": "verified",
-}
-_PARTED: dict[str, Status] = {
-    "jlm-headings:hull": "verified",
-    "jlm-headings:contraction": "vacuous",
-    "jlm-headings:agreement": "vacuous",
-    "source": "verified",
-}
+_TOGETHER = verified("jlm-headings", "jlm-headings:contraction", "jlm-headings:agreement", "source")
+_PARTED = (
+    verified("jlm-headings:hull") | vacuous("jlm-headings:contraction", "jlm-headings:agreement") | verified("source")
+)
 
 SCENARIOS = {
     "headings-meet": _build(

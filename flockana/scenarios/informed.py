@@ -16,10 +16,10 @@ from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.composition import compose
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.followers import following
+from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import ROUNDING, finding
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
-from flockana.theorems.theorem import Status
 
 _C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler
 
@@ -59,18 +59,11 @@ def _few(seed: int = 0) -> Scenario:
         np.vstack([p, np.tile([0.1, -0.2], (4, 1))]),
         (0.0, 90.0),
         seed,
-        {
-            "su-informed:energy": "verified",
-            "su-informed:distance": "verified",
-            "su-informed:informed": "verified",
-            "su-informed:linked": "inconclusive",  # a run does not show that links last
-            "su-informed:pairs": "verified",
-            "su-informed:one-instant": "verified",
-            "su-informed:no-collision": "verified",
-            "energy:balance": "verified",
-            "energy:rate": "vacuous",
-            "source": "verified",
-        },
+        verified("su-informed:energy", "su-informed:distance", "su-informed:informed")
+        | inconclusive("su-informed:linked")  # a run does not show that links last
+        | verified("su-informed:pairs", "su-informed:one-instant", "su-informed:no-collision", "energy:balance")
+        | vacuous("energy:rate")
+        | verified("source"),
         (Report("others", "who is never linked to an informed agent goes its own way", _others_drift),),
         {
             "t_eval": np.linspace(0.0, 90.0, 241),
@@ -95,14 +88,9 @@ def _through(seed: int = 0) -> Scenario:
         np.array([[speed], [0.0], [0.0]]),
         (0.0, 0.03),
         seed,
-        {
-            "su-informed": "refuted",
-            "su-informed:pairs": "refuted",
-            "su-informed:one-instant": "verified",
-            "su-informed:energy": "verified",
-            "su-informed:distance": "verified",
-            "su-informed:no-collision": "vacuous",
-        },
+        refuted("su-informed", "su-informed:pairs")
+        | verified("su-informed:one-instant", "su-informed:energy", "su-informed:distance")
+        | vacuous("su-informed:no-collision"),
         references=_REFERENCES,
     )
 
@@ -119,12 +107,12 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Scenario]:
-    expected: dict[str, Status] = {"energy": "verified", "cohesion": "verified"}
+    expected = verified("energy", "cohesion")
     if feedforward:
-        expected |= dict.fromkeys(("su-varying", "su-varying:centre", "su-varying:velocities"), "verified")
-        expected |= {"su-varying:distance": "verified", "collision-energy:below": "verified"}
+        expected |= verified("su-varying", "su-varying:centre", "su-varying:velocities", "su-varying:distance")
+        expected |= verified("collision-energy:below")
     else:
-        expected |= {"su-varying": "vacuous", "source": "verified"}
+        expected |= vacuous("su-varying") | verified("source")
 
     def build(seed: int = 0) -> Scenario:
         q, p = _near_lattice(seed, 12, 0.2)
@@ -196,14 +184,14 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
         generator.uniform(-_SPEED, _SPEED, (n, 2)),
         (0.0, 80.0),
         seed,
-        {"su-informed:energy": "verified", "su-informed:distance": "verified"},
+        verified("su-informed:energy", "su-informed:distance"),
         (
             Report("informed-follow", "all informed agents take on the leader's velocity", _some_follow),
             Report("most-follow", "more than half of all agents follow", _most_follow),
         ),
         {"t_eval": np.linspace(0.0, 80.0, 81)},
         references=_REFERENCES,
-        shipped={"source": "verified"},
+        shipped=verified("source"),
     )
 
 

@@ -18,6 +18,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import in_source_units
 from flockana.scenarios.msn_reports import CENTRE, DT, REPORTS, STATIC
 from flockana.scenarios.scenario import Scenario
@@ -62,34 +63,30 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     """Return the expected statuses of a case; the theorems are about flows, so maps have reports only."""
-    none: dict[str, Status] = {"alpha-flocking": "refuted", "alpha-flocking-strict": "refuted"}
-    none["os-5-terminal:i"] = "vacuous"
+    none = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
     if not printed:
-        none["energy"] = "verified"
+        none |= verified("energy")
+    of_the_map = verified if printed else refuted  # in place it adds energy, and has outliers; the flow does not
     if case == 1:
-        speed: Status = "verified" if printed else "refuted"  # in place the map adds energy; the flow does not
-        reports: dict[str, Status] = {"source": "refuted", "source:fragments": "verified", "source:top-speed": speed}
-        reports |= {"source:connectivity": "verified", "source:connectivity-as-typeset": "refuted"}
-        return none | ({} if printed else {"os-1": "vacuous"}) | reports
+        reports = refuted("source") | verified("source:fragments") | of_the_map("source:top-speed")
+        reports |= verified("source:connectivity") | refuted("source:connectivity-as-typeset")
+        return none | ({} if printed else vacuous("os-1")) | reports
     if case == 2:
-        iv: dict[str, Status] = {f"os-3:{claim}": "vacuous" for claim in ("i", "ii", "iii")}
-        iv |= {"os-3": "verified", "os-3:iv-printed": "verified"}  # (iv) needs no damping by the γ-agent
+        iv = vacuous("os-3:i", "os-3:ii", "os-3:iii")
+        iv |= verified("os-3", "os-3:iv-printed")  # (iv) needs no damping by the γ-agent
         return none | ({} if printed else iv)
-    spikes: Status = "verified" if printed else "refuted"  # the outliers are the map's, not the law's
-    source: dict[str, Status] = {"source": "refuted", "source:spikes": spikes, "source:connected": "verified"}
-    source |= {"source:less-connected": "verified"} if case == 3 else {}
-    source |= {"source:amplitude" if case == 3 else "source:circle": "verified", "source:separated": "refuted"}
-    theorems: dict[str, Status] = {
-        "os-3": "inconclusive",  # 4.851 time units are too short for a limit; nothing that can be refuted is
-        "os-3:i": "verified",
-        "os-3:ii": "inconclusive",
-        "os-3:iii": "verified",  # by its proof
-        "os-3:iv-printed": "verified",
-        "E12": "refuted",
-        "E12:predicted": "verified",
-        "E12:consistent": "verified",
-        "E12:printed": "refuted",
-    }
+    source = refuted("source") | of_the_map("source:spikes") | verified("source:connected")
+    source |= verified("source:less-connected") if case == 3 else {}
+    source |= verified("source:amplitude" if case == 3 else "source:circle") | refuted("source:separated")
+    theorems = (
+        inconclusive("os-3")  # 4.851 time units are too short for a limit; nothing that can be refuted is
+        | verified("os-3:i")
+        | inconclusive("os-3:ii")
+        | verified("os-3:iii", "os-3:iv-printed")  # (iii) by its proof
+        | refuted("E12")
+        | verified("E12:predicted", "E12:consistent")
+        | refuted("E12:printed")
+    )
     return none | ({} if printed else theorems) | source
 
 
@@ -118,7 +115,7 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
         np.zeros_like(q),
         (0.0, end),
         seed,
-        _expected(case, printed=printed) if own else {"source:circle": "verified"},
+        _expected(case, printed=printed) if own else verified("source:circle"),
         in_source_units(lambda: continuous.scales, REPORTS[case]),
         references=("isola-2024", "olfati-saber-2006"),
         shipped=_shipped(case) if own else {},
@@ -128,7 +125,7 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
 
 def _shipped(case: int) -> dict[str, Status]:
     """Return statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3."""
-    return {2: {"source": "verified"}, 3: {"source:width": "refuted"}}.get(case, {})  # type: ignore[return-value]
+    return {2: verified("source"), 3: refuted("source:width")}.get(case, {})
 
 
 def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
@@ -155,7 +152,7 @@ def _static(seed: int = 0) -> Scenario:
         np.zeros_like(start),
         (0.0, 60.0),
         seed,
-        {"source": "verified", "source:coincide": "verified"},
+        verified("source", "source:coincide"),
         in_source_units(lambda: law.scales, STATIC),
         references=("isola-2024", "olfati-saber-2006"),
     )

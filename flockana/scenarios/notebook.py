@@ -18,11 +18,11 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
+from flockana.scenarios.expected import refuted, vacuous, verified
 from flockana.scenarios.findings import ROUNDING, component_count, finding, in_source_units, limit_report, same_accuracy
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
-from flockana.theorems.theorem import Status
 
 _FOLLOWED = 0.01  # of d: how near to the flow steps are that follow it
 _RELAXED = 0.1  # of ‖u_α‖ at the start
@@ -159,13 +159,9 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
     law = PushedAlgorithm1(alpha, gains) if push else Algorithm1(alpha, gains)
     generator = np.random.default_rng(seed)
     # the start is not connected, so Theorem 1 says nothing; whether the push ever acts differs from start to start
-    expected: dict[str, Status] = {
-        "os-1": "vacuous",
-        "os-5-terminal:i": "vacuous",
-        "source:unit-direction": "refuted",
-    }
+    expected = vacuous("os-1", "os-5-terminal:i") | refuted("source:unit-direction")
     if not push:
-        expected["energy"] = "verified"
+        expected |= verified("energy")
     return Scenario(
         "notebook-algorithm1",
         "R² notebook: 27 agents, Algorithm 1, unequal attraction and repulsion",
@@ -180,7 +176,7 @@ def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
         in_source_units(lambda: law.scales, (_PUSHES, _UNIT_DIRECTIONS)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
-        shipped={"alpha-flocking-strict": "refuted", "alpha-flocking-strict:flock": "refuted"},
+        shipped=refuted("alpha-flocking-strict", "alpha-flocking-strict:flock"),
     )
 
 
@@ -191,14 +187,10 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
     law = PushedAlgorithm2(alpha, gains, target) if push else Algorithm2(alpha, gains, target)
     generator = np.random.default_rng(seed)
     # c1γ = 0: nothing draws the agents together, and of Theorem 3 only (iv) remains, which needs no c1γ
-    expected: dict[str, Status] = {
-        "alpha-flocking-strict:deviation": "verified",
-        "os-5-terminal:i": "vacuous",
-        "source:goal": "refuted",
-    }
+    expected = verified("alpha-flocking-strict:deviation") | vacuous("os-5-terminal:i") | refuted("source:goal")
     if not push:
-        expected |= {f"os-3:{claim}": "vacuous" for claim in ("i", "ii", "iii")}
-        expected |= {"energy": "verified", "os-3": "verified", "os-3:iv-printed": "verified"}
+        expected |= vacuous("os-3:i", "os-3:ii", "os-3:iii")
+        expected |= verified("energy", "os-3", "os-3:iv-printed")
     return Scenario(
         "notebook-algorithm2",
         "R² notebook: 35 agents, Algorithm 2 with velocity feedback only",
@@ -214,11 +206,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
         in_source_units(lambda: law.scales, (_PUSHES, _VELOCITY, _RELAXES, _GOAL)),
         options=_integrator(law),
         references=("notebook-r2", "olfati-saber-2006"),
-        shipped={
-            "alpha-flocking-strict:mismatch": "verified",
-            "source:follows": "verified",
-            "source:relaxes": "verified",
-        },
+        shipped=verified("alpha-flocking-strict:mismatch", "source:follows", "source:relaxes"),
     )
 
 
@@ -236,7 +224,7 @@ def _map(number: int, dt: float) -> Callable[[int], Scenario]:
             source=flow.source.rpartition(". ")[0]
             + f". As published: q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05.",
             law=TaylorStep(law, dt),
-            expected={"source:flow": "refuted"},
+            expected=refuted("source:flow"),
             shipped={},
             reports=in_source_units(lambda: law.scales, (_FLOW,)),
             options={},

@@ -86,15 +86,7 @@ def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
-    """Return which agents have an obstacle on the straight path to the γ-agent, shape (n,).
-
-    Examples
-    --------
-    >>> from flockana.environment.obstacles import Sphere
-    >>> q = np.array([[0.0, 0.0], [0.0, 9.0]])
-    >>> blocked(q, np.array([10.0, 0.0]), [Sphere((5.0, 0.0), 1.0)]).tolist()
-    [True, False]
-    """
+    """Return which agents have an obstacle on the straight path to the γ-agent, shape (n,)."""
     share = np.linspace(0.0, 1.0, _SEGMENT)[:, None, None]
     way = (q + share * (target - q)).reshape(-1, q.shape[1])
     hit = np.any([obstacle.contains(way) for obstacle in obstacles], axis=0)

@@ -15,6 +15,7 @@ from flockana.environment.target import Target
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.scenarios.expected import inconclusive, vacuous, verified
 from flockana.scenarios.findings import in_source_units
 from flockana.scenarios.given import SOURCE
 from flockana.scenarios.obstacle_claims import (
@@ -72,14 +73,14 @@ _RESTS = Report("rests", "the group comes to rest in an equilibrium among the ob
 _TOUCHES = Report("in-touch", "it rests against obstacles; how near it is to a constrained α-lattice", touches)
 _LATTICE = Report("constrained-lattice", "it rests as a quasi constrained α-lattice", constrained)
 _TRAPPED = Report("trapped", "the obstacle holds agents back from the γ-agent (Fig. 9)", traps)
-_DESCENDS: dict[str, Status] = {"energy": "verified", "os-6": "verified", "os-6:rate": "verified"}
-_STATIC: dict[str, Status] = {**_DESCENDS, "source": "verified"}
-_MOVING: dict[str, Status] = {"energy": "verified", "energy:rate": "vacuous", "os-6": "vacuous"}
+_DESCENDS = verified("energy", "os-6", "os-6:rate")
+_STATIC = _DESCENDS | verified("source")
+_MOVING = verified("energy") | vacuous("energy:rate", "os-6")
 
 
 def _reported(*names: str) -> dict[str, Status]:
     """Return reports of the source that a run confirms."""
-    return dict.fromkeys((f"{SOURCE}:{name}" for name in names), "verified")
+    return verified(*(f"{SOURCE}:{name}" for name in names))
 
 
 def _large(end: float) -> dict[str, Any]:
@@ -129,7 +130,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             centre=(-100.0, 30.0),
             n=150,
             end=80.0,
-            expected={**_MOVING, **_reported("clear", "splits"), "source:rejoins": "inconclusive"},
+            expected=_MOVING | _reported("clear", "splits") | inconclusive("source:rejoins"),
             reports=(
                 Report("splits", "the flock, connected before, splits around the obstacles", splits),
                 Report("rejoins", "behind the obstacles it is one flock again", rejoins),
@@ -145,7 +146,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             centre=(-120.0, 81.875),
             n=150,
             end=115.0,
-            expected={**_MOVING, **_reported("clear", "squeezes", "past"), "source:rejoins": "inconclusive"},
+            expected=_MOVING | _reported("clear", "squeezes", "past") | inconclusive("source:rejoins"),
             reports=(
                 Report("squeezes", "the flock goes through the gap", squeezes),
                 Report("past", "all agents get past the obstacles", gets_past),
@@ -191,7 +192,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             spread=25.0,
             end=150.0,
             expected={**_DESCENDS, **_reported("clear")},
-            shipped={"source": "verified"},
+            shipped=verified("source"),
             reports=(_RESTS, _TOUCHES),
         ),
         _entry(
@@ -204,8 +205,8 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             n=30,
             spread=15.0,
             end=100.0,
-            expected={"energy": "verified", **_reported("clear")},
-            shipped={"os-6": "verified", "os-6:rate": "verified"},  # of some starts condition (76) is broken
+            expected=verified("energy") | _reported("clear"),
+            shipped=verified("os-6", "os-6:rate"),  # of some starts condition (76) is broken
             reports=(),
         ),
         _entry(
@@ -218,8 +219,8 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             n=30,
             spread=15.0,
             end=100.0,
-            expected={"energy": "verified", "energy:rate": "vacuous", "source": "verified"},
-            shipped={"os-6": "vacuous"},  # of some starts (76) is open
+            expected=verified("energy") | vacuous("energy:rate") | verified("source"),
+            shipped=vacuous("os-6"),  # of some starts (76) is open
             reports=(),
         ),
     ]

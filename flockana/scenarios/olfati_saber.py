@@ -16,6 +16,7 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_share
 from flockana.measures.nets import components, link_lengths, links
+from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
 from flockana.scenarios.findings import ROUNDING, component_count, finding, limit_report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import lazy_array
@@ -29,19 +30,13 @@ _OURS = (
     "The gains are not printed and are ours (c1α = 30, c2α = 2√30, c1γ = 1.1, c2γ = 2√1.1), as are the seed and the "
     "end time, by which the motion has converged."
 )
-_FLOCKS: dict[str, Status] = {
-    "energy": "verified",
-    "os-3": "verified",
-    "os-3:i": "verified",
-    "os-3:ii": "verified",
-    "os-3:iii": "verified",
-    "os-3:iv-printed": "verified",
-    "os-3:iv-none": "vacuous",
-    "alpha-flocking": "verified",
-    "alpha-flocking-strict": "verified",
-    "os-5-terminal:i": "vacuous",  # λJ strains every lattice
-    "source": "verified",
-}
+_FLOCKS = (
+    verified("energy", "os-3", "os-3:i", "os-3:ii", "os-3:iii", "os-3:iv-printed")
+    | vacuous("os-3:iv-none")
+    | verified("alpha-flocking", "alpha-flocking-strict")
+    | vacuous("os-5-terminal:i")  # λJ strains every lattice
+    | verified("source")
+)
 _RESTS = ("os-3", "os-3:ii")  # what some starts have not settled by the end of the run
 
 
@@ -151,14 +146,7 @@ _MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_
 
 
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
-    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m.
-
-    Examples
-    --------
-    >>> q, p = random_start(0, 150, 2)
-    >>> q.shape, bool(p.min() >= -2.0), bool(p.max() <= -1.0)
-    ((150, 2), True, True)
-    """
+    """Return the paper's start: q normal with variance 2500 per coordinate, p uniform in [−2, −1]^m."""
     generator = np.random.default_rng(seed)
     return generator.normal(0.0, 50.0, (n, m)), generator.uniform(-2.0, -1.0, (n, m))
 
@@ -199,22 +187,17 @@ def _fragmentation(seed: int = 0) -> Scenario:
         *random_start(seed, 40, 2),
         (0.0, 40.0),
         seed,
-        {
-            "energy": "verified",
-            "os-1": "vacuous",
-            "alpha-flocking": "refuted",
-            "alpha-flocking-strict": "refuted",
-            "alpha-flocking-strict:flock": "refuted",
-            "os-5-terminal:extension": "verified",
-            "source:fragments": "verified",
-        },
+        verified("energy")
+        | vacuous("os-1")
+        | refuted("alpha-flocking", "alpha-flocking-strict", "alpha-flocking-strict:flock")
+        | verified("os-5-terminal:extension", "source:fragments"),
         (
             Report("fragments", "the net ends in several components", _fragments),
             Report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)", _stays_mismatched),
             Report("expands", "the cohesion radius grows (Fig. 18(b): R)", _expands),
             Report("links", "the deviation energy of the fragments is small (Fig. 18(b): Ẽ)", _links_settle),
         ),
-        shipped={"source:expands": "verified", "source:links": "verified"},
+        shipped=verified("source:expands", "source:links"),
     )
 
 
@@ -230,22 +213,12 @@ def _collapse(seed: int = 0) -> Scenario:
         *random_start(seed, 150, 2),
         (0.0, 180.0),
         seed,
-        {
-            "energy": "verified",
-            "os-3": "verified",
-            "os-3:i": "verified",
-            "os-3:ii": "verified",
-            "os-3:iii": "verified",
-            "alpha-flocking": "refuted",
-            "alpha-flocking:deviation": "refuted",
-            "alpha-flocking-strict": "refuted",
-            "alpha-flocking-strict:flock": "verified",
-            "os-5-terminal:i": "vacuous",
-            "E11": "refuted",
-            "E11:printed": "refuted",
-            "E11:minimum": "verified",
-            "source": "verified",
-        },
+        verified("energy", "os-3", "os-3:i", "os-3:ii", "os-3:iii")
+        | refuted("alpha-flocking", "alpha-flocking:deviation", "alpha-flocking-strict")
+        | verified("alpha-flocking-strict:flock")
+        | vacuous("os-5-terminal:i")
+        | refuted("E11", "E11:printed")
+        | verified("E11:minimum", "source"),
         (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
         references=("olfati-saber-2006", "flockana"),
     )
@@ -267,18 +240,18 @@ def _hexagon(seed: int = 0) -> Scenario:
         generator.uniform(-0.3, 0.3, (7, 2)),
         (0.0, 30.0),
         seed,
-        {
-            "energy": "verified",
-            "os-1": "verified",
-            "os-1:i": "verified",
-            "os-1:ii": "verified",
-            "os-1:iii": "verified",
-            "os-5-terminal": "verified",
-            "os-5-terminal:i": "verified",
-            "alpha-flocking": "verified",
-            "alpha-flocking-strict": "verified",
-            "linearised-decay-terminal": "verified",
-        },
+        verified(
+            "energy",
+            "os-1",
+            "os-1:i",
+            "os-1:ii",
+            "os-1:iii",
+            "os-5-terminal",
+            "os-5-terminal:i",
+            "alpha-flocking",
+            "alpha-flocking-strict",
+            "linearised-decay-terminal",
+        ),
         references=("olfati-saber-2006", "flockana"),
     )
 
@@ -298,20 +271,16 @@ def _three_agents(seed: int = 0) -> Scenario:
         p0,
         (0.0, 0.05),
         seed,
-        {
-            "energy": "verified",
-            "os-3": "refuted",
-            "os-3:i": "verified",
-            "os-3:ii": "inconclusive",
-            "os-3:iii": "verified",  # by its proof, though velocities have not matched by then
-            "os-3:iv-printed": "refuted",
-            "os-3:iv-instant": "verified",
-            "os-3:iv-none": "vacuous",
-            "os-5-terminal:i": "vacuous",
-            "E13": "refuted",
-            "E13:printed": "refuted",
-            "E13:corrected": "verified",
-        },
+        verified("energy")
+        | refuted("os-3")
+        | verified("os-3:i")
+        | inconclusive("os-3:ii")
+        | verified("os-3:iii")  # by its proof, though velocities have not matched by then
+        | refuted("os-3:iv-printed")
+        | verified("os-3:iv-instant")
+        | vacuous("os-3:iv-none", "os-5-terminal:i")
+        | refuted("E13", "E13:printed")
+        | verified("E13:corrected"),
         references=("olfati-saber-2006", "flockana"),
     )
 
@@ -325,7 +294,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         n=150,
         end=60.0,
         reports=(_CONNECTED, _LATTICE, _MATCHED),
-        more={"linearised-decay-terminal": "verified"},
+        more=verified("linearised-decay-terminal"),
     ),
     "paper-dynamic-topology": _following(
         "paper-dynamic-topology",

@@ -82,14 +82,7 @@ class Outcome:
 
 
 def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
-    """Return (q0, p0) of ten agents near a lattice patch, at one speed, with similar headings.
-
-    Examples
-    --------
-    >>> q, p = one_start()
-    >>> q.shape, bool(np.allclose(np.linalg.norm(p, axis=1), 1.0))
-    ((10, 2), True)
-    """
+    """Return (q0, p0) of ten agents near a lattice patch, at one speed, with similar headings."""
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
     q = hexagonal_spiral(_N, d) + generator.uniform(-_SHAKEN * d, _SHAKEN * d, (_N, 2))
     heading = _HEADING + generator.uniform(-_TURNED, _TURNED, _N)
@@ -181,13 +174,7 @@ ENTRIES: tuple[Entry, ...] = (
 
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
-    """Run the common start under each law, and check its theorem.
-
-    Examples
-    --------
-    >>> [outcome.verdict.status for outcome in compare(["Averaged headings"])]
-    ['verified']
-    """
+    """Run the common start under each law, and check its theorem."""
     known = {entry.name: entry for entry in ENTRIES}
     chosen = tuple(known) if names is None else tuple(names)
     for name in chosen:

@@ -10,6 +10,7 @@ from flockana.base.checks import ensure_count, ensure_nonnegative, ensure_positi
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
+from flockana.scenarios.expected import verified
 from flockana.scenarios.scenario import Scenario
 
 _C1_ALPHA = 5.0
@@ -34,7 +35,7 @@ def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40
         generator.uniform(-1.0, 1.0, (n, 2)),
         (0.0, _END),
         seed,
-        {"energy": "verified", "os-3:i": "verified"},  # rest, (ii) and (iii), may take longer
+        verified("energy", "os-3:i"),  # rest, (ii) and (iii), may take longer
         references=("olfati-saber-2006", "flockana"),
     )
 

@@ -9,13 +9,11 @@ import numpy as np
 from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios.enclosure import Enclosure
+from flockana.scenarios.expected import refuted, vacuous, verified
 from flockana.scenarios.scenario import Scenario
-from flockana.theorems.theorem import Status
 
 _REFERENCES = ("olfati-saber-2006", "flockana")
-_ALL_OF_OS_3: dict[str, Status] = {
-    f"os-3:{name}": "verified" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")
-}
+_ALL_OF_OS_3 = verified(*(f"os-3:{name}" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")))
 
 
 def _flock_of_three(seed: int = 0) -> Scenario:
@@ -31,7 +29,7 @@ def _flock_of_three(seed: int = 0) -> Scenario:
         np.zeros((3, 2)),
         (0.0, 1.25),
         seed,
-        {"energy": "verified", "os-3": "verified", **_ALL_OF_OS_3},
+        verified("energy", "os-3") | _ALL_OF_OS_3,
         references=_REFERENCES,
         enclosed=Enclosure(("os-3",), limit=True),
     )
@@ -49,7 +47,7 @@ def _collision(seed: int = 0) -> Scenario:
         np.array([[32.0], [-32.0]]),
         (0.0, 0.0625),
         seed,
-        {"energy": "verified", "collision-energy:below": "vacuous", "collision-energy:twice": "refuted"},
+        verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice"),
         references=_REFERENCES,
         enclosed=Enclosure(("collision-energy",)),
     )

@@ -115,11 +115,6 @@ class Scenario:
     def run(self, *, progress: bool = False) -> Trajectory:
         """Simulate the scenario.
 
-        Parameters
-        ----------
-        progress : bool
-            Show a progress bar.
-
         Raises
         ------
         UnknownNameError
@@ -129,36 +124,18 @@ class Scenario:
         return simulate(self.law, self.q0, self.p0, self.t_span, progress=progress, **self.options)
 
     def verify(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Return verdicts of every applicable theorem, and of the source's reports, on a run of this scenario.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            What `run` returned, or a saved copy of it.
-        """
+        """Return verdicts of every applicable theorem, and of the source's reports, on a run of this scenario."""
         verdicts = tuple(self.verdict(name, trajectory, tolerances=tolerances) for name in self.theorems)
         return verdicts + self.reported(trajectory, tolerances=tolerances)
 
     def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
-        """Return one theorem's verdict on a run of this scenario, rigorous if it is one of those `enclosed`.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            What `run` returned, or a saved copy of it.
-        """
+        """Return one theorem's verdict on a run of this scenario, rigorous if it is one of those `enclosed`."""
         if self.enclosed is not None and name in self.enclosed.theorems:
             return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)
         return verify(name, trajectory, tolerances=tolerances, subject=self.name)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Return the source's reports as one verdict; None if it reports nothing.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            What `run` returned, or a saved copy of it.
-        """
+        """Return the source's reports as one verdict; None if it reports nothing."""
         if not self.reports:
             return ()
         used = Tolerances() if tolerances is None else tolerances
@@ -167,13 +144,7 @@ class Scenario:
         return (Verdict(SOURCE, (), claims, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:
-        """Return the scenario in other units (`flockana.rescale`); reports keep their source's units.
-
-        Parameters
-        ----------
-        length, time : float
-            Factors.
-        """
+        """Return the scenario in other units (`flockana.rescale`); reports keep their source's units."""
         return replace(
             self,
             law=rescale(self.law, length=length, time=time),
@@ -235,8 +206,6 @@ def scenario(name: str, seed: int = 0, **options: Any) -> Scenario:
 
     Parameters
     ----------
-    seed : int
-        Seed of its random start, >= 0.
     **options
         Options of that scenario by name; an unknown one is an error that lists those there are.
 

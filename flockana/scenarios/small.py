@@ -13,6 +13,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
+from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
 from flockana.scenarios.scenario import Scenario
 from flockana.scenarios.start import lazy_array
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
@@ -42,7 +43,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
             lazy_array((2, 1), velocities),
             (0.0, 3.0),
             seed,
-            {"energy": "verified", **expected},
+            verified("energy") | expected,
             references=_REFERENCES,
         )
 
@@ -64,7 +65,7 @@ def _five_agents(seed: int = 0) -> Scenario:
         np.zeros((5, 2)),
         (0.0, 40.0),
         seed,
-        {"energy": "verified", "lattice-limit-printed": "inconclusive"},
+        verified("energy") | inconclusive("lattice-limit-printed"),
         references=_REFERENCES,
     )
 
@@ -80,15 +81,15 @@ def _beside_a_sphere(seed: int = 0) -> Scenario:
         np.zeros((2, 2)),
         (0.0, 1.0),
         seed,
-        {"energy": "verified", "energy-printed": "verified"},
+        verified("energy", "energy-printed"),
         references=_REFERENCES,
     )
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
-    "head-on": _head_on("head-on", 7.0, 0.5, {"collision-energy": "verified", "collision-energy:below": "verified"}),
+    "head-on": _head_on("head-on", 7.0, 0.5, verified("collision-energy", "collision-energy:below")),
     "head-on-collision": _head_on(
-        "head-on-collision", 1.0, 1.2, {"collision-energy:below": "vacuous", "collision-energy:twice": "refuted"}
+        "head-on-collision", 1.0, 1.2, vacuous("collision-energy:below") | refuted("collision-energy:twice")
     ),
     "five-agents": _five_agents,
     "beside-a-sphere": _beside_a_sphere,

@@ -7,6 +7,7 @@ import numpy as np
 from flockana.interactions.log_potential import LogPotential
 from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
+from flockana.scenarios.expected import inconclusive, vacuous, verified
 from flockana.scenarios.scenario import Scenario
 
 _REFERENCES = ("tanner-2007", "flockana")
@@ -28,12 +29,9 @@ def _fixed(seed: int = 0) -> Scenario:
         generator.uniform(-0.3, 0.3, (n, 2)),
         (0.0, 20.0),
         seed,
-        {
-            "tanner-fixed:energy": "verified",
-            "tanner-fixed:no-collision": "verified",
-        },
+        verified("tanner-fixed:energy", "tanner-fixed:no-collision"),
         options={"rtol": 1e-9, "t_eval": np.linspace(0.0, 20.0, 401)},
-        shipped={"tanner-fixed": "verified"},
+        shipped=verified("tanner-fixed"),
         references=_REFERENCES,
     )
 
@@ -50,13 +48,11 @@ def _switching(seed: int = 0) -> Scenario:
         generator.uniform((1.0, -0.5), (2.0, 0.5), (n, 2)),
         (0.0, 10.0),
         seed,
-        {
-            "tanner-switching:energy": "verified",
-            "tanner-switching:no-collision": "verified",
-            "tanner-switching:critical": "inconclusive",  # where forces jump no proof says that they die out
-        },
+        # where forces jump no proof says that they die out
+        verified("tanner-switching:energy", "tanner-switching:no-collision")
+        | inconclusive("tanner-switching:critical"),
         options={"rtol": 1e-9, "t_eval": np.linspace(0.0, 10.0, 401)},
-        shipped={"tanner-switching": "inconclusive", "tanner-switching:velocities": "verified"},
+        shipped=inconclusive("tanner-switching") | verified("tanner-switching:velocities"),
         references=_REFERENCES,
     )
 
@@ -71,7 +67,7 @@ def _parting(seed: int = 0) -> Scenario:
         np.array([[-5.0, 0.0], [5.0, 0.0]]),
         (0.0, 2.0),
         seed,
-        {"tanner-switching": "vacuous"},
+        vacuous("tanner-switching"),
         references=_REFERENCES,
     )
 

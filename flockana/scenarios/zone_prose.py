@@ -32,6 +32,7 @@ from flockana.scenarios.bearing_distance import (
     apart,
     in_column,
 )
+from flockana.scenarios.expected import verified
 from flockana.scenarios.findings import component_counts, finding, in_source_units
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import lazy_state
@@ -201,7 +202,7 @@ def _informed(seed: int = 0, informed: int = _INFORMED) -> Scenario:
         60.0,
         seed,
         _INFORMED_REPORTS,
-        {"source:bounds": "verified"},
+        verified("source:bounds"),
     )
 
 
@@ -216,7 +217,7 @@ def _box(seed: int = 0) -> Scenario:
         300.0,
         seed,
         _BOX_REPORTS,
-        {"source:bounds": "verified", "source:contained": "verified"},
+        verified("source:bounds", "source:contained"),
     )
 
 
@@ -231,7 +232,7 @@ def _growing(seed: int = 0) -> Scenario:
         60.0,
         seed,
         (_TOGETHER, KEEPS_SPEED, BOUNDS),
-        {"source:speed": "verified", "source:bounds": "verified"},
+        verified("source:speed", "source:bounds"),
         "printed settings, charitably read",
     )
 
@@ -247,7 +248,7 @@ def _by_speed(seed: int = 0) -> Scenario:
         30.0,
         seed,
         THROUGH,
-        {"source": "verified"},
+        verified("source"),
         "",
     )
 
@@ -264,7 +265,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
         20.0,
         seed,
         (*OPEN[1:], DISTANCES, _TOGETHER),
-        {"source:speed": "verified", "source:bounds": "verified"},
+        verified("source:speed", "source:bounds"),
         "",
     )
 
@@ -281,7 +282,7 @@ def _individual(seed: int = 0) -> Scenario:
         20.0,
         seed,
         _INDIVIDUAL,
-        {"source": "verified"},
+        verified("source"),
         "",
     )
 
@@ -298,12 +299,7 @@ def _noisy(seed: int = 0, weights: float = 0.5, velocities: float = 0.1) -> Scen
         20.0,
         seed,
         _NOISY,
-        {
-            "source:repeats": "verified",
-            "source:unpredictable": "verified",
-            "source:speed": "verified",
-            "source:bounds": "verified",
-        },
+        verified("source:repeats", "source:unpredictable", "source:speed", "source:bounds"),
         as_it_is=(_REPEATS,),
     )
 

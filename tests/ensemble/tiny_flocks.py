@@ -2,13 +2,14 @@
 
 import os
 import signal
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numba.core import event
 
+from flockana.jit import Kernel
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import Report, Scenario
 from flockana.theorems import Claim
@@ -16,8 +17,6 @@ from tests.programs import out_of_a_kernel
 
 LOG = "FLOCKANA_TEST_LOG"  # names a file that gets a line "pid seed" for every run that is begun
 GATE = "FLOCKANA_TEST_GATE"  # names a file without which gated runs do not go on
-COMPILED = event.RecordingListener()
-event.register("numba:compile", COMPILED)
 
 
 def _odd(run, tolerances):
@@ -88,7 +87,11 @@ def not_a_scenario(seed):
 
 def compilations(run):
     """Kernels that this process compiled, rather than load them, since it started."""
-    return sum(one.is_start for _, one in COMPILED.buffer)
+    known = [vars(module) for name, module in sys.modules.items() if name.startswith("flockana")]
+    kernels = {id(one): one for names in known for one in names.values() if isinstance(one, Kernel)}.values()
+    loaded = [kernel.dispatcher for kernel in kernels if "dispatcher" in vars(kernel)]
+    assert loaded
+    return sum(dispatcher.stats.cache_misses.total() for dispatcher in loaded)
 
 
 def threads(run):

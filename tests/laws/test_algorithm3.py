@@ -11,7 +11,6 @@ import sympy as sp
 from flockana import symbolic
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.environment.polygon import Polygon
@@ -241,14 +240,6 @@ def test_the_pull_of_the_gamma_agent_is_bounded() -> None:
     law = Algorithm3(target=StaticTarget((0.0, 0.0)), gains=Gains(c1_gamma=1.1))
     pull = law.acceleration(0.0, [[3e5, 4e5]], [[0.0, 0.0]])
     np.testing.assert_allclose(pull, [[-0.66, -0.88]], rtol=1e-10)
-
-
-def test_a_run_and_its_law_survive_a_file(tmp_path: Any) -> None:
-    law = _law(2, TARGETS["circle"])
-    run = simulate(law, *_state(2, 5), (0.0, 0.2))
-    loaded = Trajectory.load(run.save(tmp_path / "run.nc"))
-    assert loaded.law == law
-    np.testing.assert_array_equal(loaded.energy(), run.energy())
 
 
 @pytest.mark.parametrize(

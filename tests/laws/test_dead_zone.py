@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.base.serialize import from_data, to_data
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.switches import turns
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction
@@ -55,18 +54,9 @@ def test_the_balance_holds_along_a_ramped_run():
     assert run.energy()[-1] < 0.7 * run.energy()[0]
 
 
-def test_derivatives_against_differences():
+def test_the_stiffness_is_that_of_the_jacobian_at_rest():
     q, p = start(7, 16.0, seed=3)
-    law, h = DeadZoneFlocking(DeadZoneInteraction(k1=0.05)), 1e-6
-    jacobian = law.jacobian(0.0, q, p)
-    columns = []
-    for k in range(28):
-        y = np.concatenate([q.ravel(), p.ravel()])
-        step = np.zeros(28)
-        step[k] = h
-        sides = [law.acceleration(0.0, *(y + s * step).reshape(2, 7, 2)).ravel() for s in (1, -1)]
-        columns.append((sides[0] - sides[1]) / (2.0 * h))
-    assert np.abs(jacobian[14:] - np.array(columns).T).max() < 1e-6 * np.abs(jacobian).max()
+    law = DeadZoneFlocking(DeadZoneInteraction(k1=0.05))
     assert np.abs(law.stiffness(q).toarray() + law.jacobian(0.0, q, 0.0 * p)[14:, :14]).max() == 0.0
 
 
@@ -214,11 +204,6 @@ def test_metrics_show_the_net_and_the_energy_of_neighbours():
     assert float(found.connectivity[0]) == pytest.approx((6 - parts) / 5)
     assert float(found.giant_share[0]) == pytest.approx(walks.sum(axis=1).max() / 6)
     assert float(found.literal_energy[0]) == DeadZoneFlocking().literal_energy(q, p)
-
-
-def test_law_and_scheme_survive_being_written_down():
-    euler = SemiImplicitEuler(DeadZoneFlocking(DeadZoneInteraction(k1=0.3), 2.0), 0.02)
-    assert from_data(to_data(euler)) == euler
 
 
 def test_coincident_agents_are_refused():

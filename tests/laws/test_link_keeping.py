@@ -23,14 +23,6 @@ def test_force_energy_and_rate_by_hand():
     assert CHAIN.energy_rate(0.0, Q, P) == pytest.approx(-0.25 * (0.01 + 0.04 + 0.25), rel=1e-14)
 
 
-def test_derivatives_by_differences():
-    matrix, h = CHAIN.jacobian(0.0, Q, P)[6:, :6], 1e-5
-    for k in range(6):
-        step = h * np.eye(6)[k].reshape(3, 2)
-        slope = (CHAIN.acceleration(0.0, Q + step, P) - CHAIN.acceleration(0.0, Q - step, P)) / (2.0 * h)
-        assert matrix[:, k] == pytest.approx(slope.ravel(), abs=1e-8)
-
-
 def test_pairs_without_a_link_do_not_interact():
     alone = LinkKeeping((), r=1.0)
     assert not alone.acceleration(0.0, Q, P).any()
@@ -65,8 +57,3 @@ def test_bad_starts():
         fl.simulate(LinkKeeping(((0, 1),)), Q, P, (0.0, 1.0))
     with pytest.raises(ArgumentError, match="name agent 7"):
         LinkKeeping(((0, 7),)).acceleration(0.0, Q, P)
-
-
-def test_in_other_units_it_is_the_same_law():
-    other = fl.rescale(CHAIN, length=10.0, time=2.0)
-    assert other.acceleration(0.0, 10.0 * Q, 5.0 * P) == pytest.approx(2.5 * CHAIN.acceleration(0.0, Q, P), rel=1e-13)

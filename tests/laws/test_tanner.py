@@ -6,7 +6,6 @@ import sympy as sp
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.symbolic.matching import WEIGHT, matching_identity
 from flockana.symbolic.pair import vector
@@ -104,13 +103,6 @@ def test_the_force_jumps_at_r_and_the_energy_does_not():
     assert run.status == "complete"
     assert np.abs(run.energy_residual).max() < 1e-7
     assert abs(run.q[-1, 1, 0] - run.q[-1, 0, 0]) < 1.7 < 2.0
-
-
-def test_saved_and_in_other_units(tmp_path):
-    run = fl.simulate(LAWS["fixed"], Q, P, (0.0, 0.5))
-    assert Trajectory.load(run.save(tmp_path / "run.nc")).law == LAWS["fixed"]
-    there = fl.rescale(run, length=10.0, time=3.0)
-    np.testing.assert_allclose(there.law.acceleration(0.0, there.q[0], there.p[0]), run.u[0] * 10.0 / 9.0, rtol=1e-11)
 
 
 @pytest.mark.parametrize(

@@ -100,17 +100,6 @@ def test_other_units():
     assert here.metric("connectivity").tolist() == moved.metric("connectivity").tolist()
 
 
-def test_a_run_is_saved_and_loaded(tmp_path):
-    from flockana import Trajectory
-
-    q, headings = start()
-    run = simulate(LAW, q, LAW.velocities(headings), (0.0, 5.0))
-    run.save(tmp_path / "run.npz")
-    loaded = Trajectory.load(tmp_path / "run.npz")
-    assert loaded.law == LAW
-    assert np.array_equal(loaded.extra["heading"], run.extra["heading"])
-
-
 @pytest.mark.parametrize(
     ("options", "match"),
     [

@@ -1,9 +1,11 @@
-"""The symmetries of every law: those that it has hold for any state, and those that it lacks are seen to fail.
+"""What every law keeps: its symmetries, its derivatives and rates, its parameters in files and in other units.
 
 A new law is to be named here: a test fails until it is.
 """
 
 import inspect
+import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from hypothesis import strategies as st
 
 import flockana as fl
 from flockana.base.modules import modules
+from flockana.base.serialize import from_data, to_data
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.explicit_euler import ExplicitEuler
@@ -84,12 +87,12 @@ def state(seed):
     return q, p, turn, turn @ np.diag([1.0, -1.0]), rng.normal(0.0, 5.0, 2), rng.permutation(N)
 
 
-def answer(law, q, p):
+def answer(law, q, p, t=TIME):
     """What the law makes of a state: accelerations, or places and velocities after a step."""
     if isinstance(law, DiscreteLaw):
-        after = law.step(TIME, q, p, law.start(q, p))
+        after = law.step(t, q, p, law.start(q, p))
         return after[0], after[1]
-    return None, law.flow(TIME, q, p)[0]
+    return None, law.flow(t, q, p)[0]
 
 
 def off(law, symmetry, seed):
@@ -172,16 +175,67 @@ CARRYING = {  # a pair law or a weight whose own numbers have a time in them, ne
         navigation=ORIGIN,
     ),
 }
+SOLIDS = (
+    fl.Sphere((20.0, -2.0), 1.5),
+    fl.Wall((0.0, -15.0), (1.0, 3.0)),
+    fl.Capsule((-20.0, 0.0), (-20.0, 3.0), 0.5),
+    fl.Polygon([(0.0, 23.0), (2.0, 22.0), (1.0, 25.0)]),
+)
+RNG = np.random.default_rng(4)
+CIRCLE, LINE = fl.CircleTarget((1.0, 2.0), 3.0, frequency=0.1, phase=0.4), fl.LinearTarget((9.0, 0.0), (-0.5, 1.0))
+LED = fl.LedDeadZoneFlocking(
+    leaders=(CIRCLE, LINE), group=tuple(k % 2 for k in range(N)), pinned=(0, 1, 4), c1=0.7, c2=1.3, k2=0.9
+)
+FURTHER = {  # parameters that an entry above leaves at one number or without an effect
+    "solids of every kind": fl.Algorithm3(target=CIRCLE, obstacles=SOLIDS),
+    "peers that differ": fl.PeerToPeer(
+        fl.Copies(RNG.normal(0.0, 9.0, (N, 2)), RNG.normal(size=(N, 2)), fl.Spring((3.0, 1.0), 0.2, 0.1)),
+        gains=fl.Gains(c1_gamma=np.linspace(1.0, 2.0, N)),
+    ),
+    "two leaders": LED,
+    "leaders that tell nothing": replace(LED, feedforward=False),
+    "a stronger zone": fl.DeadZoneFlocking(fl.DeadZoneInteraction(k1=0.05), 2.0),
+    "a net of all": FixedNetFlocking(tuple((i, j) for i in range(N) for j in range(i)), fl.LogPotential(2.0, 1.1), 1.5),
+}
+EVERY = {name: law for name, (law, _) in LAWS.items()} | CARRYING | FURTHER
+ENERGETIC = (
+    *("Algorithm1", "Algorithm2", "Algorithm3", "PeerToPeer", "Composition", "CuckerSmale", "FixedNetFlocking"),
+    *("ProximityFlocking", "LinkKeeping", "DeadZoneFlocking", "LedDeadZoneFlocking", *CARRYING, *FURTHER),
+)
 OWN_RATE = ("HeadingAveraging", "MinimalFlocking", "DiscreteMinimalFlocking")  # ask for the unit of time they are in
 
 
-@pytest.mark.parametrize("name", [*LAWS, *CARRYING])
+@pytest.mark.parametrize("name", EVERY)
 def test_a_law_in_other_units_does_the_same(name):
-    law = CARRYING[name] if name in CARRYING else LAWS[name][0]
+    law = EVERY[name]
     length, time = 3.0, 1.0 if name in OWN_RATE else 0.25
     q, p, *_ = state(5)
     places, rates = answer(law, q, p)
     power = 1 if places is not None else 2  # a map gives velocities, a flow accelerations
-    there, speeds = answer(fl.rescale(law, length=length, time=time), length * q, length / time * p)
+    other = fl.rescale(law, length=length, time=time)
+    there, speeds = answer(other, length * q, length / time * p, time * TIME)
     np.testing.assert_allclose(speeds, rates * length / time**power, rtol=1e-9, atol=1e-9 * np.abs(speeds).max())
     assert places is None or there == pytest.approx(length * places, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_law_is_read_as_it_was_written(name):
+    assert from_data(json.loads(json.dumps(to_data(EVERY[name])))) == EVERY[name]
+
+
+@pytest.mark.parametrize("name", ENERGETIC)
+def test_derivatives_are_those_of_the_input(name):
+    law, (q, p, *_), h = EVERY[name], state(5), 1e-6
+    matrix = law.jacobian(TIME, q, p)[2 * N :]
+    for dq, dp in np.random.default_rng(0).normal(size=(4, 2, N, 2)):
+        up, down = (law.flow(TIME, q + s * dq, p + s * dp)[0].ravel() for s in (h, -h))
+        found = matrix @ np.concatenate([dq.ravel(), dp.ravel()])
+        np.testing.assert_allclose(found, (up - down) / (2.0 * h), atol=1e-6 * np.abs(matrix).max())
+
+
+@pytest.mark.parametrize("name", ENERGETIC)
+def test_the_rate_is_that_of_the_energy_along_the_flow(name):
+    law, (q, p, *_), h = EVERY[name], state(5), 1e-5
+    u, rate = law.flow(TIME, q, p)
+    ahead, behind = (law.hamiltonian(TIME + s, q + s * p + 0.5 * s * s * u, p + s * u) for s in (h, -h))
+    assert rate == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-6, abs=1e-7 * np.abs(u * p).sum())

@@ -20,21 +20,6 @@ class AlongVelocity(Term):
     It has no potential. Its power is Σ (α − β‖p_i‖²)‖p_i‖² under an energy in the given frame, and
     Σ (α − β‖p_i‖²)⟨p_i, p_i − p_c⟩ under one in the moving frame, which of a drag −c p_i is −c Σ‖v_i‖². A drag takes
     energy always; a thrust adds some wherever ‖p_i‖² < α/β, so that no energy is sure to fall.
-
-    Parameters
-    ----------
-    thrust : float
-        α, 1/time; negative for a drag.
-    brake : float
-        β >= 0, time/length².
-    moving : bool
-        Whether the law's energy is that in the moving frame.
-
-    Examples
-    --------
-    >>> u = np.zeros((1, 1))
-    >>> AlongVelocity(-0.5).act(0.0, np.zeros((1, 1)), np.array([[2.0]]), u), u.tolist()
-    (-2.0, [[-1.0]])
     """
 
     thrust: float

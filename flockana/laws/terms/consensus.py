@@ -24,13 +24,6 @@ class Consensus(Term):
 
     It has no potential, and takes energy: its power is −c pᵀL̂p, in every frame.
 
-    Parameters
-    ----------
-    net : PairInteraction
-        Its range and adjacency.
-    damping : float
-        c.
-
     Examples
     --------
     >>> from flockana.interactions import AlphaInteraction

@@ -36,13 +36,6 @@ class TargetFeedforward(Term):
     It moves the centre of mass alone: its power is 0 under an energy in the moving frame, and Σ⟨p_i, d²q_r/dt²⟩ under
     one in the given frame.
 
-    Parameters
-    ----------
-    target : Target
-        The γ-agent, with a harmonic path, so that its acceleration is known.
-    moving : bool
-        Whether the law's energy is that in the moving frame.
-
     Examples
     --------
     >>> from flockana.environment.targets import CircleTarget

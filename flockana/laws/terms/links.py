@@ -20,15 +20,6 @@ if TYPE_CHECKING:
 class LinkTerm(Term):
     """u_i = c1 Σ_j w (q_j − q_i) + c2 Σ_j a (p_j − p_i) over the links {i, j} of a net, with the energy c1 Σ ψ.
 
-    Parameters
-    ----------
-    pair : PairInteraction
-        The pair law; its range counts for nothing.
-    links : tuple of (int, int)
-        The net.
-    stiffness, damping : float
-        Gains c1 and c2.
-
     Examples
     --------
     >>> from flockana.interactions import AlphaInteraction

@@ -28,8 +28,6 @@ class Navigation(Term):
 
     Parameters
     ----------
-    target : Target
-        The γ-agent.
     gains : Gains
         c1_gamma and c2_gamma are used.
     unit : float, optional
@@ -112,15 +110,7 @@ class Navigation(Term):
         return weighted(self.gains.c1_gamma, x2 / (self._bend(x) + 1.0))  # √(1 + x²) − 1 without its cancellation
 
     def target_derivatives(self, t: float, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(∂u_i/∂q_r, ∂u_i/∂p_r), two arrays of blocks (n, m, m): c1γ times the derivative of σ₁, and c2γ I.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """(∂u_i/∂q_r, ∂u_i/∂p_r), two arrays of blocks (n, m, m): c1γ times the derivative of σ₁, and c2γ I."""
         pull = np.broadcast_to(np.eye(q.shape[1]), (*q.shape, q.shape[1]))
         drag = pull
         if self.unit is not None:
@@ -134,13 +124,5 @@ class Navigation(Term):
         return -pull, -drag
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Second derivative of `energy`, on deviations x where it is that of the shape.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Second derivative of `energy`, on deviations x where it is that of the shape."""
         return self.target_derivatives(t, q)[0]

@@ -59,23 +59,11 @@ class ObstacleTerm(Term):
         ensure_one_dimension(self.field.obstacles, m, "the agents have")
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if an agent starts inside or on an obstacle.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Initial positions.
-        """
+        """Raise if an agent starts inside or on an obstacle."""
         check_free(q, self.field.obstacles)
 
     def compiled(self, m: int) -> tuple[TermKernel, ...] | None:
-        """Each kind of obstacle as a term.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """Each kind of obstacle as a term."""
         if not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
             return None
         beta, kernels = self.field.beta, []

@@ -64,13 +64,7 @@ class PairTerm(Term):
     damping: float
 
     def check_start(self, q: FloatArray) -> None:
-        """Raise if two agents coincide whose force has no limit there.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Initial positions.
-        """
+        """Raise if two agents coincide whose force has no limit there."""
         if not self.pair.coincidence:
             ensure_apart(q)
 

@@ -32,13 +32,6 @@ def parts(
 
     The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
     nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given frame.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> from flockana.interactions import AlphaInteraction
-    >>> [type(term).__name__ for term in parts(AlphaInteraction(), Gains(), target=StaticTarget((0.0,)))]
-    ['PairTerm', 'Navigation']
     """
     terms: list[Term] = []
     if pair is not None:

@@ -93,85 +93,34 @@ class Term(ABC):
 
         Parameters
         ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
         u : ndarray, shape (n, m)
             Accelerations to add to.
         """
 
     def energy(self, t: float, q: FloatArray) -> float:
-        """Its potential energy; 0 for a term without one.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Its potential energy; 0 for a term without one."""
         return 0.0
 
     @abstractmethod
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
-        """(∂u/∂q, ∂u/∂p) of its force.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+        """(∂u/∂q, ∂u/∂p) of its force."""
 
     @abstractmethod
     def hessian(self, t: float, q: FloatArray) -> Any:
-        """Second derivative of `energy`.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q : ndarray, shape (n, m)
-            Positions.
-        """
+        """Second derivative of `energy`."""
 
     def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
         """The term, or several that add up to it, for integrators that are compiled too.
 
         None, and the law is stepped by scipy's, unless it has one.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
         """
         return None
 
     def check_dimension(self, m: int) -> None:  # noqa: B027  # nothing to check unless a term says so
-        """Raise if the term does not live in m dimensions.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """Raise if the term does not live in m dimensions."""
 
     def check_agents(self, n: int) -> None:  # noqa: B027  # as `check_dimension`
-        """Raise if the term is not for n agents.
-
-        Parameters
-        ----------
-        n : int
-            Number of agents.
-        """
+        """Raise if the term is not for n agents."""
 
     def check_start(self, q: FloatArray) -> None:  # noqa: B027  # as `check_dimension`
-        """Raise if the term forbids a start from these positions.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, m)
-            Initial positions.
-        """
+        """Raise if the term forbids a start from these positions."""
