@@ -1,5 +1,6 @@
-"""Mutation testing: which mutants there are, and what is made of what the tests say of them."""
+"""Mutation testing: which mutants there are, which tests are asked first, and what is made of what they say."""
 
+import json
 import tomllib
 
 import pytest
@@ -40,83 +41,100 @@ def project(tmp_path, monkeypatch):
     return tmp_path
 
 
-def drawn(project, size=None, salt=""):
-    """The lines of a sample, and its mutants, by cosmic-ray's own `init`."""
-    from cosmic_ray.commands import init
-    from cosmic_ray.modules import find_modules
-    from cosmic_ray.work_db import use_db
-
-    session = project / f"session-{size}-{salt}.sqlite"
-    session.unlink(missing_ok=True)
-    with use_db(session) as database:
-        init([path.relative_to(project) for path in find_modules([project / "flockana/laws"])], database, {})
-    mutation.sample(session, project, size, salt)
-    with use_db(session) as database:
-        specs = [item.mutations[0] for item in database.pending_work_items]
-    lines = [((project / spec.module_path).read_text().splitlines()[spec.start_pos[0] - 1], spec) for spec in specs]
-    return {(line.strip(), spec.operator_name, spec.occurrence) for line, spec in lines}
+def drawn(size=None, salt=""):
+    return mutation.draw(["flockana/laws/area.py", "flockana/laws/twice.py"], size, salt)
 
 
-def test_mutants_are_of_what_is_computed_and_not_of_texts_types_or_compiling(project, monkeypatch):
-    monkeypatch.chdir(project)
-    assert {line for line, _, _ in drawn(project)} == {
+def test_mutants_are_of_what_is_computed_and_not_of_texts_types_or_compiling(project):
+    found = drawn()[1]
+    assert {one["before"] for one in found} == {
         "def area(a: float | None, *, b=2) -> float | None:",
         "if a < b:",
         "c: int | None = a * b",
         "return area(a) - -1",
     }
+    defaults = {one["after"].replace(" ", "") for one in found if one["before"].startswith("def area")}
+    assert defaults == {f"defarea(a:float|None,*,b={number})->float|None:" for number in (1, 3)}
+    changed = {one["after"] for one in found if one["before"] == "if a < b:"}
+    assert changed == {*(f"if a {sign} b:" for sign in ("==", "!=", "<=", ">", ">=")), "if not a < b:"}
+    products = {one["after"] for one in found if "a * b" in one["before"]}
+    assert products == {f"c: int | None = a {sign} b" for sign in ("+", "-", "/", "//", "%", "**")}
 
 
-def test_a_larger_sample_holds_the_smaller_and_lines_above_change_nothing(project, monkeypatch):
-    monkeypatch.chdir(project)
-    few, more = (drawn(project, size) for size in (4, 9))
+def test_a_larger_sample_holds_the_smaller_and_lines_above_change_nothing(project):
+    few, more = ({one["key"] for one in drawn(size)[1]} for size in (4, 9))
     assert len(few) == 4
     assert few < more
-    assert few != drawn(project, 4, "another")
+    assert few != {one["key"] for one in drawn(4, "another")[1]}
     path = project / "flockana/laws/area.py"
     path.write_text(path.read_text().replace("\n\n\n", "\n\nHIGH = LOW = None\n\n\n"))
-    assert few == drawn(project, 4)
+    assert few == {one["key"] for one in drawn(4)[1]}
+
+
+def test_the_nearest_tests_come_first(project):
+    twice = ["flockana/laws/twice.py", "tests/laws/test_other.py"]
+    assert mutation.nearest("flockana/laws/twice.py") == ["tests/laws/test_twice.py", *twice]
+    area = ["flockana/laws/area.py", "tests/laws/test_other.py", "tests/laws/test_twice.py"]
+    assert mutation.nearest("flockana/laws/area.py") == area
+
+
+@pytest.mark.parametrize(
+    ("path", "first"),
+    [
+        ("lattice/measure", ["tests/lattice/test_measure.py"]),  # its own
+        ("theorems/dead_zone/l01", ["tests/theorems/dead_zone/test_l01.py"]),
+        ("theorems/olfati_saber/lattice_limit", ["tests/theorems/olfati_saber/test_lattice_limit.py"]),
+    ],
+)
+def test_what_a_file_of_the_package_is_tested_by(path, first):
+    assert mutation.nearest(f"flockana/{path}.py")[: len(first)] == first
+
+
+@pytest.mark.parametrize(("number", "status"), [("1 + 2", 0), ("2", 1), ("1 +", 1), ("__import__('os')._exit(1)", 1)])
+def test_what_tests_say_of_a_mutant(project, tmp_path_factory, monkeypatch, number, status):
+    copy = tmp_path_factory.mktemp("copy")
+    test = "from flockana.laws.number import number\n\n\ndef test_right():\n    assert number == 3\n"
+    for tree, text in ((project, "number = 3"), (copy, f"number = {number}")):
+        for name, said in {
+            "flockana/__init__.py": "",
+            "flockana/laws/number.py": text,
+            "tests/laws/test_number.py": test,
+        }.items():
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            (tree / name).write_text(said)
+    monkeypatch.setattr(mutation, "PROJECT", copy)
+    assert mutation.ask(project, 60.0) == status
 
 
 @pytest.mark.parametrize(("test", "outcome", "code"), [("assert area(1) == 2", "killed", 0), ("", "survived", 3)])
-def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(project, tmp_path, capsys, test, outcome, code):
+def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(
+    project, tmp_path, monkeypatch, capsys, test, outcome, code
+):
     (project / "flockana/laws/area.py").write_text("def area(a):\n    return a + 1\n")
     (project / "flockana/laws/twice.py").unlink()
     text = f"from flockana.laws.area import area\n\n\ndef test_area():\n    {test or 'pass'}\n"
     (project / "tests/laws/test_twice.py").write_text(text)
+    (project / "tools").mkdir()
+    (project / "tools/mutation.py").write_text(mutation.REVIEWED.with_name("mutation.py").read_text())
     folder = tmp_path / "out"
-    assert mutation.main(["laws", "--sample", "2", "--out", str(folder)]) == code
-    tried = mutation.outcomes(folder / "laws-2.sqlite")
-    assert [one for one, _ in tried] == [outcome] * 2
+    assert mutation.main(["laws", "--sample", "2", "--jobs", "1", "--out", str(folder)]) == code
+    assert set(json.loads((folder / "results.json").read_text()).values()) == {outcome}
     told = capsys.readouterr()
     assert (folder / "table.md").read_text() == told.out
     assert ("- return a + 1" in told.out) is (code == 3)
-    (project / "tests/laws/test_twice.py").write_text("raise AssertionError")
     assert mutation.main(["laws", "--sample", "2", "--out", str(folder)]) == code  # tries nothing again
+    assert "0 to try" in capsys.readouterr().err
 
 
 def test_the_table_counts_what_was_said_and_shows_survivors():
-    kinds = ("killed", "incompetent", "survived", "equivalent")
-    text, survivors = mutation.report({"laws": [(kind, f"a.py:3 {kind}\n") for kind in kinds]})
+    place = {"path": "flockana/laws/a.py", "operator": "Add", "start": (3, 1), "before": "a + b"}
+    found = [place | {"key": sign, "after": f"a {sign} b"} for sign in ("-", "*", "/", "%", "//")]
+    outcomes = dict(zip("-*/%", ("killed", "incompetent", "survived", "equivalent"), strict=True))
+    text, survivors = mutation.report({"laws": 50}, found, outcomes)
     assert survivors == 1
-    row = "| laws | 4 | 2 | 1 | 1 | 9.4-99.2 % |"  # 2 of 3, Clopper and Pearson
+    row = "| laws | 50 | 4 | 2 | 1 | 1 | 9.4-99.2 % |"  # 2 of 3, Clopper and Pearson
     assert text.splitlines()[2:4] == [row, row.replace("laws", "all")]
-    assert "a.py:3 survived\n" in text
-    assert "a.py:3 killed\n" not in text
-
-
-def test_a_reviewed_mutant_is_equivalent(project, tmp_path, monkeypatch):
-    (project / "flockana/laws/area.py").write_text("def area(a):\n    return a  + 1  # b\n")
-    (project / "flockana/laws/twice.py").unlink()
-    session = tmp_path / "laws.sqlite"
-    assert mutation.carry_out("laws", session, 1, "", 60.0)
-    ((outcome, text),) = mutation.outcomes(session)
-    (before, after) = (line[6:].strip() for line in text.splitlines()[1:])
-    (tmp_path / "it.toml").write_text(
-        f'[[mutant]]\npath = "flockana/laws/area.py"\nbefore = "{before}"\nafter = "{after}"\n'
-    )
-    monkeypatch.setattr(mutation, "REVIEWED", tmp_path / "it.toml")
-    assert (outcome, mutation.outcomes(session)[0][0]) == ("killed", "equivalent")
+    assert "a.py:3 Add\n    - a + b\n    + a / b\n" in text
 
 
 def test_every_reviewed_mutant_has_a_reason_and_is_one_of_the_code_as_it_is():
@@ -127,7 +145,7 @@ def test_every_reviewed_mutant_has_a_reason_and_is_one_of_the_code_as_it_is():
         assert len(one["reason"]) > 20
 
 
-@pytest.mark.parametrize("given", [["nonsense"], ["--sample", "0"], ["--timeout", "-1"]])
+@pytest.mark.parametrize("given", [["nonsense"], ["--jobs", "0"], ["--sample", "0"], ["--budget", "-1"]])
 def test_bad_options_are_one_line(given, capsys, tmp_path):
     assert mutation.main([*given, "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
