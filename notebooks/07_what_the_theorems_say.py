@@ -97,7 +97,9 @@ print(f"lattices stay below c* up to n = {largest}, and from n = {empty} on no s
 # 2. Among four points of the plane the largest distance is at least $\sqrt2$ times the least. (Three of them form an
 #    angle of at least 90°; the side opposite to it is at least $\sqrt2$ times the shorter of the other two.)
 # 3. By 1 and 2 no four agents are pairwise cheap: the graph of cheap pairs has no complete subgraph of four.
-# 4. Turán: a graph of $n$ nodes without such a subgraph has at most $\lfloor n^2/3\rfloor$ edges.
+# 4. Turán: a graph of $n$ nodes without such a subgraph has at most $\lfloor n^2/3\rfloor$ edges. (Induction from $n-3$
+#    to $n$: take three nodes that are pairwise joined; if there are none, there are even fewer edges. Each of the other
+#    $n - 3$ is joined to at most two of the three. Count: $3 + 2(n-3) + \tfrac13(n-3)^2 = \tfrac13n^2$.)
 # 5. The other $\tfrac12n(n-1) - \lfloor n^2/3\rfloor$ pairs cost at least $\psi_\alpha(r_\alpha)$ each, and cheap ones
 #    cost at least 0.
 # 6. At $n = 23$ the bracket is $253 - 176 = 77$, and $77\,\psi_\alpha(r_\alpha) = 56.7 > 52.4 = c^*$; at $n = 22$ it is
@@ -186,11 +188,11 @@ doubled = {"blunt": [0, 0, 1, 2, 3], "sharp": [2, 0, 1, 2, 3]}
 figure, axes = plots.subplots(1, 2, size=(11, 3.4))
 plots.configuration(places, d=7.0, r=8.4, ax=axes[0], title="circle: two agents share this place")
 axes[0].plot(*places[0], "o", color="black", markersize=16, markerfacecolor="none")
-apart = np.linspace(-1.2, 1.2, 121)
+apart, wells = np.linspace(-0.9, 0.9, 121), {}
 for name, order in doubled.items():
     q = places[order]
     twin = next(k for k in range(1, 5) if order[k] == order[0])
-    for angle, kind in ((0.0, "across"), (90.0, "up")):
+    for angle, axis in ((0.0, "x"), (90.0, "y")):
         move = 0.5 * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
         energy = []
         for y in apart:
@@ -198,14 +200,16 @@ for name, order in doubled.items():
             shifted[0] += y * move
             shifted[twin] -= y * move
             energy.append(alpha.potential_energy(shifted) - alpha.potential_energy(q))
-        axes[1].plot(apart, energy, label=f"{name}, {kind}")
-axes[1].set(xlabel="y, distance of the two (length)", ylabel="V above the doubled state", ylim=(-1.2, 2.0))
+        wells[name, axis] = energy
+        axes[1].plot(apart, energy, label=f"{name} corner, along {axis}")
+axes[1].set(xlabel="y, distance of the two (length)", ylabel="V above the doubled state", ylim=(-0.25, 0.1))
 _ = axes[1].legend()
 
 # %% [markdown]
 # **Figure 7.2.** Left: four places at mutual distance 7. Right: the energy when the two agents of a doubled corner
-# separate along the line of the two blunt corners ("across") or at right angles to it ("up"). The blunt corner is a
-# minimum in both directions; the sharp one is a maximum in one.
+# separate, along the line of the two blunt corners ($x$) or at right angles to it ($y$). The blunt corner is a minimum
+# in both directions, and a shallow one: 0.03 deep, lost when the two are half a length apart. The sharp corner is a
+# maximum along $x$.
 #
 # The picture shows two directions of ten. The library computes all curvatures, and says the same:
 
@@ -213,6 +217,7 @@ _ = axes[1].legend()
 print(fl.verify("E3").claim("double-agent").detail)
 
 # %% tags=["facts"]
+assert 0.02 < max(wells["blunt", "x"]) < 0.035
 slope = float(alpha.phi_alpha(alpha.d_alpha + 1e-5) - alpha.phi_alpha(alpha.d_alpha - 1e-5)) / 2e-5
 spring = slope * 49.0 / (1.0 + 0.1 * 49.0)
 repel = -float(alpha.phi_alpha(0.0))

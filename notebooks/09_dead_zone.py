@@ -50,7 +50,7 @@ from scipy.integrate import solve_ivp
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import grade
+from flockana.course import figures, grade
 
 hard, ramped = fl.DeadZoneInteraction(ramp=0.0), fl.DeadZoneInteraction()
 figure, axes = plots.subplots(1, 2, size=(11, 3.4))
@@ -225,6 +225,15 @@ _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 #    $d_1$ only. $\square$
 #
 # So the vibration of a program with fixed steps is no motion of the law: the law's motion comes to rest.
+
+# %%
+figure, axes = plots.subplots(1, 2, size=(11, 3.6))
+_ = figures.held_at_a_jump(axes=axes)
+
+# %% [markdown]
+# **Figure 9.4.** Left: the acceleration of a pair near a jump, in round numbers; at the jump itself Filippov allows
+# every value of the dashed segment, 0 among them. Right: distance and its rate. Each turn crosses the jump twice, and
+# each is smaller than the one before; the turns are wide on the side of the weak pull.
 #
 # How fast does the bouncing die out? Let the pair leave $d_1$ outwards with a small rate $\dot y = v$. Above $d_1$ it
 # is slowed down by nearly $f_2$, and returns after about $2v/f_2$. On the way friction takes energy out:
@@ -400,7 +409,7 @@ figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
 # %% [markdown]
-# **Figure 9.4.** The middle of the flock is squeezed (dark), its rim is not.
+# **Figure 9.5.** The middle of the flock is squeezed (dark), its rim is not.
 #
 # ## What surprised, and what the corrected theorem does not say
 #

@@ -285,6 +285,26 @@ found.save(path)
 print(fl.replay(path))
 
 # %% [markdown]
+# ## How to report
+#
+# Three sentences that one can sign. They are longer than the usual ones, and every word in them is needed.
+#
+# - *Share.* "Of 60 runs from starts drawn uniformly from the box of the scenario, with seeds 0 to 59, 60 flocked within
+#   100 time units; with 95 % confidence the probability is at least 0.94." Named: distribution, number, horizon, what
+#   counts as a success, confidence.
+# - *Search.* "A search of 100 runs (CMA-ES, seed 1), over starts within 0.5 of the scenario's, found no start at which
+#   the margin is below 0; the least margin was …." Named: method, budget, region, the nearest miss.
+# - *Proof.* "Theorem 1(iii) excludes collisions from every start with an energy below $c^*$; … of the 60 starts are of
+#   this kind." Named: the hypothesis, and how many of *your* starts meet it.
+#
+# A reader can repeat each of the three, and can see what it
+# does not cover. Compare "in extensive simulations the algorithm always converged": what was drawn, how often, for how
+# long, and what was counted?
+#
+# What do students get wrong here? They choose the success criterion after looking at the runs. They stop when the first
+# twenty runs look good, and report twenty. They vary parameters and starts together, and then cannot say over what the
+# share was taken. Decide number, distribution, horizon and criterion *before* the first run, and write them down.
+#
 # ## What surprised, and what the numbers do not say
 #
 # That a six-line search beats a billion coins is the surprise; that an interval from a textbook may contain the truth

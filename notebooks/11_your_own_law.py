@@ -302,6 +302,25 @@ for step in PROOF.steps():
     print("✓" if step.holds else "✗", step.text)
 
 # %% [markdown]
+# ## How to find a theorem for your own law
+#
+# The capstone asks for one. A way that works in an evening:
+#
+# 1. *Two agents, on paper.* One distance, one relative velocity. What falls, what is conserved, where does it rest?
+#    Most laws show their character here.
+# 2. *Guess a function that falls.* Try the energy first, then the mismatch $K$, then the largest of something. Compute
+#    its rate for one generic pair. If a term without a sign is left over, ask what would cancel it, as the integral in
+#    $W$ does above.
+# 3. *Try to kill it.* Run ten starts, then `fl.falsify` (lecture 10). Most guesses die here, and that is cheap.
+# 4. *Write the statement with all hypotheses*, also the silly ones: weights not negative, no two agents in one place, a
+#    solution that exists.
+# 5. *Prove it, a line a step*, and mark in the margin which hypothesis each line uses. A hypothesis that is never used
+#    can go. A line that uses one that you have not written down shows what is missing.
+# 6. *Check the identity by computer*, and say for which $n$ and which dimension it was checked.
+#
+# What students get wrong: they start with step 6. A computer confirms what one has understood; it seldom understands in
+# one's place.
+#
 # ## What surprised, and what a proof by computer does not say
 #
 # That a function which is no energy proves that a flock stays together is the surprise of this lecture. In lectures 02

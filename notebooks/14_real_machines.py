@@ -314,6 +314,41 @@ assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
 # Nothing holds the *orientation*: it is a zero mode (lecture 06), and noise makes it drift like a random walk. A
 # picture of drones would slowly turn. That is a theorem about the law, and no fault of the motors.
 #
+# ## Which theorems survive?
+#
+# Go through the four limits once more, and ask of each what it does to the *proofs* of lectures 02 and 03. They use
+# three facts: forces of a pair are opposite, the force is a gradient, friction takes energy out at every instant.
+#
+# | limit | opposite? | gradient? | takes energy out? | what is left |
+# |---|---|---|---|---|
+# | saturation | no | no | not always | one agent; nothing for a flock |
+# | sampling | yes | yes, but held too long | no: it may pump | linear stability up to a period |
+# | delay | yes | of an old state | no: it may pump | linear stability up to $\tau^*$ |
+# | noise | yes | yes | on average only | variances near rest |
+#
+# Sampling and delay keep momentum: what one agent gets the other loses, late or held. So the centre of a flock under
+# Algorithm 1 still moves at constant velocity, exactly. It is the energy that goes. But read the small print: this
+# holds if *everything* is late, an agent's own state too. If an agent knows itself at once and only its neighbours
+# late, the two forces of a pair belong to different instants, they are not opposite, and the centre is pushed:
+
+# %%
+shaking = np.random.default_rng(0).normal(0.0, 0.5, start.shape)
+machines = {"sampled": fl.Sampled(fl.Algorithm1(), 0.005)}
+machines |= {f"late: {late}": fl.Delayed(fl.Algorithm1(), 0.004, late=late) for late in ("all", "neighbours")}
+pushed = {}
+for name, machine in machines.items():
+    moving = fl.simulate(machine, start, shaking, (0.0, 1.0), dt=0.0005).p.mean(axis=1)
+    pushed[name] = np.abs(moving - moving[0]).max()
+    print(f"{name:>16}: the velocity of the centre changes by {pushed[name]:.1e}")
+
+# %% tags=["facts"]
+assert max(pushed["sampled"], pushed["late: all"]) < 1e-12
+assert pushed["late: neighbours"] > 1e-4
+
+# %% [markdown]
+# Before you trust a theorem on a machine, find in its proof the line that the machine breaks. If there is none, the
+# theorem holds; if there is one, you have learnt what to measure.
+#
 # ## What surprised, and what the theorems do not say
 #
 # A limit of thrust, which looks like the worst of the four, is harmless for one agent and breaks the oldest

@@ -309,6 +309,31 @@ for e in (1e-6, 1e-3):
 assert abs(np.std(twice - true) / (np.sqrt(6.0) * 1e-3 / 0.005**2) - 1.0) < 0.1
 
 # %% [markdown]
+# ## A procedure
+#
+# Put the steps in order, and they become a tool for any law and any log.
+#
+# 1. *Accelerations.* From velocities if they are in the log, else from second differences with the best step.
+# 2. *Terms.* Write the documented law as a sum of terms with gains, and compute each from the logged states.
+# 3. *Fit.* Solve the normal equations; report gains and the share of the residual.
+# 4. *Residual at the level of the data's error?* Then look at the gains: each that is off names a wrong factor or sign.
+# 5. *Residual above it?* Then a form is wrong. Take the residual at the *documented* gains and plot it over the
+#    distance, over the relative velocity, over time, over the agent's number. Where it is 0 the law is right; where it
+#    grows the error acts.
+# 6. *Halve the step of the program* and record again. What shrinks was the integrator.
+# 7. *Mend and repeat.* There may be a second error behind the first.
+#
+# Step 5 asks for the documented gains and not for the fitted ones. Why? The fit spends the gains to make the residual
+# small, and so smears the error over all terms. With the wrong form "unit vector" the fitted gain is 10.5 instead of
+# 30, and the residual is 1 % of the whole, spread everywhere. At the documented gain it is large, and points along the
+# force.
+#
+# **When can gains be told apart?** Only if the recording *excites* both terms. In a flock that has come to rest $g$ is
+# 0, and no log of it, however long, says anything about friction. In a flock at its lattice $f$ is 0. The best
+# recording of a law starts far from where the law wants to go, and is short. (Exercise 7 makes this precise: the matrix
+# of the normal equations is definite exactly if $f$ and $g$ are not proportional.) Control engineers know this as
+# *persistent excitation*. It is why one shakes a machine in order to identify it.
+#
 # ## What surprised, and what a recording does not say
 #
 # A wrong factor leaves no residual, a wrong form leaves one, and both look like flocks. A wrong form can hide behind a
