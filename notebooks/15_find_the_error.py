@@ -268,6 +268,8 @@ figure, ax = plots.subplots(size=(6.5, 3.2))
 for name, errors_found in found.items():
     ax.loglog(strides * 5e-4, errors_found, label=name)
 ax.loglog(strides * 5e-4, np.sqrt(6.0) * e / (strides * 5e-4) ** 2, label="the formula for noise alone")
+ax.minorticks_off()
+ax.set_xticks([0.002, 0.005, 0.01, 0.02, 0.05], ["0.002", "0.005", "0.01", "0.02", "0.05"])
 ax.set(xlabel="step of the differences (time)", ylabel="error of accelerations")
 _ = ax.legend()
 fourth = np.diff(fine.u, 2, axis=0) / 5e-4**2
