@@ -415,19 +415,25 @@ scattered = next(n for n in range(2, 99) if n * (n - 1) / 2 * alpha.psi_alpha(al
 grade(scattered, 13, hint="how many pairs out of range cost as much as c*?")
 
 # %% [markdown] tags=["exercise"]
-# **5.** ★★★ (3 points, words) In your own words: a strict local minimum of $V$ that is no lattice refutes a claim
-# about *almost every* solution of Algorithm 1 with a connected flock. Why is one such minimum enough?
+# **5.** ★★★ (3 points, words) A reader objects to the double agent: "Two robots are never in one place, so this minimum
+# is an artefact, and the claim on almost every solution is right in practice." Answer in your own words. (a) Must a
+# start hold two coincident agents in order to end in this minimum? (b) What does Figure 7.2 say about how near it must
+# be? (c) Change one hypothesis of the claim so that the double agent no longer refutes it, and say what that costs.
 
 # %% [markdown] tags=["answer"]
 # *Your answer:*
 
 # %% [markdown] tags=["solution"]
-# At a strict local minimum, up to motions of the whole, the energy is a Lyapunov function, and damping makes it fall,
-# so the minimum attracts an open neighbourhood of states. An open set has positive measure, so the solutions that
-# start in it are not almost none.
+# (a) No. The minimum attracts an open set of states, by the theorem of the lecture: all states near it with little
+# kinetic energy, in nearly all of which no two agents coincide. Only the limit does. (b) The well is 0.03 deep and
+# about half a length wide: a start with two agents closer than that, everybody near its place, and little motion. So it
+# is rare among random starts, and not of measure zero. (c) For instance: ask for $H(0)$ below the barrier. Then no two
+# agents ever coincide, so this minimum cannot be reached; the cost is that all fast or strained starts are excluded. Or
+# let $\phi_\alpha(0)$ be stronger against the links' stiffness: then the doubled corner is no minimum, and other
+# strained minima have to be excluded in their turn.
 #
-# **Rubric, a point each:** the minimum is asymptotically stable, up to motions of the whole; so it attracts an open
-# set; which has positive measure, so that not almost every solution does otherwise.
+# **Rubric, a point each:** an open set of starts, without coincidence; the size of the well read off the figure; a
+# changed hypothesis with its price.
 
 # %% [markdown] tags=["exercise"]
 # **6.** ★★ (2 points, counterexample) Is a state with $V \ge c^*$ bound to hold two agents that are nearly in one

@@ -42,8 +42,8 @@
 #
 # with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
 # \|q_j-q_i\|$, the bearing $\hat b_{ij} = (q_j-q_i)/d_{ij}$, the sets $\mathcal R_i = \{j \ne i : d_{ij} \le
-# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the aliens $\mathcal S_i = \{k : 0 < d_{ik} \le
-# z_s\}$, and weights $w$ whose sum over the set is
+# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the intruders, which the paper calls aliens, $\mathcal
+# S_i = \{k : 0 < d_{ik} \le z_s\}$, and weights $w$ whose sum over the set is
 # $\bar w$:
 #
 # $$\begin{gathered}

@@ -281,10 +281,11 @@ slope = np.polyfit(returns[500:, 0], np.log(returns[500:, 1]), 1)[0]
 print(f"2000 bounces in {t:.1f}; the rate at the jump falls like exp({slope:.3f} t), by hand exp(-0.667 t)")
 
 # %% [markdown]
-# **How large is the vibration of a program?** Let it step by $\Delta t$, semi-implicitly. The pair falls slowly past
-# $d_1$, and one step later feels the whole repulsion for one step: its rate becomes about
-# $2\cdot32.6\,\Delta t = 65.2\,\Delta t$. Outside only friction and the weak pull act. With friction alone, $\ddot y =
-# -2k_2\dot y$, it would get as far as $\dot y/(2k_2) = 32.6\,\Delta t$. So every throw is shorter than $32.6\,
+# **How large is the vibration of a program?** Let it step by $\Delta t$, semi-implicitly (first the rate, then the
+# distance with the new rate). The pair falls slowly past $d_1$, and one step later feels the whole repulsion for one
+# step: its rate becomes about $2\cdot32.6\,\Delta t = 65.2\,\Delta t$. Outside only friction and the weak pull act.
+# With friction alone, $\ddot y = -2k_2\dot y$, it would get as far as $\dot y/(2k_2) = 32.6\,\Delta t$. So every throw
+# is shorter than $32.6\,
 # \Delta t$: 1.63 for $\Delta t = 0.05$, 0.33 for 0.01, 0.16 for 0.005. *It shrinks with the step, and it is there for
 # every step.* That is the signature of an artefact.
 #
@@ -538,23 +539,24 @@ rests = "ramp"
 grade(rests, "ramp", hint="look at the last quarter of the film")
 
 # %% [markdown] tags=["exercise"]
-# **8.** ★★★ (3 points, proof) Prove the bound $d_{\min}$ of the corrected theorem: let $\bar H$ not rise, and let a
-# pair inside $d_1$ cost at least $2k_r\bigl(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
-# \operatorname{arsinh}(1/(\sqrt\eta\,d_1))\bigr)$. Derive that cost from the force $-2k_r/d_{ij}^2$ along
-# $(q_j-q_i)/\sqrt{1+\eta d_{ij}^2}$.
+# **8.** ★★★ (3 points, proof) Let no pair have a negative potential, and let $\bar H$ never rise. (a) Derive the bound
+# $d_{\min}$ of the corrected theorem from the potential $\psi$ that the lecture has computed. (b) Prove: a flock whose
+# net is connected at the start and which has $\bar H(0) < (n-1)\,\psi(r)$ stays connected at all times. (c) Why is (b)
+# of little use for two fast robots, and the printed claim of cohesion false?
 
 # %% [markdown] tags=["answer"]
 # *Your answer:*
 
 # %% [markdown] tags=["solution"]
-# The force along the line has the size $\tfrac{2k_r}{x^2}\cdot\tfrac{x}{\sqrt{1+\eta x^2}} =
-# \tfrac{2k_r}{x\sqrt{1+\eta x^2}}$ at the distance $x$, besides $k_\delta$, which only adds to the cost. The
-# derivative of $\operatorname{arsinh}(1/(\sqrt\eta x))$ is $-1/(x\sqrt{1+\eta x^2})$: differentiate, with
-# $\operatorname{arsinh}'(z) = 1/\sqrt{1+z^2}$. So the work from $d_1$ down to $d_{ij}$ is the stated difference. All
-# other terms of $\bar H$ are non-negative and $\bar H \le \bar H(0)$, so at every time
-# $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) - \operatorname{arsinh}(1/(\sqrt\eta\,d_1))) \le \bar H(0)$.
-# Solve for $d_{ij}$: $1/(\sqrt\eta\,d_{ij}) \le \sinh(\bar H(0)/(2k_r) +
-# \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, which is $d_{ij} \ge d_{\min}$.
+# (a) A pair inside $d_1$ costs at least $\psi(d_{ij}) = 2k_r\bigl(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
+# \operatorname{arsinh}(1/(\sqrt\eta\,d_1))\bigr)$; $k_\delta$ only adds to it. All other terms of $\bar H$ are not
+# negative and $\bar H \le \bar H(0)$, so this is at most $\bar H(0)$ at every time. Solve for $d_{ij}$:
+# $1/(\sqrt\eta\,d_{ij}) \le \sinh(\bar H(0)/(2k_r) + \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, that is $d_{ij} \ge
+# d_{\min}$. (b) Suppose that at some time the net falls into parts of $n_1$ and $n - n_1$ agents. Then $n_1(n-n_1) \ge
+# n - 1$ pairs are out of range, each costs $\psi(r)$, and $\bar H \ge (n-1)\psi(r) > \bar H(0)$ at that time, against
+# $\bar H \le \bar H(0)$. (c) For $n = 2$ the condition is $\bar H(0) < \psi(r)$, 5.8 with the parameters of the
+# lecture, kinetic energy included: robots that leave each other faster have more, and part. The printed claim has no
+# condition on the energy but that it is finite.
 #
-# **Rubric, a point each:** the integrand with its primitive; the single pair's cost is at most $\bar H(0)$; solving
-# for the distance.
+# **Rubric, a point each:** one pair's cost is at most $\bar H(0)$, solved for the distance; the count of pairs between
+# the parts; the case of two with a number.
