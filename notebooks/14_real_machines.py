@@ -150,12 +150,12 @@ ax.fill_between(across, 0.0, 2.0 * across, color="0.88", label="stable")
 for name, spring, brake, marker in (("centre", 1.1, 2.0976, "o"), ("pair", 446.6, 3.9275, "s")):
     periods = np.geomspace(1e-3, 1.2, 200)
     ax.plot(brake * periods, spring * periods**2, label=f"{name}, as its period grows")
-    for period in (0.005, 0.02) if name == "pair" else (0.5, 0.9):
+    for period in (0.01, 0.03) if name == "pair" else (0.5, 0.9):
         ax.plot(brake * period, spring * period**2, marker, color="black", markersize=5)
         place = brake * period, spring * period**2
-        ax.annotate(f"{period:g}", place, (6, -3), textcoords="offset points", fontsize=8)
+        ax.annotate(f"{period:g}", place, (6, 2), textcoords="offset points", fontsize=8)
 ax.set(xlim=(0.0, 2.4), ylim=(0.0, 4.2), xlabel="friction times period", ylabel="stiffness times period squared")
-_ = ax.legend(loc="upper left")
+_ = ax.legend(loc="upper left", bbox_to_anchor=(0.2, 1.0))
 
 # %% [markdown]
 # **Figure 14.2.** Where a sampled agent is stable (grey): friction times period below 2, and stiffness times the square
