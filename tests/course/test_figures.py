@@ -80,7 +80,7 @@ def test_a_held_pair_turns_about_the_jump_and_dies_out():
     crossings = np.flatnonzero(np.diff(np.sign(y)))
     assert len(crossings) > 20
     assert np.all(np.diff(energy[crossings]) < 0.0)
-    assert force.lines[4].get_ydata() == (-0.4, 1.0)
+    assert force.lines[4].get_ydata().tolist() == [-0.4, 1.0]
 
 
 def test_zones_are_nested_and_named_once():
