@@ -351,6 +351,18 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
 # Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
 # be wrong.
 #
+# ## Questions that come up
+#
+# *Why count pairs that are out of range at all? They do not act on each other.* Because a potential is defined up to a
+# constant only within a path: to come into range again a pair must fall into the well, and the depth of the well is
+# $\psi_\alpha(r_\alpha)$. If pairs out of range cost nothing, those at the distance $d$ would have to cost less than
+# nothing, and "all terms are non-negative", which each proof uses, would be false.
+#
+# *Is a vacuous theorem a wrong theorem?* No. "Every even prime above 2 is green" is true. It cannot be used.
+#
+# *Could 23 agents be safe although the theorem is silent?* Yes; nearly all flocks of this course are. Silence is the
+# point: one has to find out by other means.
+#
 # ## Summary
 #
 # - A true theorem may have a hypothesis that no state satisfies. What its proof throws away is what its hypothesis

@@ -382,6 +382,18 @@ _ = plots.pole_map(found.eigenvalues, ax=ax)
 # the spheres, exponentially. *Velocities*: yes, they agree with the root's, which nobody controls. *Shape*: no, every
 # bearing stays where the start has put it.
 #
+# ## Questions that come up
+#
+# *Why are the eigenvalues of the printed proof right and its conclusion wrong?* They answer a question about a system
+# that is not ours: one whose matrix stays as it is now. Ours changes with every motion.
+#
+# *Is a zero eigenvalue not a sign of instability?* Not if it belongs to a set of equilibria: a displacement along the
+# set stays, neither growing nor falling. A zero that belongs to nothing of the kind is another matter, and asks for
+# terms of higher order.
+#
+# *Would the swing grow if the child pumped at random?* Not in general. The change has to follow the motion, as a law's
+# does, because it depends on the state.
+#
 # ## Summary
 #
 # - Bearings and distances suffice for all terms but the global speed.

@@ -424,6 +424,17 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match in the
 # limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
 #
+# ## Questions that come up
+#
+# *Does the pair touch $d_1$ or not?* Its distance tends to $d_1$ and crosses it again and again. Filippov's equilibrium
+# is the limit, not a state that is reached.
+#
+# *Why not simply define the force at $d_1$ to be 0?* A single value at a single distance changes nothing: a pair that
+# crosses is there for no time. Filippov's definition looks at the values *near* the jump.
+#
+# *Is the ramp the better law, then?* It is another law, whose pair rests a little off $d_1$, and which a computer
+# integrates as usual. A real motor has a ramp anyway.
+#
 # ## Summary
 #
 # - A force may jump; its potential has a corner there and is continuous.

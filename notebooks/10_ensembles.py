@@ -316,6 +316,17 @@ print(fl.replay(path))
 # Neither is a proof, and a proof says nothing about frequencies. A good report has all three columns, and leaves
 # none of them empty in silence.
 #
+# ## Questions that come up
+#
+# *If the interval is cautious, may I take a smaller one?* There are smaller ones, with a coverage of 95 % on average
+# over the true values instead of for each of them. Say which you use; for safety take the cautious one.
+#
+# *My 60 runs took a week. May I count each sample of a run?* No. Samples of one run depend on each other; a run is one
+# toss.
+#
+# *The search failed. Shall I report it?* Yes, with region and budget. Others need not repeat it, and they see how hard
+# you have tried.
+#
 # ## Summary
 #
 # - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.

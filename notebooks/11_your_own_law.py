@@ -333,6 +333,17 @@ for step in PROOF.steps():
 # proves the case $n = 3$. Say which of the two you have. And the rate that `flow` returns is a promise of yours: the
 # residual tests it along runs, the proof tests it for all.
 #
+# ## Questions that come up
+#
+# *Why may I differentiate a distance, which has a corner at 0?* Only under the hypothesis $\psi'(0) = 0$,
+# which removes the corner. In the proof of Cucker and Smale's theorem $y\dot y \le yz$ is divided by $y$, which is
+# allowed while $y > 0$; if $y = 0$ all agents are in one place, and the bound on distances is trivial then.
+#
+# *Is $y^*$ something that happens?* No, it is a promise that nothing worse happens.
+#
+# *My law has no potential and no averaging. Is there a theorem?* Perhaps; begin with two agents on a line, and look for
+# what falls.
+#
 # ## Summary
 #
 # - From the formula of a pair potential force, energy, Jacobian and compiled code follow, and what the formula lacks is

@@ -333,6 +333,17 @@ slider(late, shares, name="τ/τ*", title="consensus of four agents that hear la
 # velocities match within components is measured and not proved (lecture 09): a statement in a list is only as good
 # as its weakest clause.
 #
+# ## Questions that come up
+#
+# *Which of the ten laws is the best?* The question has no answer before one says what is known, what may be assumed,
+# and what must not happen. Each theorem names its price in the table above.
+#
+# *How can a vacuous verdict stand beside a perfect flock?* The theorem's hypothesis is not met by this start. The flock
+# is a fact, the theorem has no part in it.
+#
+# *Does "union of nets" mean that all links exist at once?* No. They exist at different times, and information waits in
+# the agents in between, because everyone keeps a share of its own heading.
+#
 # ## Summary
 #
 # - Theorems on flocking either let an energy fall or average; both need a hypothesis that keeps the agents in touch.

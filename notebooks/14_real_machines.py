@@ -357,6 +357,17 @@ assert pushed["late: neighbours"] > 1e-4
 # the four theorems is about a flock: they are about linear systems near rest, or about one agent. For the nonlinear
 # flock with limits there are runs, verdicts that say *vacuous*, and open questions.
 #
+# ## Questions that come up
+#
+# *Why does friction, which calms things, make a late flock unstable?* It acts against a velocity that the agent no
+# longer has. If that is long enough ago, it acts along the present velocity, and drives.
+#
+# *Can one not undo a delay by prediction?* In part, if one knows the law and the neighbours obey it. Then the
+# prediction's error takes the place of the delay.
+#
+# *Why does noise not add up for ever?* In the position of the centre it does not, because the γ-agent pulls it back. In
+# the orientation, which nothing pulls back, it does.
+#
 # ## Summary
 #
 # - Saturated, one agent still converges (a Lyapunov function with an integral); a saturated flock loses momentum

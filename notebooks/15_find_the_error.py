@@ -192,6 +192,7 @@ for ax, error in zip(axes, ("unit vector", "no weight"), strict=True):
     ax.set(xlabel="size of the law's pair force (unit gain)", ylabel="residual along it", title=error)
 
 # %% tags=["facts"]
+assert np.diff(logs["none"][2], axis=0).size == 2786
 assert np.allclose(fitted["none"][:2], [c1, c2], rtol=1e-6)
 assert np.allclose(fitted["half"][:2], [c1 / 2.0, c2], rtol=1e-6)
 assert np.allclose(fitted["sign"][:2], [c1, -c2], rtol=1e-6)
@@ -344,6 +345,17 @@ assert abs(np.std(twice - true) / (np.sqrt(6.0) * 1e-3 / 0.005**2) - 1.0) < 0.1
 # Two laws that agree there are the same to the data. And a law that explains everything need not be the law that was
 # programmed: of two terms that are proportional along the whole recording only the sum is known. For starlings the
 # honest conclusion is "consistent with", and never "is".
+#
+# ## Questions that come up
+#
+# *Why compare with the law's terms and not with the program's?* The program is what is in doubt. Whoever takes terms
+# from the program finds that it does what it does.
+#
+# *Can two errors cancel?* In one recording, yes: a force that is too weak and a friction that is too strong may give
+# nearly the same motion. Record another start; errors that cancel for one rarely do so for the next.
+#
+# *How many agents and samples do I need?* Two gains need two independent numbers. All others serve to see whether the
+# form is right, and to average noise. The seven agents of this lecture give 2 786 numbers for two gains.
 #
 # ## Summary
 #
