@@ -133,8 +133,8 @@ for outcome in outcomes:
 # that $\psi > H(0)$ on $(x_0, r)$. A link is shorter than $x_0$ at the start or has $\psi \le H(0)$ there, so it is not
 # in this interval; its length is continuous in time, and to reach $r$ it would have to pass through. $\square$
 #
-# Note what it does *not* say. Nothing keeps agents apart: pulled by unbounded tensions, two of them meet in our run. A
-# theorem on cohesion may cost you the one on collisions.
+# Note what it does *not* say. Nothing keeps agents apart: in Figure 12.2 the unbounded tensions draw the whole flock into
+# one place. A theorem on cohesion may cost you the one on collisions.
 #
 # ## A hypothesis about the whole run: joint connectivity
 #
@@ -269,7 +269,7 @@ figure, ax = plots.subplots(size=(6.5, 3.2))
 ax.plot(shares, decay)
 for place, name in ((1.0 / np.e, "1/e: fastest"), (np.pi / 2.0, "π/2: the margin")):
     ax.axvline(place, color="black", linewidth=0.8, linestyle=":")
-    ax.annotate(name, (place, 2.4), (4, 0), textcoords="offset points", fontsize=8)
+    ax.annotate(name, (place, 2.4), (18, 4), textcoords="offset points", fontsize=8)
 ax.axhline(0.0, color="black", linewidth=0.8)
 _ = ax.set(xlabel="delay times the eigenvalue, $\\lambda_k\\tau$", ylabel="decay rate over that without delay")
 
