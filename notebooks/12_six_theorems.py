@@ -133,8 +133,8 @@ for outcome in outcomes:
 # that $\psi > H(0)$ on $(x_0, r)$. A link is shorter than $x_0$ at the start or has $\psi \le H(0)$ there, so it is not
 # in this interval; its length is continuous in time, and to reach $r$ it would have to pass through. $\square$
 #
-# Note what it does *not* say. Nothing keeps agents apart: in Figure 12.2 the unbounded tensions draw the whole flock into
-# one place. A theorem on cohesion may cost you the one on collisions.
+# Note what it does *not* say. Nothing keeps agents apart: in Figure 12.2 the unbounded tensions draw the whole flock
+# into one place. A theorem on cohesion may cost you the one on collisions.
 #
 # ## A hypothesis about the whole run: joint connectivity
 #
