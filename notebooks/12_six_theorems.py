@@ -203,6 +203,7 @@ print(f"spread after 12 steps: {np.ptp(heading):.4f}")
 
 # %% tags=["facts"]
 assert abs(np.ptp(heading) - 0.425 / 2.0**10) < 1e-12
+assert next(each for each in outcomes if each.entry.theorem == "links-kept").position_share < 1e-6
 assert abs(heading.mean() - 1.3 / 3.0) < 1e-12
 assert len(fl.joint_windows(3, [np.array([pair]) for pair in ((0, 1), (1, 2)) * 6])) == 6
 assert not any(np.linalg.eigvalsh(net)[1] > 1e-9 for net in turns)  # no single net is connected
