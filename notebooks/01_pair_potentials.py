@@ -180,6 +180,25 @@ print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out 
 # **Figure 1.4.** Left: the action over the distance. Right: the potential, and in the inset the well about $d = 7$,
 # enlarged. Pulling a pair apart costs 0.74, pushing it together 52.4.
 #
+# **One force by hand.** Let two agents be 8 apart, between $d$ and $r$. Go through the formulas in order:
+#
+# | what | formula | value |
+# |---|---|---|
+# | σ-norm of the distance | $(\sqrt{1 + 0.1\cdot64} - 1)/0.1$ | 17.203 |
+# | those of $d$ and $r$ | $d_\alpha$, $r_\alpha$ | 14.290, 18.383 |
+# | place on the taper | $(17.203/18.383 - 0.2)/0.8$ | 0.920 |
+# | bump | $\tfrac12(1 + \cos(0.920\,\pi))$ | 0.0158 |
+# | action without bump | $5\,\sigma_1(17.203 - 14.290) = 5\cdot2.913/3.080$ | 4.729 |
+# | action | $0.0158\cdot4.729$ | 0.0747 |
+# | length of $n_{ij}$ | $8/\sqrt{7.4}$ | 2.941 |
+# | force | $0.0747\cdot2.941$ | 0.220 |
+#
+# The agents attract each other, as they should. At 95 % of the range the bump has taken
+# 98 % of the force away. Whoever draws $\phi$ without the bump expects a strong hold at the rim of the range; there is
+# next to none. Now do it for 6, where $\phi_\alpha = -2.148$ and the force is $-6.01$: *the push at 6 is 27 times the
+# pull at 8.* The pair is a hard wall with a soft leash, and most of what flocks do wrong in this course comes from the
+# leash.
+#
 # The two numbers of the figure have names. $c^* = \psi_\alpha(0)$ is what two coincident agents cost; theorems on
 # collisions compare the energy with it. $\psi_\alpha(r_\alpha)$ is what a pair out of range costs, *every* pair out
 # of range, however far apart. That constant looks harmless. It makes flocks fall apart (lecture 02) and bounds void
@@ -234,6 +253,12 @@ assert abs(alpha.psi_alpha(z) - exact) < 1e-12
 assert abs(quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0] - exact) < 1e-12
 assert f"{alpha.c_star:.1f} {alpha.psi_alpha(alpha.r_alpha):.2f} {0.1**-0.5:.2f}" == "52.4 0.74 3.16"
 assert abs(alpha.sigma_norm(1e-3) / 0.5e-6 - 1.0) < 1e-6
+at = float(alpha.sigma_norm(8.0))
+assert f"{at:.3f} {alpha.d_alpha:.3f} {alpha.r_alpha:.3f}" == "17.203 14.290 18.383"
+assert f"{(at / alpha.r_alpha - 0.2) / 0.8:.3f} {float(alpha.bump(at / alpha.r_alpha)):.4f}" == "0.920 0.0158"
+pair_force = [float(alpha.phi_alpha(alpha.sigma_norm(x))) * x / np.sqrt(1.0 + 0.1 * x**2) for x in (8.0, 6.0)]
+assert f"{float(alpha.phi_alpha(at)):.4f} {pair_force[0]:.3f} {pair_force[1]:.2f}" == "0.0747 0.220 -6.01"
+assert f"{-pair_force[1] / pair_force[0]:.0f}" == "27"
 
 # %% [markdown]
 # ## Digits that disappear

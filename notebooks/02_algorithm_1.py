@@ -138,6 +138,14 @@ print(fl.verify("E1").status)
 # *Proof.* In $\sum_iu_i$ every pair appears twice, as $(i,j)$ and $(j,i)$. As $n_{ji} = -n_{ij}$ and
 # $a_{ji} = a_{ij}$, its two terms cancel. So $\dot p_c = 0$. $\square$
 #
+# **Both with numbers.** Three agents in a row, 7 apart, all weights of linked pairs 0.1793 (lecture 01), $c_2^\alpha =
+# 2\sqrt{30} = 10.95$, with the velocities $1$, $0$, $-1$ along the row. The outer two are 14 apart and not linked. Then
+# $\dot H = -10.95\cdot0.1793\,\bigl[(1-0)^2 + (0+1)^2\bigr] = -3.93$: friction takes 3.93 units of energy in a unit of
+# time. At the distance 7 no pair exerts a force, so the inputs are friction only: $u_1 = 10.95\cdot0.1793\,(0 - 1) =
+# -1.96$, $u_2 = 10.95\cdot0.1793\,(1 - 1) = 0$, $u_3 = +1.96$. Their sum is 0, as the theorem on momentum says, and
+# $\sum p_iu_i = -3.93$, as the energy says. Note agent 2: its neighbours pull it in both directions, and
+# it feels nothing.
+#
 # So the centre $q_c = \tfrac1n\sum_iq_i$ moves uniformly, and nothing is lost by riding with it: put
 # $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Distances are the same, $V(x) = V(q)$; and since $\sum_iv_i = 0$,
 #
@@ -171,6 +179,11 @@ pieces = [len(set(fl.components(run.n, fl.links(run.q[k], 8.4)))) for k in (0, -
 assert pieces == [35, 24]
 assert abs(run.energy_residual).max() / run.energy()[0] < 2e-9
 assert symbolic.algorithm1_identity(m=2).residual == 0
+row, speeds = np.array([[0.0], [7.0], [14.0]]), np.array([[1.0], [0.0], [-1.0]])
+inputs = fl.Algorithm1().acceleration(0.0, row, speeds)
+assert [f"{each:.2f}" for each in inputs[[0, 2], 0]] == ["-1.96", "1.96"]
+assert abs(inputs[1, 0]) < 1e-12
+assert f"{float(np.sum(inputs * speeds)):.2f}" == "-3.93"
 assert couple.energy()[0] < law.alpha.psi_alpha(law.alpha.r_alpha)  # inside the separatrix
 
 # %% [markdown]

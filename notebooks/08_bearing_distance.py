@@ -42,8 +42,8 @@
 #
 # with cohesion, alignment, separation (local and strategic), obstacle avoidance and global speed. With $d_{ij} =
 # \|q_j-q_i\|$, the bearing $\hat b_{ij} = (q_j-q_i)/d_{ij}$, the sets $\mathcal R_i = \{j \ne i : d_{ij} \le
-# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the aliens $\mathcal S_i = \{k : 0 < d_{ik} \le
-# z_s\}$, and weights $w$ whose sum over the set is
+# z_c\}$, $\mathcal A_i = \{j \ne i : z_r < d_{ij} \le z_a\}$ and the intruders, which the paper calls aliens, $\mathcal
+# S_i = \{k : 0 < d_{ik} \le z_s\}$, and weights $w$ whose sum over the set is
 # $\bar w$:
 #
 # $$\begin{gathered}
@@ -61,6 +61,29 @@
 # where $e$ runs over the closest points of the obstacles that the agent's zone meets, $v^d$ is the desired speed, and a
 # sum over an empty set is 0. As in all lectures $q$ is a position and $p$ a velocity; the paper writes $p$ and
 # $v$, and the radii without $z$, as `ZoneFlocking` does.
+#
+# **Read it with numbers.** Take the radii $z_r = 1.5$, $z_c = 3$, $z_a = 5$, the weight 5 for separation and for the
+# global speed, $v^d = 3$, and three agents:
+#
+# | agent | position | velocity | seen by agent 0 at | zones of agent 0 |
+# |---|---|---|---|---|
+# | 0 | $(0, 0)$ | $(1, 0)$ | – | – |
+# | 1 | $(2, 0)$ | $(0, 1)$ | distance 2, bearing $(1, 0)$ | conflict and attraction |
+# | 2 | $(0, 4)$ | $(0, 0)$ | distance 4, bearing $(0, 1)$ | attraction |
+#
+# With equal weights the first two terms are plain means. So agent 0 has
+#
+# $$\begin{aligned}
+# u_0^{lc} &= \tfrac12\bigl[(2, 0) + (0, 4)\bigr] = (1, 2) && \text{towards the middle of the two} \\
+# u_0^{la} &= \tfrac12\bigl[(-1, 1) + (-1, 0)\bigr] = (-1, \tfrac12) && \text{towards their mean velocity} \\
+# u_0^{ls} &= 5\,(2 - 3)\,(1, 0) = (-5, 0) && \text{away from agent 1} \\
+# u_0^{ga} &= 5\,\bigl(3\,(1, 0) - (1, 0)\bigr) = (10, 0) && \text{faster, straight on}
+# \end{aligned}$$
+#
+# and the sum is $(5, 2.5)$. Two things to notice. *Equal weights cancel*: whether the weight of cohesion is 0.75 or
+# 7.5, a mean is a mean (erratum J10). The paper's weights 0.75 and 0.25 do nothing; the library's default has gains in
+# front of the means instead. *The loudest term wins*: global speed and separation shout, cohesion whispers, and then
+# the sum, 5.6 long, is cut off at the machine's limit $u^{\max} = 2$.
 
 # %%
 import numpy as np
@@ -103,9 +126,23 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
 #
 # ## Two forms, and where they part
 #
-# From a bearing $\hat b_{ij}$ and a distance $d_{ij}$ an agent knows $q_j - q_i = d_{ij}\hat b_{ij}$, and from their
-# rates $p_j - p_i = d_{ij}\tfrac{d}{dt}\hat b_{ij} + \dot d_{ij}\hat b_{ij}$ (13). So each behaviour has a form
-# without positions:
+# What can be computed from bearings and distances? Start from the definition of a bearing and differentiate.
+#
+# $$\begin{aligned}
+# q_j - q_i &= d_{ij}\,\hat b_{ij} && \text{definition of the bearing} \\
+# p_j - p_i &= \dot d_{ij}\,\hat b_{ij} + d_{ij}\,\tfrac{d}{dt}\hat b_{ij} && \text{product rule; (13) of the paper} \\
+# 0 &= \tfrac{d}{dt}\|\hat b_{ij}\|^2 = 2\,\langle\hat b_{ij}, \tfrac{d}{dt}\hat b_{ij}\rangle && \text{it has
+#   length 1} \\
+# \|p_j - p_i\|^2 &= \dot d_{ij}^{\,2} + d_{ij}^2\,\|\tfrac{d}{dt}\hat b_{ij}\|^2 && \text{so the parts are at right
+#   angles}
+# \end{aligned}$$
+#
+# The last line is how radar sees the world: a Doppler shift gives $\dot d_{ij}$, a turning antenna the rate of the
+# bearing, and the farther away the target, the faster it moves for the same rate of the bearing. Positions and
+# velocities of *others relative to oneself* can be had in this way; a position or a velocity of *oneself* cannot,
+# because it would change if everybody moved together, and no bearing and no distance would. So go through the law term
+# by term. Cohesion, alignment and separation contain $q_j - q_i$, $p_j - p_i$, $d_{ij}$ and $\hat b_{ij}$ only. Global
+# speed contains $p_i$. Each of the first three has a form without positions:
 
 # %%
 print("both forms agree:", bearing_distance.derive_equivalence().holds)
@@ -136,22 +173,62 @@ print(f"mean error of the estimate after 1, 5 and 20 s: {off[10]:.2f}, {off[50]:
 # ## A bound that is a drag
 #
 # To keep $\|p\| \le v^{\max} = 4$ the paper sets $p \leftarrow v^{\max}\tanh(\|p\|/v^{\max})\, p/\|p\|$ in *every* step
-# (10). That shortens a velocity of 3, far from the bound, too (erratum J7). Against full thrust $u^{\max} = 2$ it holds
-# the speed below a fixed point:
+# (10). That shortens a velocity of 3, far from the bound, too (erratum J7): $4\tanh\tfrac34 = 2.54$. A smooth bound
+# that is applied once is harmless; applied ten times a second it is a brake. How strong? Let an agent fly straight on
+# with full thrust $u^{\max} = 2$, step $\Delta t = 0.1$. Its speed $v$ goes from step to step by
+#
+# $$v \leftarrow v^{\max}\tanh\frac{v + \Delta t\,u^{\max}}{v^{\max}} .$$
+#
+# A speed that lasts is a fixed point. With $z = v + \Delta t\,u^{\max}$ and $\tanh x = x - \tfrac13x^3 + \dots$,
+#
+# $$\begin{aligned}
+# z - \Delta t\,u^{\max} &= v^{\max}\tanh(z/v^{\max}) && \text{fixed point} \\
+# &\approx z - \frac{z^3}{3(v^{\max})^2} && \text{Taylor} \\
+# z &\approx \bigl(3(v^{\max})^2\,\Delta t\,u^{\max}\bigr)^{1/3} = 9.6^{1/3} = 2.13, && \text{numbers}
+# \end{aligned}$$
+#
+# so $v \approx 1.93$; exactly it is 2.008. Now read the formula, not the number: the speed that lasts falls with the
+# *step*, like $\Delta t^{1/3}$. **The more carefully one simulates the printed law, the slower its flock flies.** With
+# $\Delta t \to 0$ nothing moves at all. A law whose behaviour depends on the step of its simulation is not a law of
+# motion but a property of a program.
 
 # %%
 print(f"3 becomes {bearing_distance.saturation(3, bound=4).evalf(4)} in one step")
 print(f"no speed above {bearing_distance.fastest_under_drag(0.1, 2, 4, digits=5)} lasts; desired are 3")
 printed = fl.scenario("zone-51-printed").run()
 clipped = start.run()
-figure, axes = plots.subplots(1, 2, size=(11, 3.4))
-for ax, run, title in zip(axes, (printed, clipped), ("as printed", "as recommended: a plain clip"), strict=True):
+figure, axes = plots.subplots(1, 3, size=(15, 3.6))
+v = np.linspace(0.0, 3.4, 200)
+axes[0].plot(v, v, label="the same speed again")
+axes[0].plot(v, 4.0 * np.tanh((v + 0.2) / 4.0), label="after one step of full thrust")
+speed, path = 3.2, []
+for _ in range(12):
+    after = 4.0 * np.tanh((speed + 0.2) / 4.0)
+    path += [(speed, speed), (speed, after)]
+    speed = after
+axes[0].plot(*np.array(path).T, linewidth=0.9, label="from 3.2")
+axes[0].set(xlabel="speed (m/s)", ylabel="speed one step later (m/s)", xlim=(1.2, 3.4), ylim=(1.2, 3.4))
+axes[0].legend()
+for ax, run, title in zip(axes[1:], (printed, clipped), ("as printed", "as recommended: a plain clip"), strict=True):
     plots.zone_speeds(run, ax=ax)
     ax.annotate(title, (0.97, 0.12), xycoords="axes fraction", ha="right")
 
+# %% tags=["facts"]
+assert abs(4.0 * np.tanh(0.75) - 2.54) < 0.005
+assert abs(9.6 ** (1 / 3) - 2.125) < 0.001
+assert abs(float(bearing_distance.fastest_under_drag(0.1, 2, 4)) - 2.008) < 0.0005
+assert float(bearing_distance.fastest_under_drag(0.001, 2, 4)) < 0.6
+three = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 4.0]]), np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
+terms = {name: value[0] for name, value in ZoneFlocking().behaviours(*three).items()}
+assert np.allclose(terms["cohesion"] / 0.25, [1.0, 2.0])  # the library's gains in front of the means
+assert np.allclose(terms["alignment"] / 8.0, [-1.0, 0.5])
+assert np.allclose(terms["separation"], [-5.0, 0.0])
+assert np.allclose(terms["speed"], [10.0, 0.0])
+
 # %% [markdown]
-# **Figure 8.3.** Speeds of ten agents. As printed they end at 2, though 3 is desired and the bound is 4; with a
-# plain clip they end at 3.
+# **Figure 8.3.** Left: the speed after a step over the speed before, and the steps from 3.2; they end where the curves
+# cross, at 2.008. Middle and right: speeds of ten agents. As printed they end at 2, though 3 is desired and the bound
+# is 4; with a plain clip they end at 3.
 #
 # ## The theorem
 #
@@ -200,14 +277,76 @@ for ratio in (2.0, 1.0, 0.5):
     print(f"|x| = {ratio:g} d: eigenvalues {first:.3f} and {second:.3f}")
 
 # %% [markdown]
-# Hurwitz where edges are too long, singular where they are right, unstable where they are too short. And $A_{cl}$
-# depends on the state: eigenvalues of a frozen matrix prove nothing about a trajectory.
+# Hurwitz where edges are too long, singular where they are right, unstable where they are too short. (The product of
+# the two roots is $w$ and their sum $-1$. So both are on the left exactly if $w > 0$.) And $A_{cl}$ depends on the
+# state: eigenvalues of a frozen matrix prove nothing about a trajectory.
+#
+# ## A swing that is pumped
+#
+# Is that last sentence a pedant's? Here is a system whose matrix is Hurwitz at every instant and whose solutions grow
+# without bound. A swing with friction, $\ddot x + 0.2\,\dot x + kx = 0$, and a child that changes the stiffness
+# between $k = 1$ and $k = 4$. For both values the eigenvalues have the real part $-0.1$. The child keeps $k = 4$ while
+# the swing moves inwards, and $k = 1$ while it moves outwards:
+#
+# - inwards from rest at $x_0$, without friction: $\tfrac12v^2 = \tfrac12\cdot4x_0^2$, so it passes the middle with
+#   $v = 2x_0$;
+# - outwards with $k = 1$: $\tfrac12x_1^2 = \tfrac12v^2$, so it gets to $x_1 = 2x_0$.
+#
+# A factor of 2 in every half swing. Friction takes away some of it:
+
+# %%
+from scipy.linalg import expm
+
+inward, outward = (np.array([[0.0, 1.0], [-k, -0.2]]) for k in (4.0, 1.0))
+half_swing = expm(outward * np.pi / 2.0) @ expm(inward * np.pi / 4.0)
+print("real parts of all eigenvalues:", [np.linalg.eigvals(each).real.round(3).tolist() for each in (inward, outward)])
+print(f"largest factor of a half swing: {max(abs(np.linalg.eigvals(half_swing))):.3f}")
+state, t, swing = np.array([1.0, 0.0]), 0.0, []
+for _ in range(1600):
+    matrix = inward if state[0] * state[1] <= 0.0 and state[0] != 0.0 else outward
+    swing.append((t, state[0]))
+    state, t = expm(matrix * 0.01) @ state, t + 0.01
+figure, ax = plots.subplots(size=(6.5, 3.0))
+_ = ax.plot(*np.array(swing).T), ax.set(xlabel="t (time)", ylabel="x (length)")
+
+# %% tags=["facts"]
+assert abs(max(abs(np.linalg.eigvals(half_swing))) - 1.586) < 5e-4
+assert np.abs(np.array(swing)[-300:, 1]).max() > 10.0
+
+# %% [markdown]
+# **Figure 8.5.** A swing with friction whose stiffness is 4 while it moves inwards and 1 while it moves outwards. At
+# every instant its matrix is Hurwitz; it grows by the factor 1.586 in every half swing.
+#
+# The stiffness here depends on the *state*, as that of the flock does: it is exactly the printed argument's case. So
+# "Hurwitz at every state" proves nothing, and for the flock it is not even true.
 #
 # ## What is true
 #
 # > **Corrected.** On a frozen rooted out-tree the equilibria are $\|x_e\| = d$, $\dot x = 0$: a product of
 # > spheres of dimension $(n-1)(m-1)$. At each of them that many eigenvalues vanish, because bearings are free; the
 # > others lie in the open left half-plane, so length and velocity errors near the spheres decay exponentially.
+#
+# *Proof.*
+#
+# 1. *Equilibria.* Let all velocities be equal. The force on agent $i$ comes from its one parent, along the edge, with
+#    the size $w_0\bigl|\|x_e\| - d\bigr|$. It vanishes exactly if $\|x_e\| = d$. Each of the $n - 1$ edges may point
+#    anywhere on a sphere of dimension $m - 1$, independently of the others, because a tree has no closed path.
+# 2. *Order.* Number the agents so that each comes after its parent. The edge $x_e = q_j - q_i$ between agent $i$ and
+#    its parent $j$ obeys $\ddot x_e = u_j - u_i$. The input $u_i$ depends on this edge, and $u_j$ on the edge between
+#    $j$ and its own parent, nearer to the root.
+# 3. *Triangle.* So the matrix of the linearised edges, ordered from the root outwards, is block triangular. Its
+#    eigenvalues are those of the diagonal blocks.
+# 4. *One block.* A diagonal block is the linearisation of one edge whose parent does not accelerate,
+#    $\ddot x = -w_0(1 - d/\|x\|)x - \dot x$. Exercise 8 finds its eigenvalues: the roots of $s^2 + s + w_0$ along the
+#    edge, and across it 0 and $-1$, each $m - 1$ times.
+# 5. *Count.* Zeros: $(n-1)(m-1)$, as many as the set of equilibria has dimensions. So along the set nothing happens to
+#    first order, and all eigenvalues across it are in the open left half-plane. Such a set is called *normally
+#    hyperbolic*. That nearby solutions approach it exponentially, each towards one of its points, is the theorem of
+#    Fenichel on such sets. $\square$
+#
+# Compare the two proofs. Both compute eigenvalues. The printed one takes those of a matrix that depends on the state
+# and reads them as if it were constant. This one linearises *at equilibria*, where the matrix is the derivative of the
+# right-hand side, and claims something of their neighbourhood only.
 
 # %%
 print(fl.verify("zone-1-corrected", tree))
@@ -227,18 +366,33 @@ figure, ax = plots.subplots(size=(5, 3.6))
 _ = plots.pole_map(found.eigenvalues, ax=ax)
 
 # %% [markdown]
-# **Figure 8.5.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
+# **Figure 8.6.** Poles at rest: a pair with damping ratio one half, for every edge the same, $-1$ for directions,
 # and eleven zeros.
 #
 # ## What surprised, and what the corrected theorem does not say
 #
 # The printed proof contains a true computation: the eigenvalues are right. What is false is the step from
-# eigenvalues of a matrix that *depends on the state* to the behaviour of solutions. A linear system whose matrix
-# changes in time may grow although every one of its matrices is Hurwitz; students meet this with a swing that is
-# pumped at the right moments. The correction replaces *from any initial condition* by *near the equilibria*, and the
+# eigenvalues of a matrix that *depends on the state* to the behaviour of solutions: the swing of Figure 8.5 has
+# such eigenvalues, and grows. The correction replaces *from any initial condition* by *near the equilibria*, and the
 # point by a set. It does not say that agents that are not joined by an edge keep a distance: two branches of the
 # tree may cross. It does not say what happens if the graph changes, as a perception graph does when agents move. And
 # it says nothing of starts far from the spheres.
+#
+# Here is a way to remember it. A student asks: "Does the tree flock?" Three answers, all true. *Lengths*: yes, near
+# the spheres, exponentially. *Velocities*: yes, they agree with the root's, which nobody controls. *Shape*: no, every
+# bearing stays where the start has put it.
+#
+# ## Questions that come up
+#
+# *Why are the eigenvalues of the printed proof right and its conclusion wrong?* They answer a question about a system
+# that is not ours: one whose matrix stays as it is now. Ours changes with every motion.
+#
+# *Is a zero eigenvalue not a sign of instability?* Not if it belongs to a set of equilibria: a displacement along the
+# set stays, neither growing nor falling. A zero that belongs to nothing of the kind is another matter, and asks for
+# terms of higher order.
+#
+# *Would the swing grow if the child pumped at random?* Not in general. The change has to follow the motion, as a law's
+# does, because it depends on the state.
 #
 # ## Summary
 #

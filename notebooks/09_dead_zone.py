@@ -28,10 +28,10 @@
 #
 # Let two robots stand just inside 3.5, where they repel. They move apart, cross 3.5, and enter the dead zone, in
 # which only a weak pull is left. It brings them back to 3.5, slowly, and there the full repulsion throws them out
-# again, in no time. Friction makes each throw shorter. In the end they sit at 3.5, pushed from one side and pulled
-# from the other, and the motion consists of infinitely many switches in a finite time. Filippov (1960) gave this a
-# meaning: at a jump the force may be any mean of its two one-sided values, and the robots take the one that keeps
-# them there. A computer that steps in time cannot take a mean; it rattles.
+# again, in no time. Friction makes each throw shorter, and the switches come faster and faster, without end. The robots
+# settle at 3.5, pushed from one side and pulled from the other. Filippov (1960) gave this a meaning: at a jump the
+# force may be any mean of its two one-sided values, and the robots take the one that keeps them there. A computer that
+# steps in time cannot take a mean; it rattles.
 #
 # Li, Yuan and Liu (`fl.cite(fl.theorem("dead-zone-1-printed"))`) let agents repel below $d_1 = r_b-\delta$, attract
 # above $d_2 = r_b+\delta$, and leave each other alone between. Made definite (errata L1, L2), with $d_{ij} =
@@ -50,7 +50,7 @@ from scipy.integrate import solve_ivp
 
 import flockana as fl
 from flockana import plots, symbolic
-from flockana.course import grade
+from flockana.course import figures, grade
 
 hard, ramped = fl.DeadZoneInteraction(ramp=0.0), fl.DeadZoneInteraction()
 figure, axes = plots.subplots(1, 2, size=(11, 3.4))
@@ -68,10 +68,30 @@ for jump in hard.jumps():
 # %% [markdown]
 # On the right a *ramp* of width 0.25 takes the place of the jumps beside the dead zone. The one at $r$ stays.
 #
+# **Check the first jump by hand.** With $k_r = 200$, $k_\delta = 1.3$, $k_1 = 0.01$, $\eta = 1$, at $d_{ij} = 3.5$:
+# just below, $f = -(400/12.25 + 1.3) = -33.95$. The vector $(q_j-q_i)/\sqrt{1+\eta d_{ij}^2}$ has the length
+# $3.5/\sqrt{13.25} = 0.9615$, and $k_1$ pulls with $0.035$. Together $-33.95\cdot0.9615 + 0.035 = -32.61$: they repel.
+# Just above only the pull is left, $+0.035$. A thousandth of the repulsion, and yet it is this thousandth that brings
+# the robots back to the edge.
+#
 # ## The potential, in closed form
 #
-# The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/d_{ij}^2$. Its potential is
-# unbounded too, but only as $-2k_r\ln d_{ij}$, because $q_j - q_i$ is no unit vector:
+# The source calls $f$ a bounded potential (erratum L3). It is a force, unbounded as $1/d_{ij}^2$. What is its
+# potential? The force along the line is $f$ times the length of its vector, so for the repulsion (without $k_\delta$)
+#
+# $$\begin{aligned}
+# F(x) &= -\frac{2k_r}{x^2}\cdot\frac{x}{\sqrt{1+\eta x^2}} = -\frac{2k_r}{x\sqrt{1+\eta x^2}} && \text{force along
+#   the line} \\
+# \frac{d}{dx}\operatorname{arsinh}\frac{1}{\sqrt\eta\,x} &=
+#   \frac{1}{\sqrt{1 + 1/(\eta x^2)}}\cdot\frac{-1}{\sqrt\eta\,x^2}
+#   = -\frac{1}{x\sqrt{1+\eta x^2}} && \operatorname{arsinh}'(z) = 1/\sqrt{1+z^2} \\
+# \psi(x) &= 2k_r\Bigl(\operatorname{arsinh}\frac{1}{\sqrt\eta\,x} - \operatorname{arsinh}\frac{1}{\sqrt\eta\,d_1}\Bigr)
+#   && \psi' = F, \ \psi(d_1) = 0
+# \end{aligned}$$
+#
+# For small $x$ this grows like $-2k_r\ln x$: without bound, but slowly, because the vector $q_j - q_i$ is short when
+# the agents are near. To halve a small distance always costs the same, $2k_r\ln2 = 277$. The library derives all parts,
+# those of $k_\delta$, $k_1$ and the attraction included:
 
 # %%
 potential = symbolic.dead_zone.derive_potential()
@@ -81,12 +101,37 @@ potential
 # %% [markdown]
 # ## Which energy falls
 #
-# The source sums $\psi$ over *neighbours*. That sum jumps up by $\psi(r)$ whenever a pair comes into range. Hold each
-# pair's potential constant beyond $r$ instead, and the sum over *all* pairs is continuous, with
+# The source sums $\psi$ over *neighbours*. That sum jumps up by $\psi(r)$ whenever a pair comes into range: just
+# outside the pair is not counted, just inside it counts 5.8. Hold each pair's potential constant beyond $r$ instead,
+# and count *all* pairs:
 #
-# $$\dot{\bar H} = -k_2\, p^\top \hat L\, p \le 0$$
+# $$\bar H = \tfrac12\sum_i\|p_i\|^2 + \sum_{i<j}\psi\bigl(\min(d_{ij}, r)\bigr).$$
 #
-# across all switches (erratum L5). Sixteen agents:
+# > **Theorem (the energy that falls).** Along every solution of the law whose pairs switch at isolated times, $\bar H$
+# > is continuous, and $\dot{\bar H} = -k_2\,p^\top\hat L\,p \le 0$ between the switches. So it never rises (erratum
+# > L5).
+#
+# *Proof.*
+#
+# 1. $\psi$ is an integral of a bounded function (away from 0), so it is continuous, at $d_1$, $d_2$ and $r$ too:
+#    *a force may jump, its potential only has a corner*. Positions and velocities are continuous. So is $\bar H$.
+# 2. Between two switches every pair stays in its zone, and everything can be differentiated. With
+#    $\dot p_i = u_i$ and $F_{ij}$ the force of the pair along its line,
+#
+# $$\begin{aligned}
+# \dot{\bar H} &= \sum_i\langle p_i, u_i\rangle + \sum_{i<j}F_{ij}\,\dot d_{ij} && \psi' = F \text{ within } r,\ 0
+#   \text{ beyond} \\
+# \sum_i\langle p_i, u_i\rangle &= \sum_{i<j}\langle p_i - p_j,\; F_{ij}\hat e_{ij} + k_2(p_j - p_i)\rangle && \text{sum
+#   over pairs; } \hat e_{ij} \text{ points from } i \text{ to } j \\
+# &= -\sum_{i<j}F_{ij}\,\dot d_{ij} - k_2\sum_{i<j,\; d_{ij}<r}\|p_j-p_i\|^2 && \dot d_{ij} = \langle p_j - p_i, \hat
+#   e_{ij}\rangle \\
+# \dot{\bar H} &= -k_2\,p^\top\hat L\,p . && \text{definition of } L
+# \end{aligned}$$
+#
+# 3. A continuous function that falls on each of the intervals between isolated times falls. $\square$
+#
+# Where did the printed proof go wrong? It differentiates a sum whose *set of summands* changes, and differentiates the
+# summands only. Whoever sums over neighbours has to ask what happens when a neighbour arrives. Sixteen agents:
 
 # %%
 run = fl.scenario("dead-zone-flow").run()
@@ -100,8 +145,16 @@ _ = plots.energy_residual(run, ax=axes[1])
 #
 # ## What a jump does to an integrator
 #
-# An adaptive solver assumes that the solution is smooth within a step. At a jump its error estimate means nothing: it
-# fails, halves, fails again, and steps over the jump in the end. `fl.simulate` holds every pair in its zone, finds the
+# An adaptive solver assumes that the solution is smooth within a step. Its error estimate is the difference of two
+# formulas which agree up to a high power of the step *if the right-hand side has derivatives*. Let a pair cross $d_1$
+# at the share $z$ of a step $\Delta t$. Whatever the solver does, it evaluates the force at a few fixed places of the
+# step, so it uses the wrong side of the jump for some share $z'$ of the step instead of $z$. Its velocity is off by
+#
+# $$|z - z'|\cdot\Delta t\cdot\bigl|F(d_1+) - F(d_1-)\bigr|, \qquad \text{here up to } 32.6\,\Delta t .$$
+#
+# That is an error of the *first* order in the step, for a method of the eighth. To get nine digits the step would have
+# to be $10^{-11}$ there, and so the solver fails, halves, fails again, and steps over the jump in the end with an error
+# that its estimate has not seen. `fl.simulate` holds every pair in its zone, finds the
 # first pair that leaves, stops there, and starts anew. Two agents fly at each other, turn, and part: six switches.
 
 # %%
@@ -127,8 +180,9 @@ for rtol in (1e-6, 1e-8, 1e-10):
 # ## Sliding
 #
 # Just above $d_1$ the pull $k_1 d_{ij}$ draws two agents together, just below it they repel. Damped, they bounce at
-# $d_1$ ever lower, and the switches come ever faster: in the end the pair is *held at the jump*, a sliding mode in
-# Filippov's sense. No solver of smooth pieces gets beyond that point, and the run says so.
+# $d_1$ ever lower, and the switches come ever faster: in the limit the pair is *held at the jump*, a sliding mode in
+# Filippov's sense. A solver that locates the switches gives up when they can no longer be told apart, and the run says
+# so.
 
 # %%
 pair, rest = np.array([[0.0, 0.0], [5.0, 0.0]]), np.zeros((2, 2))
@@ -171,6 +225,69 @@ _ = axes[1].set(xlim=(36.0, 50.0), ylim=(3.495, 3.506))
 #    $d_1$ only. $\square$
 #
 # So the vibration of a program with fixed steps is no motion of the law: the law's motion comes to rest.
+
+# %%
+figure, axes = plots.subplots(1, 2, size=(11, 3.6))
+_ = figures.held_at_a_jump(axes=axes)
+
+# %% [markdown]
+# **Figure 9.4.** Left: the acceleration of a pair near a jump, in round numbers; at the jump itself Filippov allows
+# every value of the dashed segment, 0 among them. Right: distance and its rate. Each turn crosses the jump twice, and
+# each is smaller than the one before; the turns are wide on the side of the weak pull.
+#
+# How fast does the bouncing die out? Let the pair leave $d_1$ outwards with a small rate $\dot y = v$. Above $d_1$ it
+# is slowed down by nearly $f_2$, and returns after about $2v/f_2$. On the way friction takes energy out:
+#
+# $$\begin{aligned}
+# \int 2k_2\,\dot y^2\,dt &\approx 2k_2\int_0^{2v/f_2}(v - f_2t)^2\,dt = \tfrac43k_2\,v^3/f_2 && \text{work of the
+#   friction} \\
+# \tfrac12v^2 - \tfrac12v'^2 &\approx v\,(v - v'), \quad\text{so}\quad v' - v \approx -\tfrac43k_2\,v^2/f_2 &&
+#   \text{it returns with the rate } v' \\
+# \frac{v' - v}{2v/f_2} &\approx -\tfrac23k_2\,v , \quad\text{so}\quad \dot v \approx -\tfrac23k_2\,v . &&
+#   \text{and below } d_1 \text{ with } f_1 \text{ the same}
+# \end{aligned}$$
+#
+# The two forces have dropped out: however hard the repulsion and however weak the pull, the rate at the jump falls like
+# $e^{-2k_2t/3}$. The time between two switches is proportional to $v$, so the *switches come faster and faster, like
+# $e^{2k_2t/3}$*. In exact arithmetic the pair switches infinitely often and never quite stops. (A ball that loses a
+# fixed *share* of its speed at each bounce stops in a finite time; here the share itself becomes small.) No solver that
+# locates the switches one by one gets beyond a certain time, because soon two switches are nearer to each other than
+# numbers can tell; and no engineer cares about the difference. Filippov's equilibrium says what is left.
+
+# %%
+from scipy.optimize import brentq
+
+
+def bounce(v, f, k2=1.0):
+    """Rate and time of return to the jump, of a pair that leaves it at the rate v against the constant force f."""
+    speed = v + f / (2.0 * k2)  # y' = speed exp(-2 k2 t) - f/(2 k2)
+    top = np.log(speed * 2.0 * k2 / f) / (2.0 * k2)
+
+    def place(t):
+        return speed * (1.0 - np.exp(-2.0 * k2 * t)) / (2.0 * k2) - f / (2.0 * k2) * t
+
+    back = brentq(place, top, 10.0 * top + 2.0 * v / f + 1e-9, xtol=1e-16, rtol=1e-14)
+    return f / (2.0 * k2) - speed * np.exp(-2.0 * k2 * back), back
+
+
+v, t, returns = 0.05, 0.0, []
+for _ in range(2000):
+    for size in (0.07, 65.2):  # above the jump, then below it
+        v, passed = bounce(v, size)
+        t += passed
+    returns.append((t, v))
+returns = np.array(returns)
+slope = np.polyfit(returns[500:, 0], np.log(returns[500:, 1]), 1)[0]
+print(f"2000 bounces in {t:.1f}; the rate at the jump falls like exp({slope:.3f} t), by hand exp(-0.667 t)")
+
+# %% [markdown]
+# **How large is the vibration of a program?** Let it step by $\Delta t$, semi-implicitly (first the rate, then the
+# distance with the new rate). The pair falls slowly past $d_1$, and one step later feels the whole repulsion for one
+# step: its rate becomes about $2\cdot32.6\,\Delta t = 65.2\,\Delta t$. Outside only friction and the weak pull act.
+# With friction alone, $\ddot y = -2k_2\dot y$, it would get as far as $\dot y/(2k_2) = 32.6\,\Delta t$. So every throw
+# is shorter than $32.6\,
+# \Delta t$: 1.63 for $\Delta t = 0.05$, 0.33 for 0.01, 0.16 for 0.005. *It shrinks with the step, and it is there for
+# every step.* That is the signature of an artefact.
 #
 # With the ramp the force is continuous there, and the pair comes to rest just short of $d_1$. A fixed step sees neither
 # jump nor sliding; it goes on, and chatters (erratum L7):
@@ -213,6 +330,19 @@ film(until, np.linspace(2.0, 80.0, 40), name="t", title="the distance of a pair 
 late = [length[t > 60.0] for t, length in curves.values()]
 assert np.ptp(late[0]) > 2.0 * np.ptp(late[1]) > 0.05
 assert np.ptp(late[2]) < 1e-6
+assert abs(slope + 2.0 / 3.0) < 5e-3
+contact = hard.jumps()[0]
+assert abs(contact.below + 32.61) < 0.005
+assert abs(contact.above - 0.035) < 1e-9
+assert abs((400.0 / 12.25 + 1.3) * 3.5 / 13.25**0.5 - 0.035 - 32.61) < 0.005
+for dt in (0.05, 0.01, 0.005):
+    t, length = stepped(hard, dt)
+    assert 0.02 < length[t > 60.0].max() - hard.d1 < 32.6 * dt
+assert abs(2.0 * hard.k_r * np.log(2.0) - 277.0) < 0.5
+assert abs(hard.psi(hard.r) - 5.8) < 0.02
+by_hand = 400.0 * (np.arcsinh(1.0 / 2.0) - np.arcsinh(1.0 / 3.5))
+rest_of_psi = fl.DeadZoneInteraction(ramp=0.0, k_delta=1e-12, k1=1e-12)
+assert abs(rest_of_psi.psi(2.0) - by_hand) < 1e-6
 
 # %% [markdown]
 # ## The theorem, printed and corrected
@@ -231,10 +361,20 @@ print(fl.verify("dead-zone-1-printed", wide))
 
 # %% [markdown]
 # The flock that stays one ends a little wider than $r$, and at rest: it stays so. For the other, a finite run refutes
-# "in the end they are together" only if it is certain that they part. It is: each component conserves its momentum, so
-# its centre moves at constant velocity, and its energy bounds how many of its own pairs can ever be out of range, hence
-# how far an agent gets from that centre. The components that are left at the end never come within $r$ of each other
-# again.
+# "in the end they are together" only if it is certain that they part. How can a finite run say something about all
+# later times? By an argument in three steps, of which each uses a quantity that cannot change its mind.
+#
+# 1. *Momentum.* Forces and friction of a pair are opposite, so within a component they cancel in the sum. As long as
+#    the component meets nobody, its centre moves at *constant velocity*.
+# 2. *Energy.* The component's own $\bar H$, counted in the frame of its centre, does not rise. A pair out of range
+#    costs $\psi(r)$, so at most $\bar H/\psi(r)$ of its pairs can ever be out of range. If that is less than the
+#    $n_1(n-n_1)$ pairs between two parts, the component cannot split, and its agents stay within $(n-1)r$ of each
+#    other.
+# 3. *Geometry.* Two components whose centres move apart at constant velocity, and whose agents stay within known
+#    distances of the centres, have a gap which grows for ever once it has begun to grow.
+#
+# So a run need only be continued until the gap of every two components is certain to stay above $r$. It is the same
+# pattern as in lecture 07: energy bounds what can happen at one instant, at *all* instants, and so for ever.
 #
 # > **Corrected theorem.** Let each pair's potential be held constant beyond $r$, let $\bar H$ be the sum over all
 # > pairs and the kinetic energy, and let no two agents start in one place. Then $\bar H$ is continuous and $\dot{\bar
@@ -270,9 +410,13 @@ figure, ax = plots.subplots(size=(6, 5))
 _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 
 # %% [markdown]
-# **Figure 9.4.** The middle of the flock is squeezed (dark), its rim is not.
+# **Figure 9.5.** The middle of the flock is squeezed (dark), its rim is not.
 #
 # ## What surprised, and what the corrected theorem does not say
+#
+# Students usually guess that the jump of the force is the problem and the energy is innocent. It is the other way
+# round: a jumping force is harmless for the theory (its potential has a corner, and Filippov's definition takes care of
+# the rest), and the *energy as printed* is what breaks the proof.
 #
 # The energy that the source wrote down rises, and the one that it meant falls; they differ by a constant for each
 # pair, that is switched on and off. Filippov's idea, a convex combination at the jump, is the definition that makes
@@ -280,8 +424,20 @@ _ = plots.configuration(equilibrium.q, d=ramped.d1, r=1.2 * ramped.d1, ax=ax)
 # one flock: $\psi(r)$ is finite, so enough speed takes any pair apart. It does not give velocities that match in the
 # limit, which is measured here, and it gives a least distance that is true and tiny for realistic energies.
 #
+# ## Questions that come up
+#
+# *Does the pair touch $d_1$ or not?* Its distance tends to $d_1$ and crosses it again and again. Filippov's equilibrium
+# is the limit, not a state that is reached.
+#
+# *Why not simply define the force at $d_1$ to be 0?* A single value at a single distance changes nothing: a pair that
+# crosses is there for no time. Filippov's definition looks at the values *near* the jump.
+#
+# *Is the ramp the better law, then?* It is another law, whose pair rests a little off $d_1$, and which a computer
+# integrates as usual. A real motor has a ramp anyway.
+#
 # ## Summary
 #
+# - A force may jump; its potential has a corner there and is continuous.
 # - The potential that is continuous across switches holds each pair's cost constant beyond the range; its sum falls.
 # - At a jump an integrator's error estimate means nothing: switches have to be located.
 # - A pair can be held at a jump, in Filippov's sense; a fixed step chatters there.
@@ -394,23 +550,24 @@ rests = "ramp"
 grade(rests, "ramp", hint="look at the last quarter of the film")
 
 # %% [markdown] tags=["exercise"]
-# **8.** ★★★ (3 points, proof) Prove the bound $d_{\min}$ of the corrected theorem: let $\bar H$ not rise, and let a
-# pair inside $d_1$ cost at least $2k_r\bigl(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
-# \operatorname{arsinh}(1/(\sqrt\eta\,d_1))\bigr)$. Derive that cost from the force $-2k_r/d_{ij}^2$ along
-# $(q_j-q_i)/\sqrt{1+\eta d_{ij}^2}$.
+# **8.** ★★★ (3 points, proof) Let no pair have a negative potential, and let $\bar H$ never rise. (a) Derive the bound
+# $d_{\min}$ of the corrected theorem from the potential $\psi$ that the lecture has computed. (b) Prove: a flock whose
+# net is connected at the start and which has $\bar H(0) < (n-1)\,\psi(r)$ stays connected at all times. (c) Why is (b)
+# of little use for two fast robots, and the printed claim of cohesion false?
 
 # %% [markdown] tags=["answer"]
 # *Your answer:*
 
 # %% [markdown] tags=["solution"]
-# The force along the line has the size $\tfrac{2k_r}{x^2}\cdot\tfrac{x}{\sqrt{1+\eta x^2}} =
-# \tfrac{2k_r}{x\sqrt{1+\eta x^2}}$ at the distance $x$, besides $k_\delta$, which only adds to the cost. The
-# derivative of $\operatorname{arsinh}(1/(\sqrt\eta x))$ is $-1/(x\sqrt{1+\eta x^2})$: differentiate, with
-# $\operatorname{arsinh}'(z) = 1/\sqrt{1+z^2}$. So the work from $d_1$ down to $d_{ij}$ is the stated difference. All
-# other terms of $\bar H$ are non-negative and $\bar H \le \bar H(0)$, so at every time
-# $2k_r(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) - \operatorname{arsinh}(1/(\sqrt\eta\,d_1))) \le \bar H(0)$.
-# Solve for $d_{ij}$: $1/(\sqrt\eta\,d_{ij}) \le \sinh(\bar H(0)/(2k_r) +
-# \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, which is $d_{ij} \ge d_{\min}$.
+# (a) A pair inside $d_1$ costs at least $\psi(d_{ij}) = 2k_r\bigl(\operatorname{arsinh}(1/(\sqrt\eta\,d_{ij})) -
+# \operatorname{arsinh}(1/(\sqrt\eta\,d_1))\bigr)$; $k_\delta$ only adds to it. All other terms of $\bar H$ are not
+# negative and $\bar H \le \bar H(0)$, so this is at most $\bar H(0)$ at every time. Solve for $d_{ij}$:
+# $1/(\sqrt\eta\,d_{ij}) \le \sinh(\bar H(0)/(2k_r) + \operatorname{arsinh}(1/(\sqrt\eta\,d_1)))$, that is $d_{ij} \ge
+# d_{\min}$. (b) Suppose that at some time the net falls into parts of $n_1$ and $n - n_1$ agents. Then $n_1(n-n_1) \ge
+# n - 1$ pairs are out of range, each costs $\psi(r)$, and $\bar H \ge (n-1)\psi(r) > \bar H(0)$ at that time, against
+# $\bar H \le \bar H(0)$. (c) For $n = 2$ the condition is $\bar H(0) < \psi(r)$, 5.8 with the parameters of the
+# lecture, kinetic energy included: robots that leave each other faster have more, and part. The printed claim has no
+# condition on the energy but that it is finite.
 #
-# **Rubric, a point each:** the integrand with its primitive; the single pair's cost is at most $\bar H(0)$; solving
-# for the distance.
+# **Rubric, a point each:** one pair's cost is at most $\bar H(0)$, solved for the distance; the count of pairs between
+# the parts; the case of two with a number.

@@ -31,6 +31,17 @@
 # of 0.9 does that in $0.9^{10} = 35\,\%$ of all experiments, one with 0.7 still in $2.8\,\%$. So ten successes
 # exclude 0.6, and do not exclude 0.75. The interval of this lecture says the same for any $k$ of $N$.
 #
+# Three questions, three kinds of answer. Keep them apart from the first day on:
+#
+# | question | method | what an answer looks like |
+# |---|---|---|
+# | How often, among starts like these? | independent runs | $k$ of $N$, an interval, and the distribution of starts |
+# | Is there any start at which it fails? | search | a start, or "none found" with budget and region |
+# | Does it hold for all starts? | proof | a theorem, with hypotheses |
+#
+# No answer of one row replaces one of another. A proof of "almost every" does not tell how long it takes; a share of
+# 100 % does not tell that there is no exception; a counterexample does not tell how often one meets it.
+#
 # "Almost every solution converges" is a statement about all initial states. One run verifies nothing; $k$ successes
 # in $N$ runs say that the probability of success lies, with 95 % confidence, in the interval of Clopper and Pearson
 # (1934). Even $N$ of $N$ leaves room: for $N = 60$ down to 0.94.
@@ -75,11 +86,59 @@ _ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60)))
 # **Figure 10.1.** 57 successes in 60 runs (dotted line). At the lower end, 0.861, so many or more have the probability
 # 2.5 % (hatched, right tail); at the upper end, 0.990, so few or fewer have it (dotted, left tail).
 #
-# If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
+# **By hand: 4 of 5.** The upper end has the tail "4 or fewer", which is everything but "all 5":
+# $1 - p^5 = 0.025$, so $p = 0.975^{1/5} = 0.995$. The lower end has the tail "4 or 5":
+# $5p^4(1-p) + p^5 = 0.025$. Try $p = 0.3$: $0.0284 + 0.0024 = 0.0308$, too much; $p = 0.28$: $0.0221 + 0.0017 =
+# 0.0239$, too little; the end is 0.284. So 4 of 5 says "between 28 % and 99.5 %", which is nearly nothing, and it is
+# honest. If all succeed, $k = N$, the lower end solves $p^N = 0.025$.
+#
+# **And the formula from school?** The share $\hat p = k/N$ plus and minus $1.96\sqrt{\hat p(1-\hat p)/N}$ is in every
+# textbook. Put $k = N$ into it: the root is 0, and the interval is the single point 1, for one run as for a million. It
+# rests on a normal approximation that fails exactly where engineers work, near 1. How badly, can be computed without
+# any simulation: for a given $p$ add up the probabilities of all $k$ whose interval contains $p$.
+
+# %%
+import numpy as np
+from scipy.stats import binom
+
+N = 20
+k = np.arange(N + 1)
+half = 1.96 * np.sqrt(k / N * (1.0 - k / N) / N)
+kinds = {
+    "Clopper and Pearson": np.array([tuple(map(float, fl.clopper_pearson(each, N))) for each in k]),
+    "from school": np.column_stack([k / N - half, k / N + half]),
+}
+chances = np.linspace(0.005, 0.995, 397)
+covered = {
+    name: np.array([binom.pmf(k, N, p)[(ends[:, 0] <= p) & (p <= ends[:, 1])].sum() for p in chances])
+    for name, ends in kinds.items()
+}
+figure, ax = plots.subplots(size=(7, 3.2))
+for name, share in covered.items():
+    ax.plot(chances, share, label=f"{name}, at least {share.min():.2f}")
+ax.axhline(0.95, color="black", linewidth=0.8, linestyle=":")
+ax.set(xlabel="true probability of success", ylabel="probability that the interval contains it", ylim=(0.0, 1.02))
+_ = ax.legend(loc="lower center")
+
+# %% [markdown]
+# **Figure 10.2.** How often an interval of 20 runs contains the truth. That of Clopper and Pearson never does so in
+# less than 95 % of all cases, as the theorem says (and mostly in more: it is cautious). The one from school falls to
+# a tenth near 0 and 1.
+#
+# **Several claims at once.** A table with five claims has five intervals. Each is wrong with a probability of at most
+# 5 %; that *some* is wrong may then have up to 25 %. For the table as a whole to be right with 95 %, give each interval
+# $5/5 = 1\,\%$: the probability of a union is at most the sum of the probabilities, whether the claims depend on each
+# other or not. A student who looks at forty measures and reports the two that came out "significant" has found what
+# forty fair coins would give.
 
 # %% tags=["facts"]
 assert [f"{float(end):.3f}" for end in fl.clopper_pearson(57, 60)] == ["0.861", "0.990"]
 assert abs(float(fl.clopper_pearson(60, 60)[0]) - 0.025 ** (1 / 60)) < 1e-9
+assert [f"{float(end):.3f}" for end in fl.clopper_pearson(4, 5)] == ["0.284", "0.995"]
+assert [round(5 * x**4 * (1 - x) + x**5, 4) for x in (0.3, 0.28)] == [0.0308, 0.0238]
+assert covered["Clopper and Pearson"].min() >= 0.95
+assert covered["from school"].min() < 0.12
+assert [round(x**10, 3) for x in (0.9, 0.7, 0.6, 0.75)] == [0.349, 0.028, 0.006, 0.056]
 
 # %% [markdown]
 # ## What a source reports, seed by seed
@@ -95,7 +154,7 @@ plots.share_bars(fl.shares(printed), ax=axes[0], title="as printed")
 _ = plots.share_bars(fl.shares(mended), ax=axes[1], title="as recommended")
 
 # %% [markdown]
-# **Figure 10.2.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
+# **Figure 10.3.** Share of sixty seeds in which a claim of the source holds (dots) or is refuted (squares), with
 # intervals. As printed one of five holds; with the recommended gains nearly all.
 #
 # The result is an `xarray.Dataset`, so everything else is a question to it: how close did they come?
@@ -117,7 +176,7 @@ runs = fl.ensemble("phase", range(3), parameters=grid, theorems=())
 _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 
 # %% [markdown]
-# **Figure 10.3.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is
+# **Figure 10.4.** How twelve agents end, for four ratios and two densities; where the seeds disagree, a cell is
 # divided in their shares.
 #
 # Campaigns of thousands of runs want a store: `fl.ensemble(..., store="runs.sqlite")` writes every result as it
@@ -126,10 +185,67 @@ _ = plots.phase_diagram(phases(runs).sel(n=12), "ratio", "density")
 #
 # ## Do not wait for the counterexample
 #
-# Random starts rarely hit the bad one. Every claim has a *margin*, a number that is positive where the claim holds,
-# and smaller the nearer it is to failing. A search that minimises the margin goes downhill to the bad start. Theorem
-# 1(iii) excludes a collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and then
-# below it:
+# Random starts rarely hit the bad one. How rarely, is a matter of geometry. Let the starts fill a cube of ten
+# dimensions (five agents in the plane) with sides of length 1, and let the bad ones be a ball of radius 0.1 somewhere
+# in it. Its volume is
+#
+# $$\frac{\pi^5}{5!}\,0.1^{10} = 2.55\cdot10^{-10},$$
+#
+# so one random start in four *billion* is bad. A search does not wait for it. Every claim has a *margin*, a number that
+# is positive where the claim holds, and smaller the nearer it is to failing: a least distance minus what is allowed, a
+# bound minus what was measured. A search that minimises the margin goes downhill to the bad start. The simplest one
+# takes six lines: change the best start so far at random, keep the change if the margin fell, and then be bolder, else
+# be more careful.
+
+# %%
+bad = np.random.default_rng(4).uniform(0.2, 0.8, 10)
+
+
+def distance_to_failure(x):
+    return np.linalg.norm(x - bad) - 0.1
+
+
+def downhill(seed):
+    generator = np.random.default_rng(seed)
+    x, stride, margins = generator.uniform(0.0, 1.0, 10), 0.3, []
+    margins.append(distance_to_failure(x))
+    while margins[-1] > 0.0:
+        other = x + stride * generator.standard_normal(10)
+        better = distance_to_failure(other) < margins[-1]
+        x, stride = (other, 1.5 * stride) if better else (x, stride / 1.5**0.25)
+        margins.append(distance_to_failure(x))
+    return margins
+
+
+searches = [downhill(seed) for seed in range(6)]
+generator = np.random.default_rng(0)
+drawn = np.minimum.accumulate([distance_to_failure(x) for x in generator.uniform(0.0, 1.0, (1000, 10))])
+figure, ax = plots.subplots(size=(6.5, 3.2))
+for margins in searches:
+    ax.plot(margins, color="0.45", linestyle="-", linewidth=0.9)
+ax.plot(drawn, label="best of so many random starts")
+ax.plot([], [], color="0.45", linestyle="-", label="six searches downhill")
+ax.axhline(0.0, color="black", linewidth=0.8)
+ax.set(xlabel="runs", ylabel="least margin so far", xlim=(0, 1000))
+_ = ax.legend()
+print("runs of the six searches:", [len(margins) for margins in searches])
+
+# %% tags=["facts"]
+assert abs(np.pi**5 / 120.0 * 0.1**10 / 2.55e-10 - 1.0) < 1e-3
+assert max(len(margins) for margins in searches) < 500
+assert drawn[-1] > 0.1
+
+# %% [markdown]
+# **Figure 10.5.** Ten dimensions, a bad set of radius 0.1. Each of six searches finds it within a few hundred runs; the
+# best of a thousand random starts is still far away.
+#
+# The figure flatters the search, and one should know why: its margin has one valley. With many valleys a search ends in
+# the nearest, so one restarts it; where the margin is flat ("collided: yes or no") there is no downhill, so a claim
+# needs a margin that says *by how much*. The library's search, CMA-ES, is the same idea with a cloud of starts: it
+# keeps the better half, moves the cloud there, and stretches it along directions that have paid.
+#
+# Theorem 1(iii) excludes a collision below $c^*$; is $c^*$ generous? Ask for a collision with twice the energy, and
+# then below it:
 
 # %%
 broken = fl.falsify("collision-energy", "head-on", claim="twice", budget=100)
@@ -139,7 +255,7 @@ print(safe)
 _ = plots.falsification(broken)
 
 # %% [markdown]
-# **Figure 10.4.** The margin of the claim in each run of the search, and the least so far. Below 0 the claim fails.
+# **Figure 10.6.** The margin of the claim in each run of the search, and the least so far. Below 0 the claim fails.
 #
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
 # converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the
@@ -154,7 +270,7 @@ ax = plots.snapshot(found.run(), velocities=False)
 _ = ax.set_title("four places for five agents")
 
 # %% [markdown]
-# **Figure 10.5.** The counterexample: five agents at rest in four places, one of which two share (×2). Every link
+# **Figure 10.7.** The counterexample: five agents at rest in four places, one of which two share (×2). Every link
 # looks like a lattice's.
 #
 # A counterexample is a file that anyone can replay: `found.save("e3.json")`, then `fl.replay("e3.json")`, or in a shell
@@ -169,7 +285,30 @@ found.save(path)
 print(fl.replay(path))
 
 # %% [markdown]
+# ## How to report
+#
+# Three sentences that one can sign. They are longer than the usual ones, and every word in them is needed.
+#
+# - *Share.* "Of 60 runs from starts drawn uniformly from the box of the scenario, with seeds 0 to 59, 60 flocked within
+#   100 time units; with 95 % confidence the probability is at least 0.94." Named: distribution, number, horizon, what
+#   counts as a success, confidence.
+# - *Search.* "A search of 100 runs (CMA-ES, seed 1), over starts within 0.5 of the scenario's, found no start at which
+#   the margin is below 0; the least margin was …." Named: method, budget, region, the nearest miss.
+# - *Proof.* "Theorem 1(iii) excludes collisions from every start with an energy below $c^*$; … of the 60 starts are of
+#   this kind." Named: the hypothesis, and how many of *your* starts meet it.
+#
+# A reader can repeat each of the three, and can see what it
+# does not cover. Compare "in extensive simulations the algorithm always converged": what was drawn, how often, for how
+# long, and what was counted?
+#
+# What do students get wrong here? They choose the success criterion after looking at the runs. They stop when the first
+# twenty runs look good, and report twenty. They vary parameters and starts together, and then cannot say over what the
+# share was taken. Decide number, distribution, horizon and criterion *before* the first run, and write them down.
+#
 # ## What surprised, and what the numbers do not say
+#
+# That a six-line search beats a billion coins is the surprise; that an interval from a textbook may contain the truth
+# in a tenth of all cases is another.
 #
 # An interval is about a *distribution of starts*. Change the box from which starts are drawn, and the share changes;
 # 60 of 60 in a small box say nothing about a large one. A search is about *existence*. It finds in a hundred runs
@@ -177,9 +316,22 @@ print(fl.replay(path))
 # Neither is a proof, and a proof says nothing about frequencies. A good report has all three columns, and leaves
 # none of them empty in silence.
 #
+# ## Questions that come up
+#
+# *If the interval is cautious, may I take a smaller one?* There are smaller ones, with a coverage of 95 % on average
+# over the true values instead of for each of them. Say which you use; for safety take the cautious one.
+#
+# *My 60 runs took a week. May I count each sample of a run?* No. Samples of one run depend on each other; a run is one
+# toss.
+#
+# *The search failed. Shall I report it?* Yes, with region and budget. Others need not repeat it, and they see how hard
+# you have tried.
+#
 # ## Summary
 #
 # - A share of successes is an estimate with an interval; $N$ of $N$ does not give 1.
+# - The interval of Clopper and Pearson covers the truth with 95 % at least, for every $N$ and $p$; that of the normal
+#   approximation does not.
 # - A search for the least margin finds counterexamples that random starts miss.
 # - That a search finds nothing proves nothing.
 

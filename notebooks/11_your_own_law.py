@@ -27,11 +27,42 @@
 # ## What makes a pair law
 #
 # A pair law needs a potential $\psi$ of the distance, and the weight $a_{ij}$ of the friction. From the potential
-# everything else follows by differentiating, once for the force, twice for the stiffness. But not every formula
-# gives a law for which the theorems hold. The proofs of lectures 01 to 03 used four properties: the force vanishes
-# smoothly where two agents coincide, it has no jump inside the range, it ends at the range without a jump, and the
-# weight is not negative. A formula may lack any of them, and then a theorem that used it claims nothing. The library
-# looks for each, and says which is missing.
+# everything else follows by differentiating, once for the force, twice for the stiffness:
+#
+# $$u_i = \sum_{j \ne i}\psi'(\|q_j-q_i\|)\,\frac{q_j-q_i}{\|q_j-q_i\|} + \sum_{j\ne i}a_{ij}\,(p_j - p_i),
+#   \qquad a_{ij} = a_{ji} .$$
+#
+# Here $\psi' > 0$ attracts: the force on $i$ points towards $j$. What can be proved of *every* such law, whatever the
+# formula?
+#
+# > **Theorem (energy of a pair law).** Let $\psi$ be differentiable, with $\psi'(0) = 0$, and let $a_{ij} \ge 0$. Then
+# > $H = \sum_{i<j}\psi(\|q_j-q_i\|) + \tfrac12\sum_i\|p_i\|^2$ never rises, and the mean velocity $p_c$ is constant.
+#
+# *Proof.* Let $f_{ij}$ be the force of $j$ on $i$. It is opposite to $f_{ji}$.
+#
+# $$\begin{aligned}
+# \dot H &= \sum_{i<j}\psi'\,\frac{\langle q_j-q_i,\, p_j-p_i\rangle}{\|q_j-q_i\|} + \sum_i\langle p_i, u_i\rangle &&
+#   \text{chain rule} \\
+# &= \sum_{i<j}\langle f_{ij},\, p_j - p_i\rangle + \sum_{i<j}\langle f_{ij},\, p_i - p_j\rangle +
+#   \sum_{i<j}a_{ij}\langle p_i - p_j,\, p_j - p_i\rangle && \text{sum over pairs} \\
+# &= -\sum_{i<j}a_{ij}\|p_j-p_i\|^2 \le 0 . && \text{the first two cancel}
+# \end{aligned}$$
+#
+# And $\sum_iu_i = 0$, because every pair contributes two opposite vectors. $\square$
+#
+# The proof looks at *one generic pair*; $n$ does not appear. That is why a computer can do it for all $n$ (see below).
+# Now read it as a contract, as in lecture 07. Each property of the formula is used in one place:
+#
+# | property | used for | without it |
+# |---|---|---|
+# | $\psi'(0) = 0$ | a force where two agents meet | coincidence must be excluded |
+# | $\psi'$ without a jump | solutions in the usual sense | Filippov (lecture 09) |
+# | $\psi' = 0$ at the range | the chain rule when a neighbour arrives | the energy jumps or the force does |
+# | $a_{ij} \ge 0$ | the sign in the last line | friction may drive |
+# | $a_{ij} = a_{ji}$ | cancelling in pairs | momentum is not conserved |
+#
+# A formula may lack any of them, and then a theorem that used it claims nothing. The library looks for each, and says
+# which is missing.
 #
 # ## A law in five lines
 #
@@ -40,10 +71,20 @@
 # $d$ only. To integrate it, put $z = r^2 - \|q_j - q_i\|^2$ for the square that is left to the range, and $z_d = r^2 -
 # d^2$ for its value at $d$ (with the strength `k` of the code left out):
 #
-# $$\psi' = \|q_j-q_i\|\,\bigl(\|q_j-q_i\|^2 - d^2\bigr)\,z^2
-#   \quad\Longrightarrow\quad \psi = \tfrac12\Bigl(\tfrac14 z^4 - \tfrac13 z_dz^3 + \tfrac1{12} z_d^4\Bigr).$$
+# $$\begin{aligned}
+# \psi' &= x\,(x^2 - d^2)\,(r^2 - x^2)^2 && x = \|q_j - q_i\| \\
+# \psi &= \int x\,(x^2 - d^2)\,(r^2-x^2)^2\,dx = -\tfrac12\int(z_d - z)\,z^2\,dz && z = r^2 - x^2,\ dz = -2x\,dx \\
+# &= \tfrac12\Bigl(\tfrac14 z^4 - \tfrac13 z_dz^3\Bigr) + \text{constant} && x^2 - d^2 = z_d - z \\
+# &= \tfrac12\Bigl(\tfrac14 z^4 - \tfrac13 z_dz^3 + \tfrac1{12} z_d^4\Bigr) && \text{so that it is 0 at } z = z_d
+# \end{aligned}$$
 #
-# It is 0 at $d$ and $z_d^4/24$ at $r$, and has a double zero of the force at $r$.
+# At $r$, where $z = 0$, it is $z_d^4/24$. Why each factor? $x$ makes the force vanish where agents meet; $x^2 - d^2$
+# changes its sign at $d$ and *nowhere else*; the square of $r^2 - x^2$ makes force and stiffness vanish at $r$. A first
+# power would do for the force and leave a corner in it, which costs an integrator its accuracy.
+#
+# A warning from experience. An earlier version of this very lecture had another formula, whose force repelled again
+# near the range. No run showed it, because no run went there. Always draw the force over the *whole* range, and count
+# how often it changes its sign.
 
 # %%
 from pathlib import Path
@@ -99,11 +140,19 @@ law.derivation()
 # %% [markdown]
 # ## What a formula may lack
 #
-# Every formula is taken, and what is missing is said. A theorem that needs it then claims nothing.
+# Every formula is taken, and what is missing is said. A theorem that needs it then claims nothing. Before you run the
+# next cell, take a pencil: what does each of the four formulas lack, on the range from 0 to 3?
 
 # %%
 for potential in ("1/s + s", "(s - 1)**2*s**2", "Piecewise((s**2, s < 1), (s, True))", "s**2/(r - s)"):
     print(f"{potential:38}", fl.pair_law(potential, adjacency=0, range=3.0, length=1.0).faults)
+
+# %% [markdown]
+# The first has a pole where agents meet: they never do, which is a virtue, but theorems on coincident agents say
+# nothing then. The second looks harmless, a well at 1, and its force at 3 is far from 0: when a third agent strays out
+# of range, a large force is switched off at once. The third has the slope 2 on one side of 1 and the slope 1 on the
+# other. The last has a pole *at the range*: to leave would take infinite energy, so links never break, which is exactly
+# what some theorems of lecture 12 want. A fault for one theorem is the hypothesis of another.
 
 # %%
 cut = fl.Algorithm1(fl.pair_law("(s - 1)**2*s**2", adjacency=0, range=3.0, length=1.0))
@@ -145,6 +194,11 @@ print(f"the balance closes to {abs(run.energy_residual).max() / run.energy()[0]:
 # For then every weight is at least $(g/n)(1+B^2)^{-\beta}$, and so
 #
 # $$\dot K = -\tfrac12\sum_{i,j} a_{ij}\|p_j-p_i\|^2 \le -2g\,(1+B^2)^{-\beta} K .$$
+#
+# (Exercise 9 asks for the steps.) Check it with two agents on a line, at the distance $x$ with the relative velocity
+# $v$. Then $K = \tfrac12\bigl((\tfrac12v)^2 + (\tfrac12v)^2\bigr) = \tfrac14v^2$, each weight is $\tfrac
+# g2(1+x^2)^{-\beta}$, and $\dot v = -2\cdot\tfrac g2(1+x^2)^{-\beta}v$. So $\dot K = \tfrac12v\dot v = -\tfrac
+# g2(1+x^2)^{-\beta}v^2 = -2g(1+x^2)^{-\beta}K$: for two agents the inequality is an equality, and cannot be improved.
 
 # %%
 from own_law.theorem import THEOREM
@@ -165,6 +219,80 @@ _ = ax.legend()
 #
 # A verdict on a run is `numeric`: it says what this run did. For all runs there is the proof.
 #
+# ## But who keeps the distances bounded?
+#
+# The theorem has a hypothesis about the *solution*: distances at most $B$. Nobody can deliver that before the run. A
+# good theorem asks for something about the start only. For weights that fall slowly enough it can be had, and the proof
+# is a gem.
+#
+# Let $y = \sqrt{2J} = \bigl(\sum\|q_i - q_c\|^2\bigr)^{1/2}$ be the size of the flock in space and $z = \sqrt{2K}$ its
+# size in velocities.
+#
+# > **Theorem** (Cucker and Smale 2007; the proof is that of Ha and Liu 2009). If $\beta \le \tfrac12$, every solution
+# > flocks: there is a $y^*$, which depends on $y(0)$ and $z(0)$ only, with $y \le y^*$ at all times and
+# > $K(t) \le K(0)\,e^{-2g(1+2y^{*2})^{-\beta}t}$.
+#
+# *Proof.*
+#
+# 1. *Space follows velocity.* $y\dot y = \sum\langle q_i - q_c,\, p_i - p_c\rangle \le y\,z$ by Cauchy and Schwarz, so
+#    $\dot y \le z$.
+# 2. *All distances are below* $\sqrt2\,y$, because $\|e - f\|^2 \le 2\|e\|^2 + 2\|f\|^2$.
+# 3. *Velocity decays.* At each instant the inequality above holds with $B = \sqrt2\,y$. With $K = \tfrac12z^2$ it says
+#    that $\dot z \le -g\,(1+2y^2)^{-\beta}z$.
+# 4. *A function that falls.* Let $W = z + g\int_0^y(1+2x^2)^{-\beta}dx$. Then
+#
+# $$\dot W = \dot z + g\,(1+2y^2)^{-\beta}\,\dot y \le -g\,(1+2y^2)^{-\beta}z + g\,(1+2y^2)^{-\beta}z = 0 .$$
+#
+# 5. So $g\int_{y(0)}^{y(t)}(1+2x^2)^{-\beta}dx \le z(0)$ at all times. For $\beta \le \tfrac12$ the integrand falls no
+#    faster than $1/x$, and the integral up to infinity diverges. So there is a $y^*$ at which it reaches $z(0)$, and
+#    $y$ cannot pass it.
+# 6. Put $B = \sqrt2\,y^*$ into the first theorem. $\square$
+#
+# What a use of a function that falls! It is no energy: it adds a velocity to an integral over space. It says: *a flock
+# that spreads pays for it in velocity*, and if the price of spreading to infinity is infinite, it does not.
+#
+# For $\beta > \tfrac12$ the price is finite, and a flock that is fast enough can pay it. Step 5 still works for slow
+# ones, with $z(0) < g\int_{y(0)}^\infty(1+2x^2)^{-\beta}dx$. Exercise 5 computes the price for two agents.
+
+# %%
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+
+def price(flock, beta):
+    """Size in space, size in velocities, and W, at every sample."""
+    away = flock.q - flock.q.mean(axis=1, keepdims=True)
+    slip = flock.p - flock.p.mean(axis=1, keepdims=True)
+    y, z = np.sqrt((away**2).sum(axis=(1, 2))), np.sqrt((slip**2).sum(axis=(1, 2)))
+    return y, z, z + np.array([quad(lambda x: (1.0 + 2.0 * x**2) ** -beta, 0.0, each)[0] for each in y])
+
+
+y, z, W = price(run, 0.4)
+most = brentq(lambda end: quad(lambda x: (1.0 + 2.0 * x**2) ** -0.4, y[0], end)[0] - z[0], y[0], 1e6)
+print(f"size in space: {y[0]:.1f} at the start, {y.max():.1f} at most in the run, y* = {most:.0f} by the theorem")
+fast = fl.simulate(CuckerSmale(strength=1.0, decay=1.0), q0, 6.0 * p0, (0.0, 20.0))
+figure, axes = plots.subplots(1, 2, size=(11, 3.4))
+for ax, flock, beta in zip(axes, (run, fast), (0.4, 1.0), strict=True):
+    size, mismatch, falling = price(flock, beta)
+    ax.plot(flock.t, mismatch, label="z, mismatch")
+    ax.plot(flock.t, falling - mismatch, label="price of the size y")
+    ax.plot(flock.t, falling, label="W, the sum: it falls")
+    ax.set(xlabel="t (time)", ylabel="velocity (length/time)", title=f"β = {beta:g}")
+    ax.legend()
+
+# %% tags=["facts"]
+assert np.diff(W).max() < 0.0
+assert y.max() < most
+assert price(fast, 1.0)[1][-1] > 0.8 * price(fast, 1.0)[1][0]
+
+# %% [markdown]
+# **Figure 11.3.** Thirty agents under two decays of the weights. Left, $\beta = 0.4$: the mismatch is used up and the
+# size settles. Right, $\beta = 1$, at six times the velocities: the price of going to infinity is below the velocity
+# that they have, they pay it, and leave each other with most of their mismatch. In both cases $W$ falls.
+#
+# The bound on the size is 25 times what happened, since step 2 treats every pair as if it were the widest. A theorem
+# for all starts is generous to each.
+#
 # ## The proof
 
 # %%
@@ -174,7 +302,29 @@ for step in PROOF.steps():
     print("✓" if step.holds else "✗", step.text)
 
 # %% [markdown]
+# ## How to find a theorem for your own law
+#
+# The capstone asks for one. A way that works in an evening:
+#
+# 1. *Two agents, on paper.* One distance, one relative velocity. What falls, what is conserved, where does it rest?
+#    Most laws show their character here.
+# 2. *Guess a function that falls.* Try the energy first, then the mismatch $K$, then the largest of something. Compute
+#    its rate for one generic pair. If a term without a sign is left over, ask what would cancel it, as the integral in
+#    $W$ does above.
+# 3. *Try to kill it.* Run ten starts, then `fl.falsify` (lecture 10). Most guesses die here, and that is cheap.
+# 4. *Write the statement with all hypotheses*, also the silly ones: weights not negative, no two agents in one place, a
+#    solution that exists.
+# 5. *Prove it, a line a step*, and mark in the margin which hypothesis each line uses. A hypothesis that is never used
+#    can go. A line that uses one that you have not written down shows what is missing.
+# 6. *Check the identity by computer*, and say for which $n$ and which dimension it was checked.
+#
+# What students get wrong: they start with step 6. A computer confirms what one has understood; it seldom understands in
+# one's place.
+#
 # ## What surprised, and what a proof by computer does not say
+#
+# That a function which is no energy proves that a flock stays together is the surprise of this lecture. In lectures 02
+# and 03 a potential did it.
 #
 # A formula can look right and be wrong in a way that no run shows: a potential that repels again beyond some
 # distance still holds agents at $d$, and fails only when somebody strays. The check "does the force change its sign
@@ -183,11 +333,23 @@ for step in PROOF.steps():
 # proves the case $n = 3$. Say which of the two you have. And the rate that `flow` returns is a promise of yours: the
 # residual tests it along runs, the proof tests it for all.
 #
+# ## Questions that come up
+#
+# *Why may I differentiate a distance, which has a corner at 0?* Only under the hypothesis $\psi'(0) = 0$,
+# which removes the corner. In the proof of Cucker and Smale's theorem $y\dot y \le yz$ is divided by $y$, which is
+# allowed while $y > 0$; if $y = 0$ all agents are in one place, and the bound on distances is trivial then.
+#
+# *Is $y^*$ something that happens?* No, it is a promise that nothing worse happens.
+#
+# *My law has no potential and no averaging. Is there a theorem?* Perhaps; begin with two agents on a line, and look for
+# what falls.
+#
 # ## Summary
 #
 # - From the formula of a pair potential force, energy, Jacobian and compiled code follow, and what the formula lacks is
 #   said.
 # - A law of another kind states its energy and the rate of it, and every run checks that promise.
+# - For $\beta \le \tfrac12$ Cucker and Smale's flock stays together, because spreading costs velocity.
 # - A verdict is about a run; a proof is about all of them.
 
 # %% [markdown] tags=["exercise"]

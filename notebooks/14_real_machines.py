@@ -35,6 +35,13 @@
 # 06 in the place of $c_1^\gamma = 1.1$ and $c_2^\gamma = 2.10$. So every formula below can be read twice: once for
 # the slow centre, and once for the fast pair.
 #
+# | | stiffness | friction | natural frequency | damping ratio |
+# |---|---|---|---|---|
+# | centre | 1.1 | 2.10 | 1.05 | 1 |
+# | pair | 447 | 3.93 | 21.1 | 0.093 |
+#
+# Guess before you read on: of the four limits of the scene, which is the worst for the centre, and which for the pair?
+#
 # ## Saturation
 #
 # A motor gives $|u| \le u_{\max}$. Let $\operatorname{sat}$ be the function that cuts a number off at
@@ -58,9 +65,17 @@
 # 2. By LaSalle the solution approaches an invariant set with $\operatorname{sat}(z) = 0$, that is $z = 0$.
 # 3. There $\dot v = 0$ and $0 = \dot z = c_1^\gamma v$. So $v = 0$, and $z = 0$ gives $x = 0$. $\square$
 #
+# Where does this $W$ come from? Without a limit $\operatorname{sat}(z) = z$ and $W = \tfrac12z^2 + \tfrac12c_1^\gamma
+# v^2$: the square of what the law asks for, and the kinetic energy. The integral is what is left of a square when a
+# spring has a limit: it grows like a square near 0 and like a straight line far away. Such a $W$ is called a Lyapunov
+# function of *Lur'e's* type, and it is the first thing to try when a linear law passes through a nonlinear element.
+#
 # A single agent bears any saturation; it only takes longer, and overshoots. And the flock? Its proofs used that pair
-# forces cancel in the sum and that the force is a gradient. Cut off at a limit, neither is true: an agent that is
-# pushed by several neighbours is cut off, each of the neighbours is not, so action is no longer reaction.
+# forces cancel in the sum and that the force is a gradient. Cut off at a limit, neither is true. *By hand:* three
+# agents on a line, A left of B and C, which sit close together. B and C push A with 4 each, so A is asked for $-8$, B
+# and C for $+4$ each, and the sum is 0. With the limit 5, A gets $-5$, B and C get $+4$, and the sum is $+3$. The
+# centre accelerates, and nobody outside has pushed. An agent that is pushed by several neighbours is cut off, each of
+# the neighbours is not, so action is no longer reaction.
 
 # %%
 import numpy as np
@@ -107,7 +122,10 @@ _ = ax.legend()
 # > $\Delta t < \min\bigl(2/c_2^\gamma,\ 2c_2^\gamma/c_1^\gamma\bigr)$.
 #
 # *Proof.* Both eigenvalues of a real $2\times2$ matrix lie inside the unit circle exactly if $|\det| < 1$ and
-# $|\operatorname{tr}| < 1 + \det$ (Jury).
+# $|\operatorname{tr}| < 1 + \det$ (Jury). For the characteristic polynomial is $f(z) = z^2 - \operatorname{tr} z +
+# \det$. If the roots are a conjugate pair, the square of their modulus is $\det$, and $f > 0$ on the whole real line,
+# at $\pm1$ too, where $f(\pm1) = 1 \mp \operatorname{tr} + \det$. If they are real and $f(1) > 0$, $f(-1) > 0$, both
+# lie in $(-1, 1)$ or both on the same side outside, and then their product exceeds 1. Now compute.
 #
 # 1. $\operatorname{tr} = 2 - c_2^\gamma\Delta t - \tfrac12c_1^\gamma\Delta t^2$.
 # 2. $\det = (1 - \tfrac12c_1^\gamma\Delta t^2)(1 - c_2^\gamma\Delta t) + c_1^\gamma\Delta t(\Delta t -
@@ -120,6 +138,29 @@ _ = ax.legend()
 # The first bound is about friction that acts too long and turns the velocity around; the second about a spring that
 # pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81. For a pair they
 # are 0.51 and 0.0176: **the pair asks for a sample rate fifty times that of the centre.**
+#
+# Notice that *different* bounds decide. The centre is limited by its friction: it would bear a stiffer spring. The pair
+# is limited by its spring: it would bear more friction. Only $c_2^\gamma\Delta t$ and $c_1^\gamma\Delta t^2$ enter,
+# both without a unit, so one picture holds all agents and all periods:
+
+# %%
+figure, ax = plots.subplots(size=(6.5, 3.8))
+across = np.linspace(0.0, 2.0, 100)
+ax.fill_between(across, 0.0, 2.0 * across, color="0.88", label="stable")
+for name, spring, brake, marker in (("centre", 1.1, 2.0976, "o"), ("pair", 446.6, 3.9275, "s")):
+    periods = np.geomspace(1e-3, 1.2, 200)
+    ax.plot(brake * periods, spring * periods**2, label=f"{name}, as its period grows")
+    for period in (0.01, 0.03) if name == "pair" else (0.5, 0.9):
+        ax.plot(brake * period, spring * period**2, marker, color="black", markersize=5)
+        place = brake * period, spring * period**2
+        ax.annotate(f"{period:g}", place, (6, 2), textcoords="offset points", fontsize=8)
+ax.set(xlim=(0.0, 2.4), ylim=(0.0, 4.2), xlabel="friction times period", ylabel="stiffness times period squared")
+_ = ax.legend(loc="upper left", bbox_to_anchor=(0.2, 1.0))
+
+# %% [markdown]
+# **Figure 14.2.** Where a sampled agent is stable (grey): friction times period below 2, and stiffness times the square
+# of the period below twice that. The curves are those of the centre and of the pair, with some periods marked. The
+# centre leaves the region through its right side, the pair through its upper side, at once.
 
 # %%
 one = fl.Algorithm2(target=fl.StaticTarget((0.0,)))
@@ -147,9 +188,68 @@ assert drift > 1e-3
 # What an agent hears is $\tau$ old. Lecture 06 derived the delay margin of one agent,
 # $\omega^4 = (c_1^\gamma)^2 + (c_2^\gamma)^2\omega^2$ and $\omega\tau = \arctan(c_2^\gamma\omega/c_1^\gamma)$, and
 # found that a flock bears far less. A sampled agent acts on a state that is between 0 and $\Delta t$ old, on average
-# $\tfrac12\Delta t$: sampling is, roughly, a delay of half a period. For the pair, whose friction is small,
-# $\omega \approx \sqrt{447} = 21.1$ and $\arctan(3.93\cdot21.1/447) = 0.184$ give $\tau^* \approx 0.0087$, half of
-# the sampling margin, as this rule says.
+# $\tfrac12\Delta t$: sampling is, roughly, a delay of half a period. Is that more than a rule of thumb? For small
+# friction both margins can be found in a line:
+#
+# $$\begin{aligned}
+# \Delta t^* &= 2c_2^\gamma/c_1^\gamma && \text{the second bound of the theorem} \\
+# \omega\tau^* &= \arctan(c_2^\gamma\omega/c_1^\gamma) \approx c_2^\gamma\omega/c_1^\gamma, &&
+#   \text{the arctangent of a small number} \\
+# \tau^* &\approx c_2^\gamma/c_1^\gamma = \tfrac12\Delta t^* . && \text{exactly half}
+# \end{aligned}$$
+#
+# For the pair $\omega \approx \sqrt{447} = 21.1$ and $\arctan(3.93\cdot21.1/447) = 0.184$ give $\tau^* \approx 0.0087$,
+# against half of 0.0176. For a strongly damped agent the rule is only rough, as the table shows.
+
+# %%
+for spring, brake in ((446.6, 3.9275), (100.0, 3.9275), (25.0, 10.0), (1.1, 2.0976)):
+    omega = np.sqrt((brake**2 + np.sqrt(brake**4 + 4.0 * spring**2)) / 2.0)
+    late, period = np.arctan(brake * omega / spring) / omega, min(2.0 / brake, 2.0 * brake / spring)
+    print(f"stiffness {spring:5.1f}, friction {brake:5.2f}: delay {late:.4f}, half a period {0.5 * period:.4f}")
+
+# %% [markdown]
+# ## A design, and how it fails
+#
+# The drones' radio is 50 ms late, and their computers sample every 20 ms: a total age of 60 ms. The default flock bears
+# 12.8 ms. What now? *Design the pair.* Let it be critically damped, with the natural frequency $\omega_n$: stiffness
+# $\omega_n^2$, friction $2\omega_n$. Put this into the delay margin: $\omega^2 = (2+\sqrt5)\,\omega_n^2$, so
+# $\omega = 2.058\,\omega_n$ and $\tau^* = \arctan(2\cdot2.058)/(2.058\,\omega_n) = 0.647/\omega_n$. With
+# $\omega_n = 5$ that is 0.129, twice the age: a comfortable margin. The pair of lecture 06 has the stiffness
+# $14.89\,c_1^\alpha$ and the friction $0.3585\,c_2^\alpha$, so $c_1^\alpha = 25/14.89 = 1.68$ and
+# $c_2^\alpha = 10/0.3585 = 27.9$. Build it:
+
+# %%
+target = fl.StaticTarget((0.0, 0.0))
+designs = {"default": fl.Gains(), "the pair's design": fl.Gains(c1_alpha=1.68, c2_alpha=27.9)}
+designs |= {f"friction {share}": fl.Gains(c1_alpha=1.68, c2_alpha=27.9 * share) for share in (0.5, 0.25)}
+bears = {}
+for name, gains in designs.items():
+    flock = fl.Algorithm2(gains=gains, target=target)
+    at_rest = fl.find_equilibrium(flock, lattice.hexagonal_patch(1, 7.0)).q
+    bears[name] = stability.delay_margin(stability.delay_system(flock, at_rest)).delay
+    period, off = stability.sampling_margin(flock, at_rest).period, lattice.strain(at_rest, 7.0, 8.4)
+    print(f"{name:>17}: bears a delay of {bears[name]:.4f}, sampling every {period:.4f}; links off d by {off:.1%}")
+
+# %% tags=["facts"]
+assert [f"{bears[name]:.4f}" for name in designs] == ["0.0128", "0.0307", "0.0573", "0.0954"]
+assert bears["the pair's design"] < 0.06 < bears["friction 0.25"]
+soft = fl.linearise(fl.Algorithm1(gains=designs["the pair's design"]), [[0.0], [7.0]]).modes[0]
+assert abs(soft.damping_ratio - 1.0) < 1e-3
+hard = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0].eigenvalue
+assert abs(abs(hard) ** 2 / 30.0 - 14.89) < 0.005
+assert abs(-2.0 * hard.real / (2.0 * np.sqrt(30.0)) - 0.3585) < 1e-4
+critical = fl.Algorithm1(gains=designs["the pair's design"])
+assert abs(stability.delay_margin(stability.delay_system(critical, [[0.0], [7.0]])).delay - 0.647 / 5.0) < 5e-4
+
+# %% [markdown]
+# The design fails: seven agents bear 31 ms, not 129. Why? An agent in a flock has up to six neighbours, and their
+# frictions *add*: the fastest mode has several times the friction of a pair, and it is friction that acts late.
+# Designed for less friction, a quarter of it, the flock bears 95 ms, though now its pairs are underdamped. And look at
+# the last column: the soft links are squeezed by the pull of the γ-agent, by 3.9 % instead of 0.2 %.
+#
+# So "the pair decides" was a good rule for a stiff flock and a bad one for a soft flock. The right rule is: *look at
+# all modes*. And the trade-off of lecture 06 is now in numbers: tight formations need fast radios, and what one gains
+# in delay one pays in precision.
 #
 # ## Noise
 #
@@ -165,6 +265,11 @@ assert drift > 1e-3
 #   \text{the noise adds } g^2\Delta t
 # \end{aligned}$$
 #
+# (Why is there $g^2$ in the last line only? In a short time $\Delta t$ the velocity gets $v + \text{noise}$, and
+# $\langle(v+\text{noise})^2\rangle = \langle v^2\rangle + 2\langle v\,\text{noise}\rangle + g^2\Delta t$; the middle
+# term is 0, because the noise of the moment does not know the velocity. In $xv$ the noise appears once, so its mean is
+# 0.)
+#
 # In the long run all three are constant. The first gives $\langle xv\rangle = 0$, the third
 # $\langle v^2\rangle = g^2/(2c_2^\gamma)$, the second
 #
@@ -172,6 +277,12 @@ assert drift > 1e-3
 #
 # Noises of $n$ agents are independent, so their mean has the intensity $g/\sqrt n$, and **the centre of a flock
 # wanders $\sqrt n$ times less than one agent alone would**. That is the oldest reason to fly in a flock.
+#
+# The formula has a moral for designers. The variance of the velocity does not depend on the spring, and that of the
+# position depends on the *product* of spring and friction. In the long run a stiff, weakly damped agent is as still as
+# a soft, strongly damped one. For the distance of a pair two independent noises count, so $g^2$ becomes $2g^2$: with
+# $g = 0.5$ the variance is $2\cdot0.25/(2\cdot447\cdot3.93)$, a standard deviation of 0.012, or 0.17 %
+# of $d$. Noise hardly shakes the links; it moves the whole.
 
 # %%
 noisy = fl.Disturbed(law, intensity=0.5, seed=0)
@@ -193,22 +304,69 @@ shaken.player(height=420)
 # %% tags=["facts"]
 assert abs(x.var() / (0.25 / (2.0 * c1 * c2)) - 1.0) < 0.1
 assert shaken.q[:, 1, 1].std() > wander.std(axis=0).max()
+assert abs(np.sqrt(0.5 / (2.0 * 446.6 * 3.9275)) / 7.0 - 0.0017) < 1e-4
 assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
 
 # %% [markdown]
-# **Figure 14.2.** Seven agents pushed by independent noises. Thin: an outer one, which also turns with the hexagon;
+# **Figure 14.3.** Seven agents pushed by independent noises. Thin: an outer one, which also turns with the hexagon;
 # thick: the centre, which stays closer to the target.
 #
 # Nothing holds the *orientation*: it is a zero mode (lecture 06), and noise makes it drift like a random walk. A
 # picture of drones would slowly turn. That is a theorem about the law, and no fault of the motors.
 #
+# ## Which theorems survive?
+#
+# Go through the four limits once more, and ask of each what it does to the *proofs* of lectures 02 and 03. They use
+# three facts: forces of a pair are opposite, the force is a gradient, friction takes energy out at every instant.
+#
+# | limit | opposite? | gradient? | takes energy out? | what is left |
+# |---|---|---|---|---|
+# | saturation | no | no | not always | one agent; nothing for a flock |
+# | sampling | yes | yes, but held too long | no: it may pump | linear stability up to a period |
+# | delay | yes | of an old state | no: it may pump | linear stability up to $\tau^*$ |
+# | noise | yes | yes | on average only | variances near rest |
+#
+# Sampling and delay keep momentum: what one agent gets the other loses, late or held. So the centre of a flock under
+# Algorithm 1 still moves at constant velocity, exactly. It is the energy that goes. But read the small print: this
+# holds if *everything* is late, an agent's own state too. If an agent knows itself at once and only its neighbours
+# late, the two forces of a pair belong to different instants, they are not opposite, and the centre is pushed:
+
+# %%
+shaking = np.random.default_rng(0).normal(0.0, 0.5, start.shape)
+machines = {"sampled": fl.Sampled(fl.Algorithm1(), 0.005)}
+machines |= {f"late: {late}": fl.Delayed(fl.Algorithm1(), 0.004, late=late) for late in ("all", "neighbours")}
+pushed = {}
+for name, machine in machines.items():
+    moving = fl.simulate(machine, start, shaking, (0.0, 1.0), dt=0.0005).p.mean(axis=1)
+    pushed[name] = np.abs(moving - moving[0]).max()
+    print(f"{name:>16}: the velocity of the centre changes by {pushed[name]:.1e}")
+
+# %% tags=["facts"]
+assert max(pushed["sampled"], pushed["late: all"]) < 1e-12
+assert pushed["late: neighbours"] > 1e-4
+
+# %% [markdown]
+# Before you trust a theorem on a machine, find in its proof the line that the machine breaks. If there is none, the
+# theorem holds; if there is one, you have learnt what to measure.
+#
 # ## What surprised, and what the theorems do not say
 #
 # A limit of thrust, which looks like the worst of the four, is harmless for one agent and breaks the oldest
-# conservation law of a flock. The pair decides how fast a computer must be, though one looks at the centre. Noise is
-# averaged by numbers; delay and sampling are not. None of the four theorems is about a flock: they are about linear
-# systems near rest, or about one agent. For the nonlinear flock with limits there are runs, verdicts that say
-# *vacuous*, and open questions.
+# conservation law of a flock. The pair decides how fast a computer must be, though one looks at the centre; and a
+# design for the pair alone fails where frictions add. Noise is averaged by numbers; delay and sampling are not. None of
+# the four theorems is about a flock: they are about linear systems near rest, or about one agent. For the nonlinear
+# flock with limits there are runs, verdicts that say *vacuous*, and open questions.
+#
+# ## Questions that come up
+#
+# *Why does friction, which calms things, make a late flock unstable?* It acts against a velocity that the agent no
+# longer has. If that is long enough ago, it acts along the present velocity, and drives.
+#
+# *Can one not undo a delay by prediction?* In part, if one knows the law and the neighbours obey it. Then the
+# prediction's error takes the place of the delay.
+#
+# *Why does noise not add up for ever?* In the position of the centre it does not, because the γ-agent pulls it back. In
+# the orientation, which nothing pulls back, it does.
 #
 # ## Summary
 #
@@ -216,7 +374,8 @@ assert 0.3 < wander.var(axis=0).mean() / (0.25 / 7.0 / (2.0 * c1 * c2)) < 3.0
 #   conservation.
 # - Sampled, an agent is stable for $\Delta t < \min(2/c_2^\gamma, 2c_2^\gamma/c_1^\gamma)$; the stiff pairs set the
 #   rate.
-# - Late by half a period and sampled are about the same.
+# - Late by half a period and sampled are about the same, exactly so for small friction.
+# - A flock's margins are those of its worst mode; frictions of neighbours add.
 # - Noise of intensity $g$ leaves a variance $g^2/(2c_1^\gamma c_2^\gamma)$, divided by $n$ for the centre.
 
 # %% [markdown] tags=["exercise"]

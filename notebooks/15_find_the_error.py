@@ -27,11 +27,21 @@
 # ## Two agents, by hand
 #
 # Two agents on a line; the log says that at the distance 6 their accelerations are $\mp u$. Algorithm 1 would have
-# $u = c_1^\alpha|\phi_\alpha|\cdot6/\sqrt{1+36\varepsilon}$ at rest. If the log's $u$ is half of that, a factor ½ is
-# in the code; if it is $\sqrt{1+36\varepsilon}$ times as much, somebody has used $(q_j-q_i)/\|q_j-q_i\|$ times the
-# distance, or a unit vector with the wrong factor; if it has the wrong sign, agents attract where they should repel.
-# One number at one distance cannot tell these apart. A *curve* over the distance can: the factor ½ is a constant
-# ratio, the missing root a ratio that depends on the distance.
+# $u = c_1^\alpha|\phi_\alpha|\cdot6/\sqrt{1+36\varepsilon} = 30\cdot2.148\cdot2.798 = 180.3$ at rest. Suppose that the
+# log has 90.1, half of it. Is there a factor ½ in the code? Or has somebody used another vector with another gain? One
+# number at one distance cannot tell. A *curve* over the distance can. Put the candidates side by side, as ratios to the
+# law:
+#
+# | distance | law's $u$ | factor ½ | a unit vector in the place of $n_{ij}$ | $q_j - q_i$ itself |
+# |---|---|---|---|---|
+# | 6 | 180.3 | 0.5 | $\sqrt{4.6}/6 = 0.357$ | $\sqrt{4.6} = 2.14$ |
+# | 7.5 | 27.9 | 0.5 | $\sqrt{6.625}/7.5 = 0.343$ | $\sqrt{6.625} = 2.57$ |
+# | 8 | 6.6 | 0.5 | $\sqrt{7.4}/8 = 0.340$ | $\sqrt{7.4} = 2.72$ |
+#
+# A *constant* ratio is a wrong factor: some gain explains it exactly. A ratio that *changes* with the distance is a
+# wrong form: no gain does. Look at the fourth column, though. Between 6 and 8 the unit vector's ratio changes by 5 %
+# only, because $n_{ij}$ is nearly a vector of constant length out there (lecture 00). So this wrong form is nearly a
+# wrong factor, and will hide behind a gain of about a third. Remember that when we meet it again.
 #
 # ## The program
 #
@@ -114,6 +124,32 @@ _ = ax.legend()
 #
 # These are the *normal equations*. They have one solution if $f$ and $g$ are not proportional. What is left,
 # $u - c_1f - c_2g$, is the *residual*.
+#
+# **With numbers.** Three accelerations, $u = (3, 4, -2)$, with $f = (1, 2, 0)$ and $g = (0, 1, 1)$. The sums are
+# $\sum f^2 = 5$, $\sum fg = 2$, $\sum g^2 = 2$, $\sum fu = 11$, $\sum gu = 2$:
+#
+# $$\begin{pmatrix} 5 & 2 \\ 2 & 2 \end{pmatrix}\begin{pmatrix} c_1 \\ c_2 \end{pmatrix} =
+#   \begin{pmatrix} 11 \\ 2 \end{pmatrix} \quad\Longrightarrow\quad c_1 = \frac{22 - 4}{6} = 3, \quad
+#   c_2 = \frac{10 - 22}{6} = -2 ,$$
+#
+# and $3f - 2g = (3, 4, -2)$ leaves nothing. Were the last acceleration $+1$ instead, the right-hand side would be
+# $(11, 5)$, the gains $2$ and $\tfrac12$, and the residual $u - 2f - \tfrac12g = (1, -\tfrac12, \tfrac12)$: no gains
+# explain the data.
+#
+# > **Theorem (what a residual is).** At the best gains the residual is orthogonal to $f$ and to $g$, and
+# > $\|u\|^2 = \|c_1f + c_2g\|^2 + \|u - c_1f - c_2g\|^2$. It is 0 if and only if some gains explain the data exactly.
+#
+# *Proof.*
+#
+# 1. The normal equations *say* that $\langle f, u - c_1f - c_2g\rangle = 0$ and the same for $g$.
+# 2. So the residual is orthogonal to $c_1f + c_2g$ too, and Pythagoras gives the sum of squares.
+# 3. If some gains leave nothing, the minimum is 0, and it is taken by the best ones. The converse is the definition.
+#    $\square$
+#
+# (Check 1 on the example: $\langle f, (1, -\tfrac12, \tfrac12)\rangle = 1 - 1 = 0$, and for $g$: $-\tfrac12 + \tfrac12
+# = 0$.) Three conclusions to use all the time. The residual lies between 0 and $\|u\|$, so its *share* is a fair
+# measure. A wrong gain in the code cannot leave a residual. And to add a further candidate term never makes it larger,
+# so a small residual with ten terms means less than one with two.
 
 
 # %%
@@ -156,6 +192,7 @@ for ax, error in zip(axes, ("unit vector", "no weight"), strict=True):
     ax.set(xlabel="size of the law's pair force (unit gain)", ylabel="residual along it", title=error)
 
 # %% tags=["facts"]
+assert np.diff(logs["none"][2], axis=0).size == 2786
 assert np.allclose(fitted["none"][:2], [c1, c2], rtol=1e-6)
 assert np.allclose(fitted["half"][:2], [c1 / 2.0, c2], rtol=1e-6)
 assert np.allclose(fitted["sign"][:2], [c1, -c2], rtol=1e-6)
@@ -186,19 +223,80 @@ assert any("count alike" in text for text in comparisons["no weight"].findings)
 assert any("semi-implicit" in text for text in comparisons["none"].findings)
 
 # %% [markdown]
-# It even names the scheme: *semi-implicit Euler of 0.005*, because the program moves with the new velocity. For the
-# unit vector it reports a gain of about 10.5 instead of 30, which is the best that a wrong form allows. That is a
-# clue, not a diagnosis: $30/10.5 = 2.9$ is near $7/\sqrt{1+4.9} = 2.88$, the factor between $n_{ij}$ and a unit
+# It even names the scheme: *semi-implicit Euler of 0.005*. How can data know the integrator? Explicit Euler moves with
+# the *old* velocity, $q(t+\Delta t) - q(t) = \Delta t\,p(t)$, semi-implicit Euler with the *new* one, $
+# \Delta t\,p(t+\Delta t)$. Both velocities are in the log, so one subtraction decides:
+
+# %%
+t, q, p = logs["none"]
+for scheme, velocity in (("explicit", p[:-1]), ("semi-implicit", p[1:])):
+    off = np.abs(np.diff(q, axis=0) - (t[1] - t[0]) * velocity).max()
+    print(f"{scheme:>13}: positions are off by at most {off:.1e}")
+
+# %% [markdown]
+# For the unit vector it reports a gain of about 10.5 instead of 30, which is the best that a wrong form allows. That is
+# a clue, not a diagnosis: $30/10.5 = 2.9$ is near $7/\sqrt{1+4.9} = 2.88$, the factor between $n_{ij}$ and a unit
 # vector at the distance 7. The last step is yours.
 #
 # ## Noise
 #
-# Logs of real machines are noisy. If each position is off by a random amount of standard deviation $e$, an
-# acceleration computed from second differences is off by about $\sqrt6\,e/\Delta t^2$: with $e = 0.01$ and
-# $\Delta t = 0.005$ that is a thousand, and the law's accelerations are a few tens. *More samples make it worse.*
-# One smooths, or one compares not accelerations but whole solutions: start at a sample, let the law run for a while,
-# and compare with the next samples. A recording says how accurate it is, and what is not above that accuracy is not
-# found:
+# Logs of real machines are noisy. Let each position be off by an independent random amount of standard deviation $e$,
+# and compute accelerations by second differences. The errors are
+#
+# $$\begin{aligned}
+# \frac{q(t+\Delta t) - 2q(t) + q(t-\Delta t)}{\Delta t^2} &= \ddot q + \tfrac1{12}\Delta t^2\,q^{(4)} + \dots &&
+#   \text{Taylor: error of the formula} \\
+# \text{variance} &= \frac{(1 + 4 + 1)\,e^2}{\Delta t^4} && \text{squares of the three weights} \\
+# \text{standard deviation} &= \sqrt6\,e/\Delta t^2 . && \text{error of the data}
+# \end{aligned}$$
+#
+# With $e = 0.01$ and $\Delta t = 0.005$ the second is a thousand, and the law's accelerations are a few tens. *More
+# samples make it worse.* The error of the formula grows with the step and that of the data falls, so there is a best
+# step: the two are equal at $\Delta t^4 = 12\sqrt6\,e/|q^{(4)}|$. Try it on an exact solution whose positions are off
+# by $10^{-4}$:
+
+# %%
+fine = fl.simulate(law, *(each[0] for each in logs["none"][1:]), (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 2001))
+e = 1e-4
+blurred = fine.q + e * np.random.default_rng(1).standard_normal(fine.q.shape)
+strides = np.array([4, 6, 10, 16, 24, 32, 40, 50, 64, 80, 100])
+found = {"noisy positions": [], "exact positions": []}
+for k in strides:
+    for name, x in zip(found, (blurred, fine.q), strict=True):
+        second = (x[2 * k :] - 2.0 * x[k:-k] + x[: -2 * k]) / (k * 5e-4) ** 2
+        found[name].append(np.std(second - fine.u[k:-k]))
+figure, ax = plots.subplots(size=(6.5, 3.2))
+for name, errors_found in found.items():
+    ax.loglog(strides * 5e-4, errors_found, label=name)
+ax.loglog(strides * 5e-4, np.sqrt(6.0) * e / (strides * 5e-4) ** 2, label="the formula for noise alone")
+ax.minorticks_off()
+ax.set_xticks([0.002, 0.005, 0.01, 0.02, 0.05], ["0.002", "0.005", "0.01", "0.02", "0.05"])
+ax.set(xlabel="step of the differences (time)", ylabel="error of accelerations")
+_ = ax.legend()
+fourth = np.diff(fine.u, 2, axis=0) / 5e-4**2
+print(f"best step {strides[np.argmin(found['noisy positions'])] * 5e-4:.3f}, ", end="")
+print(f"by hand {(12.0 * np.sqrt(6.0) * e / np.sqrt(np.mean(fourth**2))) ** 0.25:.3f}")
+
+# %% tags=["facts"]
+assert 0.015 < strides[np.argmin(found["noisy positions"])] * 5e-4 < 0.03
+assert 0.02 < (12.0 * np.sqrt(6.0) * e / np.sqrt(np.mean(fourth**2))) ** 0.25 < 0.025
+matrix, right_side = np.array([[5.0, 2.0], [2.0, 2.0]]), np.array([[11.0, 11.0], [2.0, 5.0]])
+assert np.allclose(np.linalg.solve(matrix, right_side), [[3.0, 2.0], [-2.0, 0.5]])
+lengths = np.array([6.0, 7.5, 8.0])
+pull = (
+    np.array([float(alpha.phi_alpha(alpha.sigma_norm(x))) for x in lengths]) * lengths / np.sqrt(1 + 0.1 * lengths**2)
+)
+assert [f"{30.0 * abs(each):.1f}" for each in pull] == ["180.3", "27.9", "6.6"]
+assert [f"{each:.3f}" for each in np.sqrt(1 + 0.1 * lengths**2) / lengths] == ["0.357", "0.343", "0.340"]
+assert [f"{each:.2f}" for each in np.sqrt(1 + 0.1 * lengths**2)] == ["2.14", "2.57", "2.72"]
+
+# %% [markdown]
+# **Figure 15.3.** Errors of accelerations from second differences, over the step. Left of the best step the noise
+# decides, right of it the formula. No step is good: at best the error is 0.7.
+#
+# Better than differences is to smooth, or to compare not accelerations but whole solutions: start at a sample, let the
+# law run for a while, and compare with the next samples. A recording says how accurate it is, and what is not above
+# that accuracy is not found. Does the formula for noise hold for the log?
 
 # %%
 t, q, p = logs["half"]
@@ -214,13 +312,50 @@ for e in (1e-6, 1e-3):
 assert abs(np.std(twice - true) / (np.sqrt(6.0) * 1e-3 / 0.005**2) - 1.0) < 0.1
 
 # %% [markdown]
+# ## A procedure
+#
+# Put the steps in order, and they become a tool for any law and any log.
+#
+# 1. *Accelerations.* From velocities if they are in the log, else from second differences with the best step.
+# 2. *Terms.* Write the documented law as a sum of terms with gains, and compute each from the logged states.
+# 3. *Fit.* Solve the normal equations; report gains and the share of the residual.
+# 4. *Residual at the level of the data's error?* Then look at the gains: each that is off names a wrong factor or sign.
+# 5. *Residual above it?* Then a form is wrong. Take the residual at the *documented* gains and plot it over the
+#    distance, over the relative velocity, over time, over the agent's number. Where it is 0 the law is right; where it
+#    grows the error acts.
+# 6. *Halve the step of the program* and record again. What shrinks was the integrator.
+# 7. *Mend and repeat.* There may be a second error behind the first.
+#
+# Step 5 asks for the documented gains and not for the fitted ones. Why? The fit spends the gains to make the residual
+# small, and so smears the error over all terms. With the wrong form "unit vector" the fitted gain is 10.5 instead of
+# 30, and the residual is 1 % of the whole, spread everywhere. At the documented gain it is large, and points along the
+# force.
+#
+# **When can gains be told apart?** Only if the recording *excites* both terms. In a flock that has come to rest $g$ is
+# 0, and no log of it, however long, says anything about friction. In a flock at its lattice $f$ is 0. The best
+# recording of a law starts far from where the law wants to go, and is short. (Exercise 7 makes this precise: the matrix
+# of the normal equations is definite exactly if $f$ and $g$ are not proportional.) Control engineers know this as
+# *persistent excitation*. It is why one shakes a machine in order to identify it.
+#
 # ## What surprised, and what a recording does not say
 #
-# A wrong factor leaves no residual, a wrong form leaves one, and both look like flocks. The data know the
-# integrator. But a recording shows only the states that occurred: if all agents stayed within 6 and 8 of each other,
-# nothing is known of the force at 3. Two laws that agree there are the same to the data. And a law that explains
-# everything need not be the law that was programmed: of two terms that are proportional along the whole recording
-# only the sum is known. For starlings the honest conclusion is "consistent with", and never "is".
+# A wrong factor leaves no residual, a wrong form leaves one, and both look like flocks. A wrong form can hide behind a
+# wrong factor, as the unit vector does. The data know the integrator. More samples may know less. But a recording shows
+# only the states that occurred: if all agents stayed within 6 and 8 of each other, nothing is known of the force at 3.
+# Two laws that agree there are the same to the data. And a law that explains everything need not be the law that was
+# programmed: of two terms that are proportional along the whole recording only the sum is known. For starlings the
+# honest conclusion is "consistent with", and never "is".
+#
+# ## Questions that come up
+#
+# *Why compare with the law's terms and not with the program's?* The program is what is in doubt. Whoever takes terms
+# from the program finds that it does what it does.
+#
+# *Can two errors cancel?* In one recording, yes: a force that is too weak and a friction that is too strong may give
+# nearly the same motion. Record another start; errors that cancel for one rarely do so for the next.
+#
+# *How many agents and samples do I need?* Two gains need two independent numbers. All others serve to see whether the
+# form is right, and to average noise. The seven agents of this lecture give 2 786 numbers for two gains.
 #
 # ## Summary
 #

@@ -10,14 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from flockana.interactions import AlphaInteraction
 from flockana.plots.style import (
     BLUE,
     FAINT,
     GREEN,
     INK,
     MUTED,
-    ORANGE,
-    PURPLE,
     VERMILLION,
     ensure_axes,
     finish,
@@ -74,9 +73,8 @@ def norms(eps: Sequence[float] = (0.1, 1.0), *, ax: Any = None) -> Any:
     x = np.linspace(-4.0, 4.0, 401)
     ax.plot(x, np.abs(x), color=BLUE, linestyle="--", label="Euclidean norm")
     for each, colour, dash in zip(eps, (VERMILLION, GREEN), ("-", "-."), strict=False):
-        ax.plot(
-            x, (np.sqrt(1.0 + each * x**2) - 1.0) / each, color=colour, linestyle=dash, label=f"σ-norm, ε = {each:g}"
-        )
+        norm = AlphaInteraction(eps=each).sigma_norm(np.abs(x))
+        ax.plot(x, norm, color=colour, linestyle=dash, label=f"σ-norm, ε = {each:g}")
     ax.annotate("corner", (0.0, 0.0), (0.9, 0.1), fontsize=8, arrowprops={"arrowstyle": "->", "color": MUTED})
     return finish(ax, "x (length)", "norm of x")
 
@@ -86,14 +84,7 @@ def bumps(h: Sequence[float] = (0.2, 0.6, 0.9), *, ax: Any = None) -> Any:
     ax = ensure_axes(ax)
     z = np.linspace(0.0, 1.2, 400)
     for each, colour, dash in zip(h, (BLUE, VERMILLION, GREEN), ("-", "--", "-."), strict=False):
-        taper = 0.5 * (1.0 + np.cos(np.pi * (z - each) / (1.0 - each)))
-        ax.plot(
-            z,
-            np.where(z < each, 1.0, np.where(z <= 1.0, taper, 0.0)),
-            color=colour,
-            linestyle=dash,
-            label=f"h = {each:g}",
-        )
+        ax.plot(z, AlphaInteraction(h=each).bump(z), color=colour, linestyle=dash, label=f"h = {each:g}")
         ax.plot([each], [1.0], "o", color=colour, markersize=4)
     return finish(ax, "z (no unit)", "$\\rho_h(z)$")
 
@@ -253,6 +244,27 @@ def equilibria(*, axes: Any) -> Any:
     return axes
 
 
+def held_at_a_jump(repulsion: float = 1.0, pull: float = 0.4, k2: float = 0.12, *, axes: Any) -> Any:
+    """Draw a force that jumps, with Filippov's values at the jump, and a damped motion in the phase plane."""
+    force, plane = axes
+    for ends, value, name in (((-1.0, 0.0), repulsion, "repulsion"), ((0.0, 1.0), -pull, "pull")):
+        force.plot(ends, (value, value), color=BLUE, linestyle="-")
+        force.plot(0.0, value, "o", color=BLUE, markerfacecolor="white", markersize=5, zorder=3)
+        force.annotate(name, (ends[0] + 0.25, value), (0, -12), textcoords="offset points", fontsize=8)
+    force.plot((0.0, 0.0), (-pull, repulsion), color=VERMILLION, linestyle="--", label="Filippov: any of these")
+    force.plot(0.0, 0.0, "o", color=VERMILLION, label="held: the force 0")
+    y, rate, path = 0.0, 0.9, []
+    for _ in range(16_000):
+        rate += 2e-3 * ((repulsion if y < 0.0 else -pull) - 2.0 * k2 * rate)
+        y += 2e-3 * rate
+        path.append((y, rate))
+    plane.plot(*np.transpose(path), color=INK, linestyle="-", linewidth=0.9)
+    plane.plot(0.0, 0.0, "o", color=VERMILLION)
+    plane.axvline(0.0, color=VERMILLION, linestyle="--", linewidth=1.0)
+    finish(plane, "distance less $d_1$", "its rate")
+    return finish(force, "distance less $d_1$", "acceleration of the distance")
+
+
 def crossing_links(*, ax: Any = None) -> Any:
     """Draw two crossing links of length 1: some two of their ends are within 1/√2 of each other."""
     ax = _plain(ensure_axes(ax))
@@ -261,14 +273,8 @@ def crossing_links(*, ax: Any = None) -> Any:
         ax.plot(*q[list(pair)].T, color=colour, linestyle=dash, linewidth=2.0)
     for a, b in ((0, 2), (2, 1), (1, 3), (3, 0)):
         ax.plot(*q[[a, b]].T, color=MUTED, linestyle=":", linewidth=1.0)
-        ax.annotate(
-            f"{np.hypot(*(q[a] - q[b])):.2f}",
-            q[[a, b]].mean(axis=0),
-            fontsize=8,
-            ha="center",
-            color=INK,
-            backgroundcolor="white",
-        )
+        length = f"{np.hypot(*(q[a] - q[b])):.2f}"
+        ax.text(*q[[a, b]].mean(axis=0), length, fontsize=8, ha="center", backgroundcolor="white")
     ax.scatter(*q.T, s=40, color=INK, zorder=3)
     ax.set(xlim=(-0.8, 0.8), ylim=(-0.75, 0.65))
     return ax
@@ -280,12 +286,15 @@ def interval_tails(k: int, runs: int, interval: tuple[float, float], *, ax: Any 
 
     ax = ensure_axes(ax)
     counts = np.arange(runs + 1)
-    for p, colour, tail, hatch in ((interval[0], BLUE, counts >= k, "//"), (interval[1], ORANGE, counts <= k, "..")):
+    for p, colour, tail, hatch in (
+        (interval[0], BLUE, counts >= k, "//"),
+        (interval[1], VERMILLION, counts <= k, ".."),
+    ):
         mass = binom.pmf(counts, runs, p)
         ax.bar(counts, mass, color="none", edgecolor=colour, width=0.8, label=f"success with probability {p:.3f}")
         ax.bar(counts[tail], mass[tail], color=colour, edgecolor=INK, hatch=hatch, width=0.8)
     ax.set_xlim(max(-1, k - 0.4 * runs), min(runs, k + 0.4 * runs) + 1)
-    ax.axvline(k, color=PURPLE, linestyle=":", linewidth=1.4)
+    ax.axvline(k, color=INK, linestyle=":", linewidth=1.4)
     return finish(ax, f"successes in {runs} runs", "probability")
 
 

@@ -93,39 +93,15 @@ def slider(
     title: str,
     size: tuple[float, float] = (6.0, 3.6),
     start: int = 0,
+    seconds: float = 0.0,
 ) -> Frames:
-    """Return a slider over a sequence of pictures.
+    """Return a slider over a sequence of pictures; with `seconds`, one that also plays, as `film` does.
 
     Examples
     --------
     >>> slider(lambda ax, a: ax.plot([0, 1], [0, a]), [1, 2, 3], name="a", title="a line of slope a")
     <3 pictures of a line of slope a, a from 1 to 3>
     """
-    return _drawn(draw, values, name, title, size, start, 0.0)
-
-
-def film(
-    draw: Callable[[Any, Any], object],
-    values: Sequence[Any],
-    *,
-    name: str,
-    title: str,
-    size: tuple[float, float] = (6.0, 3.6),
-    seconds: float = 6.0,
-) -> Frames:
-    """Return a player over a sequence of pictures."""
-    return _drawn(draw, values, name, title, size, 0, ensure_positive("seconds", seconds))
-
-
-def _drawn(
-    draw: Callable[[Any, Any], object],
-    values: Sequence[Any],
-    name: str,
-    title: str,
-    size: tuple[float, float],
-    start: int,
-    seconds: float,
-) -> Frames:
     from matplotlib import pyplot as plt
 
     from flockana.plots import subplots
@@ -145,6 +121,19 @@ def _drawn(
     texts = tuple(each if isinstance(each, str) else f"{each:.4g}" for each in values)
     pixels = round(size[0] * _DPI), round(size[1] * _DPI)
     return Frames(tuple(pictures), texts, name, title, pixels, start, seconds)
+
+
+def film(
+    draw: Callable[[Any, Any], object],
+    values: Sequence[Any],
+    *,
+    name: str,
+    title: str,
+    size: tuple[float, float] = (6.0, 3.6),
+    seconds: float = 6.0,
+) -> Frames:
+    """Return a player over a sequence of pictures."""
+    return slider(draw, values, name=name, title=title, size=size, seconds=ensure_positive("seconds", seconds))
 
 
 def _png(figure: Any) -> bytes:

@@ -73,6 +73,16 @@ def test_the_tails_of_an_interval_are_two_and_a_half_per_cent():
         assert sum(bar.get_height() for bar in drawn) == pytest.approx(0.025, rel=1e-6)
 
 
+def test_a_held_pair_turns_about_the_jump_and_dies_out():
+    force, plane = figures.held_at_a_jump(axes=subplots(1, 2)[1]).figure.axes
+    y, rate = np.asarray(plane.lines[0].get_xydata(), float).T
+    energy = rate**2 / 2.0 + np.where(y < 0.0, -y, 0.4 * y)
+    crossings = np.flatnonzero(np.diff(np.sign(y)))
+    assert len(crossings) > 20
+    assert np.all(np.diff(energy[crossings]) < 0.0)
+    assert force.lines[4].get_ydata().tolist() == [-0.4, 1.0]
+
+
 def test_zones_are_nested_and_named_once():
     ax = figures.zones({"near": 1.0, "far": 3.0, "middle": 2.0})
     sizes = [np.abs(patch.get_xy()).max() for patch in ax.patches]

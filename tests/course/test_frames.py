@@ -66,12 +66,14 @@ def test_a_film_plays_at_the_touch_of_a_button():
     assert "seconds = 3.0" in found.html()
 
 
-@pytest.mark.parametrize(("values", "start"), [([], 0), ([1.0], 0), ([0.5, 1.0], 2), ([0.5, 1.0], -1)])
-def test_values_to_go_through_are_at_least_two(values, start):
-    with pytest.raises(ArgumentError, match="at least two values, start one of them"):
-        slider(bar, values, name="height", title="a bar", start=start)
-
-
-def test_a_film_takes_time():
-    with pytest.raises(ArgumentError, match="seconds = 0"):
-        film(bar, [0.5, 1.0], name="height", title="a bar", seconds=0.0)
+@pytest.mark.parametrize(
+    ("make", "values", "option", "message"),
+    [
+        *((slider, values, {}, "at least two values, start one of them") for values in ([], [1.0])),
+        *((slider, [0.5, 1.0], {"start": start}, "at least two values, start one of them") for start in (2, -1)),
+        (film, [0.5, 1.0], {"seconds": 0.0}, "seconds = 0"),
+    ],
+)
+def test_values_are_two_and_a_film_takes_time(make, values, option, message):
+    with pytest.raises(ArgumentError, match=message):
+        make(bar, values, name="height", title="a bar", **option)
