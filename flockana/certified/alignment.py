@@ -9,7 +9,7 @@ from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.certified.intervals import ball, square
+from flockana.certified.balls import ball, square
 from flockana.certified.structure import Balls, Structure, dot
 
 

@@ -15,7 +15,7 @@ from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.certified.intervals import ball
+from flockana.certified.balls import ball
 from flockana.certified.krawczyk import enclose_zero
 from flockana.certified.structure import Balls, Structure, dot
 

@@ -13,10 +13,10 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx
 
+from flockana.certified.balls import ball, square
 from flockana.certified.check import ensure, unit
 from flockana.certified.check_net import ROOT_TWO, Net, Pair
 from flockana.certified.forms import BINARY, NUMBER, PAIR_LAW, WHOLE
-from flockana.certified.intervals import ball, square
 
 DIGITS = 45
 STATED, OF_RATE = 4, 3  # significant digits

@@ -13,18 +13,8 @@ from typing import Any
 
 from flint import arb, arb_series
 
-from flockana.certified.intervals import (
-    BetaParameters,
-    ball,
-    bump,
-    bump_slope,
-    d_beta,
-    phi_beta,
-    phi_beta_slope,
-    psi_beta,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.balls import BetaParameters, ball, square
+from flockana.certified.intervals import bump, bump_slope, d_beta, phi_beta, phi_beta_slope, psi_beta, sigma_of_square
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,13 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
+from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.check import check_data, ensure
 from flockana.certified.check_motion import Motion, Vector, number
 from flockana.certified.check_sphere import Sphere
 from flockana.certified.decimals import at_least, at_most
 from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH
-from flockana.certified.intervals import AlphaParameters, ball, c_star
+from flockana.certified.intervals import c_star
 
 BITS = 128
 

@@ -16,9 +16,9 @@ from typing import Any
 from flint import arb, arb_mat, arb_series, ctx
 
 from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.intervals import square
+from flockana.certified.balls import square
 from flockana.certified.krawczyk import column
-from flockana.certified.series import PairNumbers, Piece, pair_hull, pair_series, pair_slopes
+from flockana.certified.series import PairNumbers, Piece
 
 Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
 
@@ -78,7 +78,7 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = [b - a for a, b in zip(q[i], q[j], strict=True)], _minus(p[j], p[i])
-            stress, adjacency = _pair(_norm2(apart), self.pair, piece)
+            stress, adjacency = self.pair.pair(_norm2(apart), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
                 force = stress * apart[k] + adjacency * relative[k]
@@ -96,7 +96,7 @@ class Flow:
         heat = zero
         for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
             if piece is not Piece.OUT:
-                adjacency = _pair(_norm2(_minus(q[j], q[i])), self.pair, piece)[1]
+                adjacency = self.pair.pair(_norm2(_minus(q[j], q[i])), piece)[1]
                 if isinstance(adjacency, arb):
                     adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
                 heat = heat + adjacency * _norm2(_minus(p[j], p[i]))
@@ -114,7 +114,8 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
-            stress, adjacency, bend, fade = _pair_and_slopes(_norm2(apart), self.pair, piece)
+            s2 = _norm2(apart)
+            (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
             way = [
                 2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)
@@ -202,24 +203,11 @@ def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
 
 def _norm2(x: Sequence[Any]) -> Any:
     """Return ‖x‖² of balls or of series."""
-    return sum(
-        (square(a) if isinstance(a, arb) else a * a for a in x[1:]),
-        square(x[0]) if isinstance(x[0], arb) else x[0] * x[0],
-    )
+    return sum(map(square, x[1:]), square(x[0]))
 
 
 def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
     return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def _pair(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any]:
-    """Return (stress, adjacency) on a ball or along a series."""
-    return pair_hull(s2, law)[:2] if isinstance(s2, arb) else pair_series(s2, law, piece)
-
-
-def _pair_and_slopes(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any, Any, Any]:
-    """Return (stress, adjacency, and their slopes by s²) on a ball or along a series."""
-    return pair_hull(s2, law) if isinstance(s2, arb) else (*pair_series(s2, law, piece), *pair_slopes(s2, law, piece))
 
 
 def _table(size: int) -> list[list[Any]]:

@@ -9,10 +9,10 @@ from flint import arb
 
 from flockana.base.errors import ArgumentError
 from flockana.certified.agent_terms import AgentTerm, Pull
+from flockana.certified.balls import exact
 from flockana.certified.flow import Flow
-from flockana.certified.intervals import exact
-from flockana.certified.obstacle_terms import BetaNumbers, SphereTerm
-from flockana.certified.series import PairNumbers
+from flockana.certified.obstacle_terms import SphereTerm
+from flockana.certified.series import AlphaNumbers, BetaNumbers
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
@@ -60,7 +60,7 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
         terms = (*terms, *sphere_terms(law))
         rates += [gains.c2_beta, sqrt(gains.c1_beta)]
     pace = max(rates) or 1.0
-    return Flow(n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)
+    return Flow(n, m, AlphaNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)
 
 
 def sphere_terms(law: Algorithm3) -> tuple[SphereTerm, ...]:

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb, arb_mat
 
+from flockana.certified.balls import hull
 from flockana.certified.flow import Flow, Pieces
-from flockana.certified.intervals import hull
 from flockana.certified.krawczyk import column, identity, midpoints
 from flockana.certified.series import Piece
 

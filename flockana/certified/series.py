@@ -1,140 +1,168 @@
-"""α-pair law along a path as power series in time (Arb), piece by piece.
+"""Pair laws in balls and along paths as power series in time (Arb), piece by piece.
 
 ρ_h is only C¹ at z = h r_α and at z = r_α. Between these distances, below and beyond, φ_α and a_ij are analytic in the
 squared distance, so that the Taylor coefficients of a pair's force follow from those of its path by series arithmetic.
+The formulas are generated (`flockana.certified.formulas`).
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from enum import Enum
-from typing import Any
+from functools import cached_property
+from typing import Any, ClassVar
 
-from flint import arb, arb_series
+from flint import acb, arb
 
-from flockana.certified.intervals import bump, bump_slope, exact, phi, phi_slope, shift, sigma_of_square
-
-
-class Piece(Enum):
-    """Piece of ρ_h on which the distance of a pair lies, or possibly two."""
-
-    CORE = "z < h r_α"
-    TAPER = "h r_α < z < r_α"
-    OUT = "z > r_α"
-    SWITCH = "about a distance where pieces meet"
+from flockana.certified import formulas
+from flockana.certified.balls import Piece as Piece
+from flockana.certified.balls import exact, hull, monotone
 
 
 @dataclass(frozen=True)
-class PairNumbers:
-    """Numbers of the α-pair law as balls at one precision, lengths in units of ℓ where marked.
+class PairNumbers(ABC):
+    """Numbers of a pair law as balls at one precision.
 
     Attributes
     ----------
-    eps, h, a, b : arb
-        As of the law; ε in units of 1/ℓ².
-    offset : arb
-        c − d_α, what is added to z in φ; in units of ℓ².
-    cutoff, knee : arb
-        r_α and h r_α, in units of ℓ².
+    eps, h : arb
+        Of the σ-norm and of the bump.
+    cutoff : arb
+        σ-norm at which the force ends: r_α, or d_β.
     area : arb
         ℓ².
     """
 
     eps: arb
     h: arb
-    a: arb
-    b: arb
-    offset: arb
     cutoff: arb
-    knee: arb
     area: arb
+    name: ClassVar[str]
 
-    @classmethod
-    def of(cls, alpha: Any) -> PairNumbers:
-        """Return the numbers of an `AlphaInteraction` as exact decimals."""
-        unit = exact(alpha.unit)
-        d, r, eps = exact(alpha.d) / unit, exact(alpha.r) / unit, exact(alpha.eps) * unit * unit
-        h, a, b = exact(alpha.h), exact(alpha.a), exact(alpha.b)
-        cutoff = sigma_of_square(arb(r * r), eps)
-        offset = shift(a, b) - sigma_of_square(arb(d * d), eps)
-        return cls(arb(eps), arb(h), arb(a), arb(b), offset, cutoff, arb(h) * cutoff, arb(unit * unit))
+    @property
+    @abstractmethod
+    def zero(self) -> arb:
+        """The σ-norm at which the potential vanishes."""
+
+    @property
+    def knee(self) -> arb:
+        """The σ-norm at which the bump begins to fall."""
+        return self.h * self.cutoff
+
+    def norm(self, s2: Any) -> Any:
+        """Return the σ-norm at a squared distance."""
+        return formulas.sigma_norm(s2.nonnegative_part() if isinstance(s2, arb) else s2, self.eps)
 
     def piece(self, s2: arb) -> Piece:
         """Return the piece on which every squared distance in a ball lies."""
-        z = sigma_of_square(s2 / self.area, self.eps)
+        z = self.norm(s2)
         if z > self.cutoff:
             return Piece.OUT
         if z < self.knee:
             return Piece.CORE
         return Piece.TAPER if z > self.knee and z < self.cutoff else Piece.SWITCH
 
+    def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
+        """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
+        return self._at("pair", s2, piece)  # type: ignore[no-any-return]
 
-def pair_series(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """Return (stress s_ij, adjacency a_ij) along a path of squared distances, on one piece within range."""
-    slant, z = _slant_and_norm(s2, law)
-    rho, (s, root) = _bump(z, law, piece), _shifted(z, law)
-    return rho * _action(s, root, law) * slant, rho
+    def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
+        """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
+        return self._at("slopes", s2, piece)  # type: ignore[no-any-return]
 
+    def _at(self, what: str, s2: Any, piece: Piece) -> Any:
+        given = s2.nonnegative_part() if isinstance(s2, arb) else s2
+        return getattr(formulas, f"{self.name}_{what}")(given, self, piece)
 
-def pair_slopes(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """Return (d s_ij/d s², d a_ij/d s²) along a path of squared distances, on one piece within range."""
-    slant, z = _slant_and_norm(s2, law)
-    rho, rho_slope, (s, root) = _bump(z, law, piece), _bump_slope(z, law, piece), _shifted(z, law)
-    action, action_slope = _action(s, root, law), (law.a + law.b) / 2 * (root * root * root)
-    along = rho_slope * action + rho * action_slope - law.eps * slant * rho * action
-    return along * slant * slant / (2 * law.area), rho_slope * slant / (2 * law.area)
+    def potential(self, s2: arb) -> arb:
+        """Return ψ at a squared distance: decreasing to its zero, increasing to the cut-off, constant beyond."""
+        return self.potential_of_norm(self.norm(s2))
 
+    def potential_of_norm(self, z: arb) -> arb:
+        """Return ψ at a σ-norm."""
+        if z <= self.zero or z >= self.zero:
+            return monotone(self._potential, z)
+        return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
 
-def _slant_and_norm(s2: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """Return (1/√(1 + εs²), z = (√(1 + εs²) − 1)/ε)."""
-    square = 1 + law.eps * (s2 / law.area)
-    slant = square.rsqrt()
-    return slant, (square * slant - 1) / law.eps
+    def _potential(self, z: arb) -> arb:
+        """Return ψ at a point."""
+        return self._far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
 
+    @cached_property
+    def _far(self) -> arb:
+        return self._from_knee(self.cutoff) - self._from_knee(self.zero)
 
-def _shifted(z: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """Return (s = z − d_α + c, 1/√(1 + s²)), from which φ and its slope follow."""
-    s = z + law.offset
-    return s, (1 + s * s).rsqrt()
-
-
-def _action(s: arb_series, root: arb_series, law: PairNumbers) -> arb_series:
-    """Return φ(z − d_α)."""
-    return ((law.a + law.b) * (s * root) + (law.a - law.b)) / 2
-
-
-def _bump(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """Return ρ_h(z/r_α) on a piece."""
-    if piece is Piece.CORE:
-        return arb_series([1])
-    return (1 + _phase(z, law).cos_pi()) / 2
+    def _from_knee(self, z: arb) -> arb:
+        """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
+        closed, tapered = (getattr(formulas, f"{self.name}_{part}") for part in ("closed", "tapered"))
+        before = arb(0) if z >= self.knee else closed(z.min(self.knee), self) - closed(self.knee, self)
+        if z <= self.knee:
+            return before
+        end = z.max(self.knee).min(self.cutoff)
+        return before + acb.integral(lambda x, analytic: tapered(x, self, analytic), self.knee, end).real
 
 
-def _bump_slope(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """Return the derivative of ρ_h(z/r_α) on a piece."""
-    if piece is Piece.CORE:
-        return arb_series([0])
-    return -arb.pi() / (2 * (1 - law.h) * law.cutoff) * _phase(z, law).sin_pi()
+@dataclass(frozen=True)
+class AlphaNumbers(PairNumbers):
+    """Numbers of the α-pair law; those of φ, and d_α."""
+
+    a: arb
+    b: arb
+    c: arb
+    d_alpha: arb
+    name = "alpha"
+
+    @classmethod
+    def of(cls, alpha: Any) -> AlphaNumbers:
+        """Return the numbers of an interaction, or of exact parameters, where ℓ = 1, as exact decimals."""
+        eps, h, a, b, d, r = (arb(exact(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
+        cutoff, zero = (formulas.sigma_norm(x * x, eps) for x in (r, d))
+        area = arb(exact(getattr(alpha, "unit", 1))) ** 2
+        return cls(eps, h, cutoff, area, a, b, (b - a) / (4 * a * b).sqrt(), zero)
+
+    @property
+    def r_alpha(self) -> arb:
+        """‖r‖_σ."""
+        return self.cutoff
+
+    @property
+    def zero(self) -> arb:
+        """The σ-norm d_α at which the potential vanishes."""
+        return self.d_alpha
+
+    @property
+    def far(self) -> arb:
+        """ψ_α(r_α), the potential of a pair out of range."""
+        return self._far
+
+    @cached_property
+    def c_star(self) -> arb:
+        """ψ_α(0), the potential of a coincident pair."""
+        return self._potential(arb(0))
+
+    def stiffness(self, s2: arb) -> arb:
+        """Return F''(ℓ) of F = ψ_α(‖·‖_σ), by s² = ℓ²."""
+        return self._at("stiffness", s2, Piece.SWITCH)
 
 
-def _phase(z: arb_series, law: PairNumbers) -> arb_series:
-    """Return the position on the taper, from 0 to 1."""
-    return (z / law.cutoff - law.h) / (1 - law.h)
+@dataclass(frozen=True)
+class BetaNumbers(PairNumbers):
+    """Numbers of the β-pair law, whose potential vanishes where the force ends."""
 
+    name = "beta"
 
-def pair_hull(s2: arb, law: PairNumbers) -> tuple[arb, arb, arb, arb]:
-    """Return (s_ij, a_ij, and their derivatives by s²) on a ball of squared distances over several pieces.
+    @classmethod
+    def of(cls, beta: Any) -> BetaNumbers:
+        """Return the numbers of a `BetaInteraction` as exact decimals."""
+        eps, h, d, unit = (arb(exact(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
+        return cls(eps, h, formulas.sigma_norm(d * d, eps), unit * unit)
 
-    The derivatives are continuous, so that their balls hold all of them, on either side of a switch and at it.
-    """
-    inside = (s2 / law.area).nonnegative_part()
-    slant, z = (1 + law.eps * inside).rsqrt(), sigma_of_square(inside, law.eps)
-    rho, rho_slope = bump(z / law.cutoff, law.h), bump_slope(z / law.cutoff, law.h) / law.cutoff
-    action, action_slope = _phi(z, law), phi_slope(z + law.offset - shift(law.a, law.b), law.a, law.b)
-    along = rho_slope * action + rho * action_slope - law.eps * slant * rho * action
-    return rho * action * slant, rho, along * slant * slant / (2 * law.area), rho_slope * slant / (2 * law.area)
+    @property
+    def d_beta(self) -> arb:
+        """‖d'‖_σ."""
+        return self.cutoff
 
-
-def _phi(z: arb, law: PairNumbers) -> arb:
-    """Return φ(z − d_α) on a ball."""
-    return phi(z + law.offset - shift(law.a, law.b), law.a, law.b)
+    @property
+    def zero(self) -> arb:
+        """The σ-norm d_β at which the potential vanishes."""
+        return self.cutoff

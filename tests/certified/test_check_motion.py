@@ -16,10 +16,10 @@ from flockana import (
     Sphere,
     StaticTarget,
 )
+from flockana.certified.balls import AlphaParameters, BetaParameters
 from flockana.certified.check_motion import Motion
 from flockana.certified.check_sphere import Sphere as Rested
 from flockana.certified.check_tube import capped
-from flockana.certified.intervals import AlphaParameters, BetaParameters
 
 ALPHA = AlphaInteraction(a=1.0, b=3.0)
 GAINS = Gains(c1_alpha=4.0, c2_alpha=0.75, c1_gamma=1.5, c2_gamma=0.5, c1_beta=20.0, c2_beta=6.0)

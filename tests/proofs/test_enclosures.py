@@ -5,7 +5,7 @@ import pytest
 from flint import arb, ctx
 
 from flockana.certified import intervals
-from flockana.certified.intervals import AlphaParameters, BetaParameters
+from flockana.certified.balls import AlphaParameters, BetaParameters
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from proofs import enclosures
 
