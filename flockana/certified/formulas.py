@@ -1,6 +1,6 @@
 """The α- and β-pair laws in balls and power series (Arb), for the provers.
 
-Generated from `flockana.symbolic.sources`; edit that, and run `python -m tools.formulas`.
+Generated from `flockana.symbolic` by `python -m tools.formulas`; edit these.
 
 `law` holds the numbers as balls (`flockana.certified.series`); `piece` says on which piece of ρ_h a series lies. The
 checkers have formulas of their own.

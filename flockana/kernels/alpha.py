@@ -1,6 +1,6 @@
 """The α- and β-pair laws as scalar functions of the squared distance or of the σ-norm.
 
-Generated from `flockana.symbolic.sources`; edit that, and run `python -m tools.formulas`.
+Generated from `flockana.symbolic` by `python -m tools.formulas`; edit these.
 
 Parameters are vectors of float64 whose places have the names below: OFFSET is the constant of ψ where ρ_h = 1, FAR is
 ψ_α(r_α), AREA is ℓ², ℓ the length that σ₁ counts in. A pair contributes w (q_j − q_i) + ρ (p_j − p_i) to u_i.

@@ -1,6 +1,6 @@
 """The scalar functions of Olfati-Saber's pair laws, for compiled and interpreted use.
 
-Generated from `flockana.symbolic.sources`; edit that, and run `python -m tools.formulas`.
+Generated from `flockana.symbolic` by `python -m tools.formulas`; edit these.
 """
 
 # fmt: off

@@ -2,7 +2,7 @@
 
 Every function takes and returns sympy expressions. Parameters come in a frozen bundle, symbols by default
 and numbers where given, so that one formula serves a proof, a picture in LaTeX and a forty-digit value; kernels and
-enclosures are generated from it too (`flockana.symbolic.sources`).
+enclosures are generated from it too (`tools.formulas`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Functions of which the pair laws are composed: each once, for printing, kernels and enclosures.
 
 Where a law is composed of `Named` functions, generated code calls these by name, and derivatives are named too
-(`flockana.symbolic.sources`). `formula` is what the source prints; `stable` is the same function in a form in which no
-digits cancel, which floating point computes.
+(`tools.formulas`). `composed` is the formula; `stable` is the same function in a form in which no digits cancel, which
+floating point computes.
 """
 
 from __future__ import annotations
@@ -12,25 +12,19 @@ import sympy as sp
 from flockana.symbolic.norms import sigma_1, sigma_norm
 
 HALF = sp.Rational(1, 2)
+TINY = sp.Symbol("tiny", nonnegative=True)  # 1e-300 in compiled code, 0 in mathematics
 
 
 class Named(sp.Function):
     """Function that generated code calls by name."""
 
+    composed: sp.Expr  # by other named functions, where the formula has some
+    stable = property(lambda self: self.composed)
+
     @property
     def formula(self) -> sp.Expr:
         """Return the printed formula."""
         return written(self.composed)
-
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula, by other named functions where it has some."""
-        raise NotImplementedError
-
-    @property
-    def stable(self) -> sp.Expr:
-        """Return a form for floating point."""
-        return self.composed
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the derivative in the first argument; the others are parameters."""
@@ -40,71 +34,57 @@ class Named(sp.Function):
         return (slope if composed.has(Named) else sp.simplify(slope)).subs(at, self.args[0])
 
 
+def written(expression: sp.Expr) -> sp.Expr:
+    """Return an expression with the printed formulas of its named functions.
+
+    Examples
+    --------
+    >>> written(Sigma1(sp.Rational(3, 4)))
+    3/5
+    """
+    return expression.replace(lambda node: isinstance(node, Named), lambda node: node.formula)
+
+
 class SigmaNorm(Named):
     """Sigma-norm as a function of the squared length and eps; increasing."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        return sigma_norm(sp.sqrt(self.args[0]), eps=self.args[1])
-
-    @property
-    def stable(self) -> sp.Expr:
-        """Return a form that keeps its digits where the length is small."""
-        square, eps = self.args
-        return square / (1 + sp.sqrt(1 + eps * square))
+    composed = property(lambda self: sigma_norm(sp.sqrt(self.args[0]), eps=self.args[1]))
+    stable = property(lambda self: self.args[0] / (1 + sp.sqrt(1 + self.args[1] * self.args[0])))
 
 
 class Sigma1(Named):
     """sigma_1 of a number; increasing."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        return sigma_1(self.args[0])
+    composed = property(lambda self: sigma_1(self.args[0]))
 
 
 class QuarterSine(Named):
     """Sine, up to a quarter turn."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        return sp.sin(self.args[0])
+    composed = property(lambda self: sp.sin(self.args[0]))
 
 
 class Taper(Named):
     """Half-cosine as a function of the place on the taper, from 0 to 1; decreasing."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        return HALF * (1 + sp.cos(sp.pi * self.args[0]))
+    composed = property(lambda self: HALF * (1 + sp.cos(sp.pi * self.args[0])))
 
 
 class Place(Named):
     """Place on the taper of a bump, 0 at z = h and 1 at z = 1; code for balls and series keeps it in [0, 1]."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        return (self.args[0] - self.args[1]) / (1 - self.args[1])
+    composed = property(lambda self: (self.args[0] - self.args[1]) / (1 - self.args[1]))
 
 
 class Bump(Named):
-    """Bump rho_h of z >= 0 and h."""
+    """Bump rho_h of z >= 0 and h; the stable form falls to 0 without cancellation, and keeps a NaN."""
 
-    @property
-    def composed(self) -> sp.Expr:
-        """Return the formula."""
-        z, h = self.args
-        return sp.Piecewise((1, z < h), (Taper(Place(z, h)), z <= 1), (0, True))
+    composed = property(lambda self: self._pieces((Taper(Place(*self.args)), self.args[0] <= 1), (0, True)))
+    stable = property(lambda self: self._pieces((0, self.args[0] >= 1), (QuarterSine(self._angle) ** 2, True)))
+    _angle = property(lambda self: sp.pi / 2 / (1 - self.args[1]) * (1 - self.args[0]))
 
-    @property
-    def stable(self) -> sp.Expr:
-        """Return a form that falls to 0 without cancellation, and keeps a NaN."""
-        z, h = self.args
-        return sp.Piecewise((1, z < h), (0, z >= 1), (QuarterSine(sp.pi / 2 / (1 - h) * (1 - z)) ** 2, True))
+    def _pieces(self, *pieces: tuple[sp.Expr, sp.Basic]) -> sp.Expr:
+        return sp.Piecewise((1, self.args[0] < self.args[1]), *pieces)
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return the slope, which is continuous."""
@@ -124,22 +104,18 @@ class BumpSlope(Named):
 
 
 class Phi(Named):
-    """Uneven sigmoid phi of s, a, b and c = (b - a)/sqrt(4ab), which vanishes at s = 0; increasing."""
+    """Uneven sigmoid phi of s, a, b and c = (b - a)/sqrt(4ab), which vanishes at s = 0; increasing.
+
+    Rearranged it is (a + b)(sigma_1(s + c) - sigma_1(c))/2, a quotient.
+    """
+
+    stable = property(lambda self: PhiAbove(*self.args).stable / PhiBelow(*self.args).stable)
 
     @property
     def composed(self) -> sp.Expr:
         """Return the formula."""
         s, a, b, c = self.args
         return HALF * ((a + b) * Sigma1(s + c) + (a - b))
-
-    @property
-    def stable(self) -> sp.Expr:
-        """Return a quotient without cancellation; the vectorised sums divide once."""
-        return PhiAbove(*self.args).stable / PhiBelow(*self.args).stable
-
-
-class _Quotient(Named):
-    """Parts of phi = (a + b)(sigma_1(s + c) - sigma_1(c))/2, rearranged."""
 
     @property
     def _parts(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
@@ -150,7 +126,7 @@ class _Quotient(Named):
         return x, sp.Abs(x) * at_c + c * at_x + TINY, at_x * at_c
 
 
-class PhiAbove(_Quotient):
+class PhiAbove(Phi):
     """Numerator of phi."""
 
     @property
@@ -161,18 +137,14 @@ class PhiAbove(_Quotient):
         return HALF * (a + b) * sp.Piecewise((s * (s + 2 * c), x >= 0), (-(g**2), True))
 
 
-class PhiBelow(_Quotient):
+class PhiBelow(Phi):
     """Denominator of phi."""
 
-    @property
-    def stable(self) -> sp.Expr:
-        """Return the denominator."""
-        _, g, product = self._parts
-        return g * product
+    stable = property(lambda self: self._parts[1] * self._parts[2])
 
 
 class PhiIntegral(Named):
-    """Integral of phi from 0 to s, never below 0."""
+    """Integral of phi from 0 to s, never below 0; the stable form keeps its digits where s is small."""
 
     @property
     def composed(self) -> sp.Expr:
@@ -182,7 +154,7 @@ class PhiIntegral(Named):
 
     @property
     def stable(self) -> sp.Expr:
-        """Return a form that keeps its digits where s is small."""
+        """Return the closed form, rearranged."""
         s, a, b, c = self.args
         at_s, at_0, product = sp.sqrt(1 + (s + c) ** 2), sp.sqrt(1 + c**2), c * (s + c)
         apart = (1 + c**2 + (s + c) ** 2) / (at_s * at_0 + product)
@@ -192,17 +164,3 @@ class PhiIntegral(Named):
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return phi."""
         return Phi(*self.args)
-
-
-TINY = sp.Symbol("tiny", nonnegative=True)  # 1e-300 in compiled code, 0 in mathematics
-
-
-def written(expression: sp.Expr) -> sp.Expr:
-    """Return an expression with the printed formulas of its named functions.
-
-    Examples
-    --------
-    >>> written(Sigma1(sp.Rational(3, 4)))
-    3/5
-    """
-    return expression.replace(lambda node: isinstance(node, Named), lambda node: node.formula)
