@@ -7,13 +7,14 @@ choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `squar
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import Any
+from typing import Any, Self
 
-from flint import arb, arb_series, fmpq
+from flint import arb, arb_series, ctx, fmpq
 
 
 class Piece(Enum):
@@ -67,9 +68,39 @@ def place(z: Any, h: arb, piece: Piece) -> Any:
     return clamp(on_taper) if isinstance(z, arb) else on_taper
 
 
+@contextmanager
+def series_length(length: int) -> Iterator[None]:
+    """Set the length of power series inside the block."""
+    before, ctx.cap = ctx.cap, length
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
+class _Exact:
+    """Base class of bundles of exact rationals, given as printed decimals."""
+
+    def __post_init__(self) -> None:
+        for name in vars(self):
+            object.__setattr__(self, name, exact(getattr(self, name)))
+        self._ensure_valid()
+
+    def _ensure_valid(self) -> None:
+        """Raise ValueError on a number out of its range."""
+
+    @classmethod
+    def of(cls, interaction: Any) -> Self:
+        """Return the parameters of an interaction as exact decimals."""
+        return cls(**{name: getattr(interaction, name) for name in cls.__annotations__})
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} = {value}" for name, value in vars(self).items())
+
+
 @dataclass(frozen=True)
-class AlphaParameters:
-    """Parameters of the α-pair law as exact rationals of their printed decimals."""
+class AlphaParameters(_Exact):
+    """Parameters of the α-pair law."""
 
     d: fmpq = 7
     r: fmpq = "8.4"
@@ -78,46 +109,19 @@ class AlphaParameters:
     a: fmpq = 5
     b: fmpq = 5
 
-    def __post_init__(self) -> None:
-        _rationals(self)
+    def _ensure_valid(self) -> None:
         if not (0 < self.d < self.r and self.eps > 0 and 0 < self.h < 1 and 0 < self.a <= self.b):
             raise ValueError(f"{self}: expected 0 < d < r, eps > 0, 0 < h < 1, 0 < a <= b")
 
-    @classmethod
-    def of(cls, alpha: Any) -> AlphaParameters:
-        """Return the parameters of an `AlphaInteraction` as exact decimals."""
-        return cls(**{field.name: getattr(alpha, field.name) for field in fields(cls)})
-
-    def __str__(self) -> str:
-        return _listed(self)
-
 
 @dataclass(frozen=True)
-class BetaParameters:
-    """Parameters of the β-pair law as exact rationals: d' (here d), ε and h."""
+class BetaParameters(_Exact):
+    """Parameters of the β-pair law: d' (here d), ε and h."""
 
     d: fmpq = "4.2"
     eps: fmpq = "0.1"
     h: fmpq = "0.9"
 
-    def __post_init__(self) -> None:
-        _rationals(self)
+    def _ensure_valid(self) -> None:
         if not (self.d > 0 and self.eps > 0 and 0 < self.h < 1):
             raise ValueError(f"{self}: expected d > 0, eps > 0, 0 < h < 1")
-
-    @classmethod
-    def of(cls, beta: Any) -> BetaParameters:
-        """Return the parameters of a `BetaInteraction` as exact decimals."""
-        return cls(**{field.name: getattr(beta, field.name) for field in fields(cls)})
-
-    def __str__(self) -> str:
-        return _listed(self)
-
-
-def _rationals(bundle: Any) -> None:
-    for field in fields(bundle):
-        object.__setattr__(bundle, field.name, exact(getattr(bundle, field.name)))
-
-
-def _listed(bundle: Any) -> str:
-    return ", ".join(f"{field.name} = {getattr(bundle, field.name)}" for field in fields(bundle))

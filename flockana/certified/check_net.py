@@ -55,13 +55,6 @@ class Net:
         """Return the weight a_ij at a length."""
         return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
 
-    def hull(self, lengths: Sequence[arb]) -> arb:
-        """Return one ball around several."""
-        total = lengths[0]
-        for length in lengths[1:]:
-            total = total.union(length)
-        return total
-
     def equilibrium(self) -> list[list[arb]]:
         """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0.
 

@@ -8,29 +8,18 @@ only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from flint import arb, arb_mat, arb_series, ctx
+from flint import arb, arb_mat, arb_series
 
 from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.balls import square
+from flockana.certified.balls import series_length, square
 from flockana.certified.krawczyk import column
 from flockana.certified.series import PairNumbers, Piece
 
 Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
-
-
-@contextmanager
-def series_length(length: int) -> Iterator[None]:
-    """Set the length of power series inside the block."""
-    before, ctx.cap = ctx.cap, length
-    try:
-        yield
-    finally:
-        ctx.cap = before
 
 
 @dataclass(frozen=True)

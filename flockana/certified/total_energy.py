@@ -7,8 +7,8 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from flockana.certified.balls import exact, hull, square
-from flockana.certified.flow import Flow, Pieces, series_length
+from flockana.certified.balls import exact, hull, series_length, square
+from flockana.certified.flow import Flow, Pieces
 from flockana.certified.laws import flow_of, sphere_terms
 from flockana.certified.series import AlphaNumbers, Piece
 from flockana.certified.structural_energy import BITS, norm2

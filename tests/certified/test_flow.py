@@ -5,7 +5,7 @@ import pytest
 from flint import arb, arb_series, ctx
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, LinearTarget, StaticTarget
-from flockana.certified.flow import series_length
+from flockana.certified.balls import series_length
 from flockana.certified.laws import flow_of
 from flockana.certified.series import AlphaNumbers, Piece
 from flockana.kernels import alpha as kernel
