@@ -109,9 +109,6 @@ def _conclusions(
     laplacian = net.laplacian(weak)
     proved = second >= 0 and (second == 0 or positive(laplacian.tolist(), ball(second)))
     ensure(proved, "the net's second eigenvalue is not proved")
-        second >= 0 and (second == 0 or positive(laplacian.tolist(), ball(second))),
-        "the net's second eigenvalue is not proved",
-    )
     more = second + unit(second, STATED) if second else Fraction(1, 10**6)
     ensure(not positive(laplacian.tolist(), ball(more)), "the net's second eigenvalue is larger than stated")
     near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}

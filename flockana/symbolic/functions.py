@@ -52,8 +52,6 @@ def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     s : sympy.Expr
         Its argument.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
@@ -70,8 +68,6 @@ def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     z : sympy.Expr
         A sigma-norm, z >= 0.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
@@ -88,8 +84,6 @@ def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     z : sympy.Expr
         A sigma-norm, z >= 0.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------

@@ -92,8 +92,6 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     z : sympy.Expr
         A sigma-norm.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
