@@ -86,11 +86,11 @@ D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h"""
 )
 _BALLS = (
     _HEAD.format(
-        title="The α- and β-pair laws in balls and power series (Arb), for the provers.",
+        title="A pair law in balls and power series (Arb), for the provers.",
         more="""
 
-`law` holds the numbers as balls (`flockana.certified.series`); `piece` says on which piece of ρ_h a series lies. The
-checkers have formulas of their own.""",
+`law` holds the numbers of an α- or β-pair as balls (`flockana.certified.series`); `piece` says on which piece of ρ_h a
+series lies. The checkers have formulas of their own.""",
     )
     + """from typing import Any
 
@@ -109,7 +109,6 @@ def pair_alpha(s2, par):
 class _Law:
     """Pair law with symbols that print as its numbers; `smooth` is its action without bump, `closed` its integral."""
 
-    name: str
     eps: sp.Expr
     h: sp.Expr
     cutoff: sp.Expr
@@ -155,12 +154,12 @@ def _alpha(number: Callable[[str], sp.Symbol]) -> _Law:
     names = {"eps": "EPS", "h": "H", "a": "A", "b": "B", "c": "C", "d_alpha": "D_ALPHA", "r_alpha": "R_ALPHA"}
     of = AlphaSymbols(**{name: number(place) for name, place in names.items()}, unit=sp.sqrt(number("AREA")))
     smooth = alpha_smooth(Z, of)
-    return _Law("alpha", of.eps, of.h, of.r_alpha, smooth, of.unit**2 * PhiIntegral(*smooth.args))
+    return _Law(of.eps, of.h, of.r_alpha, smooth, of.unit**2 * PhiIntegral(*smooth.args))
 
 
-def _beta(number: Callable[[str], sp.Symbol], area: str) -> _Law:
-    of = BetaSymbols(eps=number("EPS"), h=number("H"), d_beta=number("D_BETA"), unit=sp.sqrt(number(area)))
-    return _Law("beta", of.eps, of.h, of.d_beta, beta_smooth(Z, of), beta_closed(Z, of))
+def _beta(number: Callable[[str], sp.Symbol]) -> _Law:
+    of = BetaSymbols(eps=number("EPS"), h=number("H"), d_beta=number("D_BETA"), unit=sp.sqrt(number("BETA_AREA")))
+    return _Law(of.eps, of.h, of.d_beta, beta_smooth(Z, of), beta_closed(Z, of))
 
 
 def _scalars() -> Iterable[str]:
@@ -185,7 +184,7 @@ def _pairs() -> Iterable[str]:
     def number(name: str) -> sp.Symbol:
         return sp.Symbol(f"par[{name}]", positive=True)
 
-    alpha, beta = _alpha(number), _beta(number, "BETA_AREA")
+    alpha, beta = _alpha(number), _beta(number)
     norm = SigmaNorm(S2, alpha.eps)
     in_sums = [each.replace(Bump, _TAPER).replace(Phi, _quotient) for each in (alpha.action / ROOT, alpha.bump)]
     at, far, offset = sp.Function("psi_alpha")(norm, _PAR, _PANELS), number("FAR"), number("OFFSET")
@@ -220,20 +219,20 @@ def _kernel(head: str, doc: str, *of: sp.Expr, moving: Iterable[sp.Symbol] = (),
 
 def _balls() -> Iterable[str]:
     def number(name: str) -> sp.Symbol:
-        return sp.Symbol(f"law.{name.lower()}", positive=True)
+        named = {"D_ALPHA": "zero", "R_ALPHA": "cutoff"}.get(name, name.lower())
+        return sp.Symbol(f"law.{named}", positive=True)
 
+    law = _alpha(number)
+    tapered = Taper(Place(Z / law.cutoff, law.h)) * law.smooth
     yield _monotone("sigma_norm(s2, eps)", "‖x‖_σ", SigmaNorm(S2, _EPS).stable)
     yield _monotone("sigma_1(s)", "σ₁(s)", Sigma1(_S).composed)
     yield _monotone("taper(s)", "Half-cosine of ρ_h", Taper(_S).composed)
     yield _ball("phi(s, a, b, c)", "φ(s), increasing.", Phi(_S, _A, _B, _C).composed)
-    for law in (_alpha(number), _beta(number, "AREA")):
-        tapered = Taper(Place(Z / law.cutoff, law.h)) * law.smooth
-        yield _ball(f"{law.name}_pair(s2, law, piece)", "(weight, adjacency) at squared distance s2.", *law.pair)
-        yield _ball(f"{law.name}_slopes(s2, law, piece)", "Derivatives of the two by s2.", *law.slopes)
-        yield _ball(f"{law.name}_closed(z, law)", "An antiderivative of the action where ρ_h = 1.", written(law.closed))
-        yield _ball(f"{law.name}_tapered(z, law, analytic)", "The action on the taper.", written(tapered))
-        if law.name == "alpha":
-            yield _ball("alpha_stiffness(s2, law, piece)", "F''(ℓ) of F = ψ_α(‖·‖_σ), by s2 = ℓ².", law.stiffness)
+    yield _ball("pair(s2, law, piece)", "(weight, adjacency) at squared distance s2.", *law.pair)
+    yield _ball("slopes(s2, law, piece)", "Derivatives of the two by s2.", *law.slopes)
+    yield _ball("stiffness(s2, law, piece)", "F''(ℓ) of F = ψ(‖·‖_σ), by s2 = ℓ².", law.stiffness)
+    yield _ball("closed(z, law)", "An antiderivative of the action where ρ_h = 1.", written(law.closed))
+    yield _ball("tapered(z, law, analytic)", "The action on the taper.", written(tapered))
 
 
 def _monotone(head: str, what: str, of: sp.Expr) -> str:

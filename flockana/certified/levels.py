@@ -12,7 +12,7 @@ from typing import Any
 from flint import arb, ctx, fmpq
 
 from flockana.certified.balls import ball, exact, square
-from flockana.certified.series import AlphaNumbers
+from flockana.certified.series import PairNumbers
 from flockana.certified.structural_energy import BITS
 from flockana.equilibria.barrier import coincident_lattice, turan_pairs
 from flockana.lattice import harborth
@@ -28,7 +28,7 @@ def gain(law: Any) -> arb:
 def coincident_floor(alpha: Any, n: int, m: int) -> arb:
     """Return a lower bound of V of n agents, two of which coincide."""
     with ctx.workprec(BITS):
-        pair, clique = AlphaNumbers.of(alpha), _largest_clique(alpha, m)
+        pair, clique = PairNumbers.of_alpha(alpha), _largest_clique(alpha, m)
         if clique is None:
             return pair.c_star
         return pair.c_star + ((n - 1) * (n - 2) // 2 - turan_pairs(n - 1, clique)) * pair.far
@@ -42,7 +42,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
             sum((square(arb(float(a)) - arb(float(b))) for a, b in zip(x, y, strict=True)), arb(0))
             for x, y in _pairs(q)
         )
-        return sum(map(AlphaNumbers.of(alpha).potential, s2), arb(0))
+        return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
 
 def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
@@ -52,7 +52,7 @@ def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
         if n < 2 or square_of_kappa >= (4 if m == 1 else 3):
             return None
         bonds = n - 2 if m == 1 else harborth(n - 1)
-        return (n * (n - 1) // 2 - bonds) * AlphaNumbers.of(alpha).far
+        return (n * (n - 1) // 2 - bonds) * PairNumbers.of_alpha(alpha).far
 
 
 def _pairs(q: Any) -> list[tuple[Any, Any]]:
@@ -64,7 +64,7 @@ def _shortest_bound(alpha: Any) -> fmpq | None:
 
     ψ_α falls up to d_α, so that it holds below any length at which it holds.
     """
-    pair, low, high = AlphaNumbers.of(alpha), fmpq(0), exact(alpha.d)
+    pair, low, high = PairNumbers.of_alpha(alpha), fmpq(0), exact(alpha.d)
     if not pair.c_star > pair.far:
         return None
     for _ in range(_HALVINGS):

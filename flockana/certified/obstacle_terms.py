@@ -18,7 +18,7 @@ from flint import arb
 from flockana.base.checks import FloatArray
 from flockana.certified.agent_terms import AgentTerm, Block
 from flockana.certified.balls import square
-from flockana.certified.series import BetaNumbers, Piece
+from flockana.certified.series import PairNumbers, Piece
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class SphereTerm(AgentTerm):
 
     Attributes
     ----------
-    beta : BetaNumbers
+    beta : PairNumbers
         The pair law of an agent and its β-agent.
     centre, radius : tuple of arb, arb
         y and R.
@@ -35,7 +35,7 @@ class SphereTerm(AgentTerm):
         c1β and c2β.
     """
 
-    beta: BetaNumbers
+    beta: PairNumbers
     centre: tuple[arb, ...]
     radius: arb
     stiffness: arb

@@ -7,10 +7,9 @@ The formulas are generated (`flockana.certified.formulas`).
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 from flint import acb, arb
 
@@ -20,13 +19,19 @@ from flockana.certified.balls import exact, hull, monotone
 
 
 @dataclass(frozen=True)
-class PairNumbers(ABC):
+class PairNumbers:
     """Numbers of a pair law as balls at one precision.
+
+    The β-pair's action is the α-pair's with φ(s) = σ₁(s) − 1, which is φ of a = 0, b = 2 and c = 0.
 
     Attributes
     ----------
     eps, h : arb
         Of the σ-norm and of the bump.
+    a, b, c : arb
+        Of φ.
+    zero : arb
+        σ-norm at which the potential vanishes: d_α, or d_β.
     cutoff : arb
         σ-norm at which the force ends: r_α, or d_β.
     area : arb
@@ -35,27 +40,35 @@ class PairNumbers(ABC):
 
     eps: arb
     h: arb
+    a: arb
+    b: arb
+    c: arb
+    zero: arb
     cutoff: arb
     area: arb
-    name: ClassVar[str]
 
-    @property
-    @abstractmethod
-    def zero(self) -> arb:
-        """The σ-norm at which the potential vanishes."""
+    @classmethod
+    def of_alpha(cls, alpha: Any) -> PairNumbers:
+        """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, as exact decimals."""
+        eps, h, a, b, d, r = (arb(exact(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
+        zero, cutoff = (formulas.sigma_norm(x * x, eps) for x in (d, r))
+        return cls(eps, h, a, b, (b - a) / (4 * a * b).sqrt(), zero, cutoff, arb(exact(getattr(alpha, "unit", 1))) ** 2)
+
+    @classmethod
+    def of_beta(cls, beta: Any) -> PairNumbers:
+        """Return the numbers of a `BetaInteraction` as exact decimals."""
+        eps, h, d, unit = (arb(exact(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
+        cutoff = formulas.sigma_norm(d * d, eps)
+        return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
 
     @property
     def knee(self) -> arb:
         """The σ-norm at which the bump begins to fall."""
         return self.h * self.cutoff
 
-    def norm(self, s2: Any) -> Any:
-        """Return the σ-norm at a squared distance."""
-        return formulas.sigma_norm(s2.nonnegative_part() if isinstance(s2, arb) else s2, self.eps)
-
     def piece(self, s2: arb) -> Piece:
         """Return the piece on which every squared distance in a ball lies."""
-        z = self.norm(s2)
+        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
         if z > self.cutoff:
             return Piece.OUT
         if z < self.knee:
@@ -64,105 +77,46 @@ class PairNumbers(ABC):
 
     def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
-        return self._at("pair", s2, piece)  # type: ignore[no-any-return]
+        return formulas.pair(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
 
     def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
-        return self._at("slopes", s2, piece)  # type: ignore[no-any-return]
+        return formulas.slopes(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
 
-    def _at(self, what: str, s2: Any, piece: Piece) -> Any:
-        given = s2.nonnegative_part() if isinstance(s2, arb) else s2
-        return getattr(formulas, f"{self.name}_{what}")(given, self, piece)
+    def stiffness(self, s2: arb) -> arb:
+        """Return F''(ℓ) of the potential F = ψ(‖·‖_σ), by s² = ℓ²."""
+        return formulas.stiffness(_nonnegative(s2), self, Piece.SWITCH)
 
     def potential(self, s2: arb) -> arb:
-        """Return ψ at a squared distance: decreasing to its zero, increasing to the cut-off, constant beyond."""
-        return self.potential_of_norm(self.norm(s2))
-
-    def potential_of_norm(self, z: arb) -> arb:
-        """Return ψ at a σ-norm."""
+        """Return ψ at a squared distance: decreasing to its zero, increasing to the cutoff, constant beyond."""
+        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
         if z <= self.zero or z >= self.zero:
             return monotone(self._potential, z)
         return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
 
-    def _potential(self, z: arb) -> arb:
-        """Return ψ at a point."""
-        return self._far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
-
     @cached_property
-    def _far(self) -> arb:
-        return self._from_knee(self.cutoff) - self._from_knee(self.zero)
-
-    def _from_knee(self, z: arb) -> arb:
-        """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
-        closed, tapered = (getattr(formulas, f"{self.name}_{part}") for part in ("closed", "tapered"))
-        before = arb(0) if z >= self.knee else closed(z.min(self.knee), self) - closed(self.knee, self)
-        if z <= self.knee:
-            return before
-        end = z.max(self.knee).min(self.cutoff)
-        return before + acb.integral(lambda x, analytic: tapered(x, self, analytic), self.knee, end).real
-
-
-@dataclass(frozen=True)
-class AlphaNumbers(PairNumbers):
-    """Numbers of the α-pair law; those of φ, and d_α."""
-
-    a: arb
-    b: arb
-    c: arb
-    d_alpha: arb
-    name = "alpha"
-
-    @classmethod
-    def of(cls, alpha: Any) -> AlphaNumbers:
-        """Return the numbers of an interaction, or of exact parameters, where ℓ = 1, as exact decimals."""
-        eps, h, a, b, d, r = (arb(exact(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
-        cutoff, zero = (formulas.sigma_norm(x * x, eps) for x in (r, d))
-        area = arb(exact(getattr(alpha, "unit", 1))) ** 2
-        return cls(eps, h, cutoff, area, a, b, (b - a) / (4 * a * b).sqrt(), zero)
-
-    @property
-    def r_alpha(self) -> arb:
-        """‖r‖_σ."""
-        return self.cutoff
-
-    @property
-    def zero(self) -> arb:
-        """The σ-norm d_α at which the potential vanishes."""
-        return self.d_alpha
-
-    @property
     def far(self) -> arb:
-        """ψ_α(r_α), the potential of a pair out of range."""
-        return self._far
+        """Potential of a pair out of range: ψ_α(r_α), or 0."""
+        return self._from_knee(self.cutoff) - self._from_knee(self.zero)
 
     @cached_property
     def c_star(self) -> arb:
-        """ψ_α(0), the potential of a coincident pair."""
+        """Potential ψ(0) of a coincident pair."""
         return self._potential(arb(0))
 
-    def stiffness(self, s2: arb) -> arb:
-        """Return F''(ℓ) of F = ψ_α(‖·‖_σ), by s² = ℓ²."""
-        return self._at("stiffness", s2, Piece.SWITCH)
+    def _potential(self, z: arb) -> arb:
+        """Return ψ at a point."""
+        return self.far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
+
+    def _from_knee(self, z: arb) -> arb:
+        """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
+        knee = self.knee
+        before = arb(0) if z >= knee else formulas.closed(z.min(knee), self) - formulas.closed(knee, self)
+        if z <= knee:
+            return before
+        end = z.max(knee).min(self.cutoff)
+        return before + acb.integral(lambda x, analytic: formulas.tapered(x, self, analytic), knee, end).real
 
 
-@dataclass(frozen=True)
-class BetaNumbers(PairNumbers):
-    """Numbers of the β-pair law, whose potential vanishes where the force ends."""
-
-    name = "beta"
-
-    @classmethod
-    def of(cls, beta: Any) -> BetaNumbers:
-        """Return the numbers of a `BetaInteraction` as exact decimals."""
-        eps, h, d, unit = (arb(exact(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
-        return cls(eps, h, formulas.sigma_norm(d * d, eps), unit * unit)
-
-    @property
-    def d_beta(self) -> arb:
-        """‖d'‖_σ."""
-        return self.cutoff
-
-    @property
-    def zero(self) -> arb:
-        """The σ-norm d_β at which the potential vanishes."""
-        return self.cutoff
+def _nonnegative(s2: Any) -> Any:
+    return s2.nonnegative_part() if isinstance(s2, arb) else s2

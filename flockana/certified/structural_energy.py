@@ -9,7 +9,7 @@ from typing import Any
 from flint import arb, ctx
 
 from flockana.certified.balls import exact, square
-from flockana.certified.series import AlphaNumbers
+from flockana.certified.series import PairNumbers
 from flockana.laws.olfati_saber import Algorithm2
 
 BITS = 100
@@ -32,7 +32,7 @@ def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence
 
 def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
     """Return the structural energy from squared distances, positions and velocities of a box."""
-    pairs = sum(map(AlphaNumbers.of(law.alpha).potential, s2), arb(0))
+    pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, s2), arb(0))
     total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
     return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
 

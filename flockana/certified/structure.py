@@ -17,7 +17,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
 from flockana.certified.balls import AlphaParameters, ball, exact, square
-from flockana.certified.series import AlphaNumbers
+from flockana.certified.series import PairNumbers
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
@@ -146,14 +146,14 @@ class Structure:
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     @property
-    def _law(self) -> AlphaNumbers:
+    def _law(self) -> PairNumbers:
         """Return the pair law at the present precision."""
         return _numbers(self.par, ctx.prec)
 
 
 @cache
-def _numbers(par: AlphaParameters, bits: int) -> AlphaNumbers:
-    return AlphaNumbers.of(par)
+def _numbers(par: AlphaParameters, bits: int) -> PairNumbers:
+    return PairNumbers.of_alpha(par)
 
 
 def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:

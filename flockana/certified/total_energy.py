@@ -10,7 +10,7 @@ from flint import arb, arb_series, ctx
 from flockana.certified.balls import exact, hull, series_length, square
 from flockana.certified.flow import Flow, Pieces
 from flockana.certified.laws import flow_of, sphere_terms
-from flockana.certified.series import AlphaNumbers, Piece
+from flockana.certified.series import PairNumbers, Piece
 from flockana.certified.structural_energy import BITS, norm2
 from flockana.certified.tube import Tube
 
@@ -22,7 +22,7 @@ def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]
     with ctx.workprec(BITS):
         gains, area = law.gains, arb(exact(law.alpha.unit)) ** 2
         squares = [norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]
-        pairs = sum(map(AlphaNumbers.of(law.alpha).potential, squares), arb(0))
+        pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
         far = sum(((1 + norm2([a - b for a, b in zip(x, start, strict=True)]) / area).sqrt() - 1 for x in q), arb(0))
         total = arb(exact(gains.c1_alpha)) * pairs + arb(exact(gains.c1_gamma)) * area * far

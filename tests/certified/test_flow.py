@@ -7,7 +7,7 @@ from flint import arb, arb_series, ctx
 from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, LinearTarget, StaticTarget
 from flockana.certified.balls import series_length
 from flockana.certified.laws import flow_of
-from flockana.certified.series import AlphaNumbers, Piece
+from flockana.certified.series import PairNumbers, Piece
 from flockana.kernels import alpha as kernel
 
 LAWS = [AlphaInteraction(), AlphaInteraction(d=3.0, r=4.5, eps=0.2, h=0.4, a=2.0, b=7.0, unit=1.5)]
@@ -17,7 +17,7 @@ LENGTHS = {Piece.CORE: 0.4, Piece.TAPER: 0.8, Piece.OUT: 1.1}  # of r
 @pytest.mark.parametrize("alpha", LAWS)
 @pytest.mark.parametrize("piece", [Piece.CORE, Piece.TAPER])
 def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece):
-    law, share = AlphaNumbers.of(alpha), 0.1 if piece is Piece.CORE else 0.8
+    law, share = PairNumbers.of_alpha(alpha), 0.1 if piece is Piece.CORE else 0.8
     s2 = (share * alpha.r) ** 2
     assert law.piece(arb(s2)) is piece
     expected = (
@@ -35,7 +35,7 @@ def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece
 
 @pytest.mark.parametrize("alpha", LAWS)
 def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
-    law = AlphaNumbers.of(alpha)
+    law = PairNumbers.of_alpha(alpha)
     for z in (law.knee, law.cutoff):
         length2 = float(((1 + law.eps * z) ** 2 - 1) / law.eps)
         wide = arb(length2, 0.3)
@@ -51,7 +51,7 @@ def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
 
 
 def test_out_of_range_is_a_piece_of_its_own_and_exactly_r_lies_on_the_switch():
-    law = AlphaNumbers.of(AlphaInteraction(d=7.0, r=8.5))
+    law = PairNumbers.of_alpha(AlphaInteraction(d=7.0, r=8.5))
     assert law.piece(arb(8.6) ** 2) is Piece.OUT
     assert law.piece(arb(8.5) ** 2) is Piece.SWITCH
 
