@@ -7,7 +7,7 @@ choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `squar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
@@ -48,6 +48,17 @@ def hull(*balls: arb) -> arb:
 def square(x: Any) -> Any:
     """Return x² of a ball, never below 0, or of a series."""
     return (x * x).nonnegative_part() if isinstance(x, arb) else x * x
+
+
+def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    """Return ⟨a, b⟩ of balls or of series."""
+    products = [x * y for x, y in zip(a, b, strict=True)]
+    return sum(products[1:], products[0])
+
+
+def norm2(x: Sequence[Any]) -> Any:
+    """Return ‖x‖² of balls, never below 0, or of series."""
+    return sum(map(square, x[1:]), square(x[0]))
 
 
 def monotone(f: Callable[[Any], Any], x: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import Any
 from flint import arb, arb_mat, arb_series
 
 from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.balls import series_length, square
+from flockana.certified.balls import norm2, series_length
 from flockana.certified.krawczyk import column
 from flockana.certified.series import PairNumbers, Piece
 
@@ -51,7 +51,7 @@ class Flow:
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
         q = self.split(state)[0]
-        pairs = [self.pair.piece(squared_distance(q[i], q[j])) for i, j in combinations(range(self.n), 2)]
+        pairs = [self.pair.piece(norm2(_minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
@@ -67,7 +67,7 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = [b - a for a, b in zip(q[i], q[j], strict=True)], _minus(p[j], p[i])
-            stress, adjacency = self.pair.pair(_norm2(apart), piece)
+            stress, adjacency = self.pair.pair(norm2(apart), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
                 force = stress * apart[k] + adjacency * relative[k]
@@ -85,10 +85,10 @@ class Flow:
         heat = zero
         for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
             if piece is not Piece.OUT:
-                adjacency = self.pair.pair(_norm2(_minus(q[j], q[i])), piece)[1]
+                adjacency = self.pair.pair(norm2(_minus(q[j], q[i])), piece)[1]
                 if isinstance(adjacency, arb):
                     adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-                heat = heat + adjacency * _norm2(_minus(p[j], p[i]))
+                heat = heat + adjacency * norm2(_minus(p[j], p[i]))
         terms = [
             sum((term.power(q[i], p[i], own[i]) for i in range(self.n) if own[i] is not Piece.OUT), zero)
             for term, own in self._agents(pieces)
@@ -103,7 +103,7 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
-            s2 = _norm2(apart)
+            s2 = norm2(apart)
             (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
             way = [
@@ -180,19 +180,9 @@ class Flow:
         return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
 
 
-def squared_distance(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Return ‖a − b‖² of two boxes, never below 0."""
-    return sum((square(x - y) for x, y in zip(a, b, strict=True)), arb(0))
-
-
 def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
     """Return one matrix stacked above another."""
     return arb_mat(upper.nrows() + lower.nrows(), upper.ncols(), upper.entries() + lower.entries())
-
-
-def _norm2(x: Sequence[Any]) -> Any:
-    """Return ‖x‖² of balls or of series."""
-    return sum(map(square, x[1:]), square(x[0]))
 
 
 def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:

@@ -17,7 +17,7 @@ from flint import arb
 
 from flockana.base.checks import FloatArray
 from flockana.certified.agent_terms import AgentTerm, Block
-from flockana.certified.balls import square
+from flockana.certified.balls import dot, square
 from flockana.certified.series import PairNumbers, Piece
 
 
@@ -69,7 +69,7 @@ class SphereTerm(AgentTerm):
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
         a, distance = self._away(x)
-        clearance, radial = distance - self.radius, _dot(a, v)
+        clearance, radial = distance - self.radius, dot(a, v)
         across = sum((square(w - radial * k) for k, w in zip(a, v, strict=True)), 0 * radial)
         adjacency = self.beta.pair(square(clearance), piece)[1]
         if isinstance(adjacency, arb):
@@ -79,7 +79,7 @@ class SphereTerm(AgentTerm):
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
         """Return the force at a position and a velocity."""
         a, distance = self._away(x)
-        clearance, radial = distance - self.radius, _dot(a, v)
+        clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)
         push, drag, free = self.stiffness * weight * clearance, self.damping * adjacency, clearance / distance
         return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
@@ -90,7 +90,7 @@ class SphereTerm(AgentTerm):
         With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
         """
         a, distance = self._away(x)
-        clearance, radial = distance - self.radius, _dot(a, v)
+        clearance, radial = distance - self.radius, dot(a, v)
         s2, mu, free = square(clearance), self.radius / distance, clearance / distance
         (weight, adjacency), (bend, fade) = self.beta.pair(s2, piece), self.beta.slopes(s2, piece)
         stiff, drag = self.stiffness * weight, self.damping * adjacency
@@ -113,8 +113,3 @@ class SphereTerm(AgentTerm):
             by_x.append(push)
             by_v.append(brake)
         return by_x, by_v
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    products = [x * y for x, y in zip(a, b, strict=True)]
-    return sum(products[1:], products[0])

@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import arb, ctx
 
-from flockana.certified.balls import exact, square
+from flockana.certified.balls import exact, norm2, square
 from flockana.certified.series import PairNumbers
 from flockana.laws.olfati_saber import Algorithm2
 
@@ -35,11 +35,6 @@ def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequen
     pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, s2), arb(0))
     total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
     return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
-
-
-def norm2(x: Sequence[arb]) -> arb:
-    """Return ‖x‖²."""
-    return sum(map(square, x), arb(0))
 
 
 def _inertia(x: Sequence[Sequence[arb]]) -> arb:

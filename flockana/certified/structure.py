@@ -162,8 +162,3 @@ def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
         [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
         for a, x in enumerate(gap)
     ]
-
-
-def dot(a: Balls, b: Balls) -> arb:
-    """Return ⟨a, b⟩."""
-    return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))

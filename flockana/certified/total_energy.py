@@ -7,11 +7,11 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from flockana.certified.balls import exact, hull, series_length, square
+from flockana.certified.balls import exact, hull, norm2, series_length, square
 from flockana.certified.flow import Flow, Pieces
 from flockana.certified.laws import flow_of, sphere_terms
 from flockana.certified.series import PairNumbers, Piece
-from flockana.certified.structural_energy import BITS, norm2
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube
 
 _ORDER = 12  # of the rate's Taylor polynomials
