@@ -109,7 +109,10 @@ class Phi(Named):
     Rearranged it is (a + b)(sigma_1(s + c) - sigma_1(c))/2, a quotient.
     """
 
-    stable = property(lambda self: PhiAbove(*self.args).stable / PhiBelow(*self.args).stable)
+    @property
+    def stable(self) -> sp.Expr:
+        """Return the quotient."""
+        return PhiAbove(*self.args).stable / PhiBelow(*self.args).stable
 
     @property
     def composed(self) -> sp.Expr:
@@ -140,7 +143,10 @@ class PhiAbove(Phi):
 class PhiBelow(Phi):
     """Denominator of phi."""
 
-    stable = property(lambda self: self._parts[1] * self._parts[2])
+    @property
+    def stable(self) -> sp.Expr:
+        """Return the denominator."""
+        return self._parts[1] * self._parts[2]
 
 
 class PhiIntegral(Named):

@@ -9,19 +9,18 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from flint import arb, arb_mat
+from flint import arb
 
 import flockana.certified.check
 from flockana import Algorithm1, certify
 from flockana.base.errors import FileError
-from flockana.base.seals import with_digest
 from flockana.certified import check_basin, check_motion, check_net, check_tube
 from flockana.certified.certificate import basin_certificate, write_certificate
-from flockana.certified.check import RejectedError, check_certificate, check_data, unit
+from flockana.certified.check import RejectedError, check_certificate, check_data, positive, unit
 from flockana.cli.main import main
 from flockana.equilibria.record import smallest_strained
 from flockana.lattice import hexagonal_patch
-from tests.certified.conftest import ALL, basin_of
+from tests.certified.conftest import ALL, basin_of, resealed
 
 
 def numbers(data, path=()) -> Iterator[tuple]:
@@ -50,10 +49,6 @@ def with_value(data, path, new):
     old = inner[path[-1]]
     inner[path[-1]] = int(new) if isinstance(old, int) else float(new).hex() if "0x" in old else str(new)
     return other
-
-
-def resealed(data):
-    return with_digest({key: item for key, item in data.items() if key != "digest"})
 
 
 def rejected(data) -> bool:
@@ -253,8 +248,8 @@ def test_a_matrix_less_a_shift_is_positive_definite_to_its_last_minor(corner, ho
     """[[3, 1], [1, x]] less 1 is so above x = 3/2, and a ball of such matrices if all of them are."""
     for sign in (1, -1):
         rows = [[arb(3), arb(sign)], [arb(sign), arb(corner)]]
-        assert check_basin.positive(arb_mat(rows), Fraction(1)) is holds
-    assert not check_basin.positive(arb_mat([[arb(3), arb(1)], [arb(1), arb(corner) + arb(0, 0.02)]]), Fraction(1))
+        assert positive(rows, arb(1)) is holds
+    assert not positive([[arb(3), arb(1)], [arb(1), arb(corner) + arb(0, 0.02)]], arb(1))
 
 
 def pair_data():
