@@ -71,6 +71,36 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
     return dissipated
 
 
+@njit(cache=True)
+def _count(q, first, second, square, count):
+    """Add to the number of agents that each perceives, among some pairs."""
+    for k in range(first.size):
+        i, j = np.uint64(first[k]), np.uint64(second[k])
+        s2 = 0.0
+        for c in range(q.shape[1]):
+            s2 += (q[j, c] - q[i, c]) ** 2
+        count[i] += s2 <= square[i]
+        count[j] += s2 <= square[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _pull(q, p, first, second, square, mu, rho, align, u):
+    """`edge_forces` of the edges among some pairs, whose weights and lengths are the perceiving agent's."""
+    m = q.shape[1]
+    for k in range(first.size):
+        i, j = np.uint64(first[k]), np.uint64(second[k])
+        s2 = 0.0
+        for c in range(m):
+            s2 += (q[j, c] - q[i, c]) ** 2
+        s = np.sqrt(s2)
+        for way in range(2):
+            head, tail = (i, j) if way == 0 else (j, i)
+            if s2 <= square[head]:
+                w = mu * (1.0 - rho[head] / s) if s2 > 0.0 else 0.0
+                for c in range(m):
+                    u[head, c] += w * (q[tail, c] - q[head, c]) + align[head] * (p[tail, c] - p[head, c])
+
+
 def perceived_forces(
     q: FloatArray,
     p: FloatArray,
@@ -82,13 +112,17 @@ def perceived_forces(
     normalised: bool,
     u: FloatArray,
 ) -> None:
-    """Add to u the `edge_forces` of `perceived_edges` that are all heeded alike."""
-    head, tail = perceived_edges(q, radius)
-    count = np.bincount(head, minlength=len(q)) if shared or normalised else np.zeros(len(q), np.int64)
+    """Add to u what `edge_forces` adds for `perceived_edges` that are all heeded alike, without making them."""
+    reach, square, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
+    parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
+    if shared or normalised:
+        for i, j in parts:
+            _count(q, i, j, square, count)
     total = sigma * count if normalised else np.ones(len(q))
     align = np.divide(sigma, total, out=np.zeros(len(q)), where=total > 0.0)
     rho = spacing * count if shared else spacing
-    edge_forces(q, p, head, tail, np.full(head.size, mu), rho[head], align[head], u)
+    for i, j in parts:
+        _pull(q, p, i, j, square, mu, rho, align, u)
 
 
 @njit(cache=True)
@@ -129,9 +163,9 @@ def _pull_along(here, there, now, then, s2, square, w, align, u):
 
 @njit(cache=True)
 def _pull_all(x, v, square, mu, rho, align, s2, w, u):
-    """`edge_forces` of all pairs: by those that are perceived, one after the other, on all others.
+    """`_pull` of all pairs: by those that are perceived, one after the other, on all others.
 
-    So each agent's sum is in the order in which `edge_forces` adds to it, and loops over agents are compiled to SIMD.
+    So each agent's sum is in the order in which `_pull` adds to it, and loops over agents are compiled to SIMD.
     """
     u[:] = 0.0
     for j in range(s2.size):
