@@ -15,17 +15,9 @@ import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, ctx
 
+from flockana.certified.balls import AlphaParameters, ball, exact, hull, square
 from flockana.certified.decimals import at_least, small
-from flockana.certified.intervals import (
-    AlphaParameters,
-    ball,
-    exact,
-    hull,
-    phi_alpha,
-    phi_alpha_slope,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.intervals import phi_alpha, phi_alpha_slope, sigma_of_square
 from flockana.certified.krawczyk import enclose_zero, least_eigenvalue
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium

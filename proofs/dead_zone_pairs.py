@@ -15,8 +15,8 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.balls import ball, exact
 from flockana.certified.decimals import first_digits, interval
-from flockana.certified.intervals import ball, exact
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.symbolic.dead_zone import (
     D_1,

@@ -19,18 +19,9 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, ctx
 
+from flockana.certified.balls import AlphaParameters, ball, exact, hull, square
 from flockana.certified.decimals import at_most, first_digits, interval
-from flockana.certified.intervals import (
-    AlphaParameters,
-    adjacency,
-    ball,
-    c_star,
-    exact,
-    hull,
-    psi_alpha,
-    sigma_norm,
-    square,
-)
+from flockana.certified.intervals import adjacency, c_star, psi_alpha, sigma_norm
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm2

@@ -12,8 +12,9 @@ from itertools import combinations
 import sympy as sp
 from flint import arb, arb_mat, ctx
 
+from flockana.certified.balls import AlphaParameters, ball, square
 from flockana.certified.decimals import at_least
-from flockana.certified.intervals import AlphaParameters, ball, phi_alpha, sigma_of_square, square
+from flockana.certified.intervals import phi_alpha, sigma_of_square
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.norms import sigma_norm

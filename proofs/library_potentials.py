@@ -8,27 +8,14 @@ binary values. What is left is the rounding of an evaluation, some units in the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from math import comb
 from typing import Any
 
 from flint import acb, arb, arb_series, ctx
 
+from flockana.certified.balls import AlphaParameters, BetaParameters, ball, series_length, square
 from flockana.certified.decimals import small
-from flockana.certified.intervals import (
-    AlphaParameters,
-    BetaParameters,
-    ball,
-    c_star,
-    d_alpha,
-    d_beta,
-    far_potential,
-    psi_alpha,
-    psi_beta,
-    r_alpha,
-    shift,
-    square,
-)
+from flockana.certified.intervals import c_star, d_alpha, d_beta, far_potential, psi_alpha, psi_beta, r_alpha, shift
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from flockana.kernels import alpha as kernel
 from proofs.enclosures import parameter_sets
@@ -93,21 +80,11 @@ def chebyshev(powers: list[arb]) -> list[arb]:
     return out
 
 
-@contextmanager
-def _series_of(terms: int) -> Iterator[None]:
-    """Have series keep so many terms."""
-    before, ctx.cap = ctx.cap, terms
-    try:
-        yield
-    finally:
-        ctx.cap = before
-
-
 def slope_error(row: Any, action: Action) -> arb:
     """A bound of |dP/dz - action| on a panel, both of z within it."""
     left, right, *coefficients = (arb(float(x)) for x in row)
     middle, half = (left + right) / 2, (right - left) / 2
-    with _series_of(TERMS):
+    with series_length(TERMS):
         expansion = list(action(arb_series([middle, half])))
     slope = [k * c / half for k, c in enumerate(coefficients)][1:]
     slope += [arb(0)] * (TERMS - len(slope))

@@ -13,8 +13,9 @@ from itertools import count
 import z3
 from flint import arb, ctx
 
+from flockana.certified.balls import AlphaParameters, ball
 from flockana.certified.decimals import at_least, at_most, decimal, interval
-from flockana.certified.intervals import AlphaParameters, ball, c_star, far_potential, psi_alpha, sigma_norm
+from flockana.certified.intervals import c_star, far_potential, psi_alpha, sigma_norm
 from flockana.lattice import harborth
 from proofs.enclosures import parameter_sets
 from proofs.point_ratios import DIMENSIONS, cited, largest_clique, least_ratio, radon_points

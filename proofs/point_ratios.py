@@ -13,7 +13,7 @@ from itertools import combinations, count
 import sympy as sp
 from flint import arb
 
-from flockana.certified.intervals import ball
+from flockana.certified.balls import ball
 from proofs.proof import Step
 
 DIMENSIONS = (1, 2, 3)

@@ -10,8 +10,8 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.balls import ball
 from flockana.certified.decimals import interval
-from flockana.certified.intervals import ball
 from flockana.kernels import zones
 from flockana.symbolic.bearing_distance import BOUND, saturation
 from proofs.proof import Proof, Step

@@ -9,8 +9,8 @@ import sympy as sp
 import z3
 from flint import arb, ctx
 
+from flockana.certified.balls import ball
 from flockana.certified.decimals import interval
-from flockana.certified.intervals import ball
 from flockana.symbolic.parameters import GAINS
 from flockana.symbolic.translational import S, falling_condition, frequency_gain, gain_slope, transfer_function
 from proofs.proof import Proof, Step

@@ -13,8 +13,9 @@ import sympy as sp
 import z3
 from flint import arb, arb_mat, ctx, fmpz_mat
 
+from flockana.certified.balls import AlphaParameters, ball, square
 from flockana.certified.decimals import at_least, plus_minus
-from flockana.certified.intervals import AlphaParameters, adjacency, ball, d_alpha, phi_alpha_slope, r_alpha, square
+from flockana.certified.intervals import adjacency, d_alpha, phi_alpha_slope, r_alpha
 from flockana.certified.krawczyk import least_eigenvalue
 from proofs.enclosures import parameter_sets
 from proofs.proof import Proof, Step

@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb
 
 from flockana.base.checks import FloatArray
-from flockana.certified.intervals import square
+from flockana.certified.balls import square
 from flockana.certified.series import Piece
 
 Block = list[list[Any]]
@@ -71,7 +71,7 @@ class Pull(AgentTerm):
 
     def _slant(self, away: Sequence[Any], unit: arb) -> Any:
         """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
-        squares = [square(a) if isinstance(a, arb) else a * a for a in away]
+        squares = list(map(square, away))
         return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
@@ -100,7 +100,7 @@ class Pull(AgentTerm):
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
-        speed = sum((square(w) if isinstance(w, arb) else w * w for w in v), 0 * v[0])
+        speed = sum(map(square, v), 0 * v[0])
         return -self.damping * (speed - sum((w * p for w, p in zip(v, self.told, strict=True)), 0 * v[0]))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:

@@ -9,8 +9,8 @@ from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.certified.intervals import ball, square
-from flockana.certified.structure import Balls, Structure, dot
+from flockana.certified.balls import ball, dot, square
+from flockana.certified.structure import Balls, Structure
 
 
 def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:

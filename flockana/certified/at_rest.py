@@ -15,9 +15,9 @@ from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, SolverError
-from flockana.certified.intervals import ball
+from flockana.certified.balls import ball, dot
 from flockana.certified.krawczyk import enclose_zero
-from flockana.certified.structure import Balls, Structure, dot
+from flockana.certified.structure import Balls, Structure
 
 BOX = fmpq(1, 10**13)  # of d: the half-width of the box in which there is one equilibrium
 _NEWTON = 3

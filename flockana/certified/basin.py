@@ -34,9 +34,9 @@ from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.certified.alignment import centred, rotated_to, unique_projection
 from flockana.certified.at_rest import enclose_rest, half_width
+from flockana.certified.balls import ball, square
 from flockana.certified.damping import damping
 from flockana.certified.decimals import round_down
-from flockana.certified.intervals import ball, square
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
 from flockana.certified.structure import Structure

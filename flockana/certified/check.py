@@ -16,6 +16,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from flint import arb
+
 from flockana.base.errors import FileError
 from flockana.base.files import read_text_file
 from flockana.base.seals import without_digest
@@ -96,3 +98,16 @@ def unit(stated: Fraction, digits: int) -> Fraction:
     while stated and abs(stated) < Fraction(10) ** exponent:
         exponent -= 1
     return Fraction(10) ** (exponent + 1 - digits)
+
+
+def positive(rows: list[list[arb]], shift: Any = 0) -> bool:
+    """Return whether every symmetric matrix in the balls, less shift·1, is certainly positive definite."""
+    rows = [[entry - shift if i == j else entry for j, entry in enumerate(row)] for i, row in enumerate(rows)]
+    for k, pivot in enumerate(rows):
+        if not pivot[k] > 0:
+            return False
+        for row in rows[k + 1 :]:
+            factor = row[k] / pivot[k]
+            for j in range(k + 1, len(rows)):
+                row[j] -= factor * pivot[j]
+    return True

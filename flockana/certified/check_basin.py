@@ -11,12 +11,12 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
-from flockana.certified.check import ensure, unit
+from flockana.certified.balls import ball, hull, square
+from flockana.certified.check import ensure, positive, unit
 from flockana.certified.check_net import ROOT_TWO, Net, Pair
 from flockana.certified.forms import BINARY, NUMBER, PAIR_LAW, WHOLE
-from flockana.certified.intervals import ball, square
 
 DIGITS = 45
 STATED, OF_RATE = 4, 3  # significant digits
@@ -56,7 +56,7 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
         ensure(round_down_float(data["distance"], apart), "the distance is not that of the closest pair")
         yield "no two agents come nearer than the distance stated"
         for bond, pairs in zip(data["bonds"], bonds, strict=True):
-            rest = net.hull([lengths[pair] for pair in pairs])
+            rest = hull(*(lengths[pair] for pair in pairs))
             ensure(
                 len(bond["along"]) == len(bond["across"]) == shells, "a bond has other than one bound for each shell"
             )
@@ -74,10 +74,10 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
                 for pair in pairs
             }
             matrix = net.radial(x, gaps, floors)
-            ensure(positive(matrix, stated), f"shell {k}: the curvature is not proved")
+            ensure(positive(matrix.tolist(), ball(stated)), f"shell {k}: the curvature is not proved")
             ensure(stated % unit(stated, STATED) == 0, f"shell {k}: the curvature has too many digits")
             ensure(
-                not positive(matrix, stated + unit(stated, STATED)),
+                not positive(matrix.tolist(), ball(stated + unit(stated, STATED))),
                 f"shell {k}: more than the curvature stated is true",
             )
         yield "the curvature of U along displacements is at least what is stated, shell by shell"
@@ -107,9 +107,10 @@ def _conclusions(
     second, degree = Fraction(data["second_eigenvalue"]), Fraction(data["degree"])
     weak = {pair: net.weight(length + away).lower() for pair, length in lengths.items()}
     laplacian = net.laplacian(weak)
-    ensure(second >= 0 and (second == 0 or positive(laplacian, second)), "the net's second eigenvalue is not proved")
+    proved = second >= 0 and (second == 0 or positive(laplacian.tolist(), ball(second)))
+    ensure(proved, "the net's second eigenvalue is not proved")
     more = second + unit(second, STATED) if second else Fraction(1, 10**6)
-    ensure(not positive(laplacian, more), "the net's second eigenvalue is larger than stated")
+    ensure(not positive(laplacian.tolist(), ball(more)), "the net's second eigenvalue is larger than stated")
     near = {pair: net.weight((length - away).max(arb(0))) for pair, length in lengths.items()}
     degrees = [sum((w for pair, w in near.items() if i in pair), arb(0)).upper() for i in range(net.n)]
     ensure(round_down_float(str(-degree), -max(degrees)), "the largest degree is not that of the net")
@@ -141,19 +142,3 @@ def round_down_float(stated: str, value: Any, digits: int = STATED) -> bool:
     if isinstance(value, Fraction):
         return number <= value < above
     return bool(ball(number) <= value) and bool(value < ball(above))
-
-
-def positive(matrix: arb_mat, shift: Fraction) -> bool:
-    """Return whether every symmetric matrix in the balls, less shift·1, is certainly positive definite."""
-    rows = [
-        [entry - ball(shift) if i == j else entry for j, entry in enumerate(row)]
-        for i, row in enumerate(matrix.tolist())
-    ]
-    for k, pivot in enumerate(rows):
-        if not pivot[k] > 0:
-            return False
-        for row in rows[k + 1 :]:
-            factor = row[k] / pivot[k]
-            for j in range(k + 1, len(rows)):
-                row[j] -= factor * pivot[j]
-    return True

@@ -14,11 +14,10 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
+from flockana.certified.balls import AlphaParameters, ball, square
 from flockana.certified.check_sphere import Sphere
 from flockana.certified.intervals import (
-    AlphaParameters,
     adjacency,
-    ball,
     bump_slope,
     d_alpha,
     phi_alpha,
@@ -27,7 +26,6 @@ from flockana.certified.intervals import (
     r_alpha,
     shift,
     sigma_of_square,
-    square,
 )
 
 Vector = list[arb]

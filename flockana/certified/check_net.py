@@ -12,16 +12,9 @@ from typing import Any
 
 from flint import arb, arb_mat
 
+from flockana.certified.balls import AlphaParameters, ball, square
 from flockana.certified.check import ensure
-from flockana.certified.intervals import (
-    AlphaParameters,
-    adjacency,
-    ball,
-    phi_alpha,
-    phi_alpha_slope,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.intervals import adjacency, phi_alpha, phi_alpha_slope, sigma_of_square
 
 ROOT_TWO = Fraction("1.4142136")  # its square is above 2: |w_j − w_i| <= √2 ‖w‖
 _DEEPEST = 24  # halvings of a cell of lengths
@@ -61,13 +54,6 @@ class Net:
     def weight(self, length: arb) -> arb:
         """Return the weight a_ij at a length."""
         return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
-
-    def hull(self, lengths: Sequence[arb]) -> arb:
-        """Return one ball around several."""
-        total = lengths[0]
-        for length in lengths[1:]:
-            total = total.union(length)
-        return total
 
     def equilibrium(self) -> list[list[arb]]:
         """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0.

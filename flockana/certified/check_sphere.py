@@ -13,18 +13,8 @@ from typing import Any
 
 from flint import arb, arb_series
 
-from flockana.certified.intervals import (
-    BetaParameters,
-    ball,
-    bump,
-    bump_slope,
-    d_beta,
-    phi_beta,
-    phi_beta_slope,
-    psi_beta,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.balls import BetaParameters, ball, dot, square
+from flockana.certified.intervals import bump, bump_slope, d_beta, phi_beta, phi_beta_slope, psi_beta, sigma_of_square
 
 
 @dataclass(frozen=True)
@@ -78,14 +68,14 @@ class Sphere:
             rho = arb_series([1]) if piece == 0 else (1 + ((z / d_beta(self.par) - h) / (1 - h)).cos_pi()) / 2
             s = z - d_beta(self.par)
             action = rho * (s / (1 + s * s).sqrt() - 1)
-        size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), _dot(e, v)
+        size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), dot(e, v)
         share = self.radius / distance
         return [-size * a - self.drag * rho * (w - share * (w - along * a)) for a, w in zip(e, v, strict=True)]
 
     def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
         """Return ∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
         e, distance = self._direction(x)
-        c, along, share = distance - self.radius, _dot(e, v), self.radius / distance
+        c, along, share = distance - self.radius, dot(e, v), self.radius / distance
         stretch, z = 1 + ball(self.par.eps) * square(c), sigma_of_square(square(c), self.par.eps)
         action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
         fading = bump_slope(z / d_beta(self.par), self.par.h) / d_beta(self.par) * c / stretch.sqrt()
@@ -109,8 +99,3 @@ class Sphere:
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
         distance = sum(squares[1:], squares[0]).sqrt()
         return [a / distance for a in away], distance
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    products = [x * y for x, y in zip(a, b, strict=True)]
-    return sum(products[1:], products[0])

@@ -16,7 +16,6 @@ Algorithm 3, with one at rest, among spheres.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -25,12 +24,13 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, arb_series, ctx
 
-from flockana.certified.check import check_data, ensure
+from flockana.certified.balls import AlphaParameters, ball, series_length
+from flockana.certified.check import check_data, ensure, positive
 from flockana.certified.check_motion import Motion, Vector, number
 from flockana.certified.check_sphere import Sphere
 from flockana.certified.decimals import at_least, at_most
 from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH
-from flockana.certified.intervals import AlphaParameters, ball, c_star
+from flockana.certified.intervals import c_star
 
 BITS = 128
 
@@ -178,7 +178,7 @@ class Run(Motion):
         total = []
         if None in pieces:
             begin, during = self.at(path, arb(0)), [row[0] for row in whole]
-            with capped(1):
+            with series_length(1):
                 bend = self.force(t, [arb_series([x]) for x in begin], pieces)
             along = (self.slope(during) * arb_mat([[row[1]] for row in whole])).entries()
             drift = [self.gain["c1_gamma"] * self.velocity[k % self.m] for k in range(size)]
@@ -186,7 +186,7 @@ class Run(Motion):
                 jerk = 6 * whole[k][3] - along[size + k] - drift[k]
                 total.append(abs(2 * path[k][2] - bend[k][0]) + h * abs(jerk))
             return self.length(total)
-        with capped(order):
+        with series_length(order):
             first = self.force(t, [arb_series(row) for row in self.shifted(path, arb(0))], pieces)
             last = self.force(t + span, [arb_series(row) for row in whole], pieces)
             for k in range(size):
@@ -214,28 +214,6 @@ class Run(Motion):
         """Return √(w²|q|² + |p|²)."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
-
-
-@contextmanager
-def capped(length: int) -> Iterator[None]:
-    """Set the length of series inside the block."""
-    before, ctx.cap = ctx.cap, length
-    try:
-        yield
-    finally:
-        ctx.cap = before
-
-
-def positive(rows: list[list[arb]]) -> bool:
-    """Return whether every symmetric matrix in the balls is certainly positive definite."""
-    for k, pivot in enumerate(rows):
-        if not pivot[k] > 0:
-            return False
-        for row in rows[k + 1 :]:
-            factor = row[k] / pivot[k]
-            for j in range(k + 1, len(rows)):
-                row[j] -= factor * pivot[j]
-    return True
 
 
 def same(stated: str, value: arb, *, down: bool) -> bool:

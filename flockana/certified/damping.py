@@ -11,8 +11,8 @@ from collections.abc import Mapping
 
 from flint import arb, arb_mat, fmpq
 
+from flockana.certified.balls import ball, square
 from flockana.certified.decimals import round_down, round_up
-from flockana.certified.intervals import ball, square
 from flockana.certified.krawczyk import least_eigenvalue
 from flockana.certified.structure import Structure
 

@@ -19,9 +19,9 @@ from flint import arb, ctx, fmpq
 
 from flockana.base.checks import ensure_nonnegative
 from flockana.base.errors import ArgumentError
+from flockana.certified.balls import ball
 from flockana.certified.basin import DIGITS, Basin
 from flockana.certified.decimals import round_down, round_up
-from flockana.certified.intervals import ball
 
 _STATED = 4
 

@@ -8,29 +8,18 @@ only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from flint import arb, arb_mat, arb_series, ctx
+from flint import arb, arb_mat, arb_series
 
 from flockana.certified.agent_terms import AgentTerm
-from flockana.certified.intervals import square
+from flockana.certified.balls import norm2, series_length
 from flockana.certified.krawczyk import column
-from flockana.certified.series import PairNumbers, Piece, pair_hull, pair_series, pair_slopes
+from flockana.certified.series import PairNumbers, Piece
 
 Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agents of each term
-
-
-@contextmanager
-def series_length(length: int) -> Iterator[None]:
-    """Set the length of power series inside the block."""
-    before, ctx.cap = ctx.cap, length
-    try:
-        yield
-    finally:
-        ctx.cap = before
 
 
 @dataclass(frozen=True)
@@ -62,7 +51,7 @@ class Flow:
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """Return the piece of the law on which each pair and each agent is, anywhere in a box."""
         q = self.split(state)[0]
-        pairs = [self.pair.piece(squared_distance(q[i], q[j])) for i, j in combinations(range(self.n), 2)]
+        pairs = [self.pair.piece(norm2(_minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
 
     def split(self, state: Sequence[Any]) -> tuple[list[Sequence[Any]], list[Sequence[Any]]]:
@@ -78,7 +67,7 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = [b - a for a, b in zip(q[i], q[j], strict=True)], _minus(p[j], p[i])
-            stress, adjacency = _pair(_norm2(apart), self.pair, piece)
+            stress, adjacency = self.pair.pair(norm2(apart), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
                 force = stress * apart[k] + adjacency * relative[k]
@@ -96,10 +85,10 @@ class Flow:
         heat = zero
         for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
             if piece is not Piece.OUT:
-                adjacency = _pair(_norm2(_minus(q[j], q[i])), self.pair, piece)[1]
+                adjacency = self.pair.pair(norm2(_minus(q[j], q[i])), piece)[1]
                 if isinstance(adjacency, arb):
                     adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-                heat = heat + adjacency * _norm2(_minus(p[j], p[i]))
+                heat = heat + adjacency * norm2(_minus(p[j], p[i]))
         terms = [
             sum((term.power(q[i], p[i], own[i]) for i in range(self.n) if own[i] is not Piece.OUT), zero)
             for term, own in self._agents(pieces)
@@ -114,7 +103,8 @@ class Flow:
             if piece is Piece.OUT:
                 continue
             apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
-            stress, adjacency, bend, fade = _pair_and_slopes(_norm2(apart), self.pair, piece)
+            s2 = norm2(apart)
+            (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
             way = [
                 2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)
@@ -190,36 +180,13 @@ class Flow:
         return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
 
 
-def squared_distance(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Return ‖a − b‖² of two boxes, never below 0."""
-    return sum((square(x - y) for x, y in zip(a, b, strict=True)), arb(0))
-
-
 def stacked(upper: arb_mat, lower: arb_mat) -> arb_mat:
     """Return one matrix stacked above another."""
     return arb_mat(upper.nrows() + lower.nrows(), upper.ncols(), upper.entries() + lower.entries())
 
 
-def _norm2(x: Sequence[Any]) -> Any:
-    """Return ‖x‖² of balls or of series."""
-    return sum(
-        (square(a) if isinstance(a, arb) else a * a for a in x[1:]),
-        square(x[0]) if isinstance(x[0], arb) else x[0] * x[0],
-    )
-
-
 def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
     return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def _pair(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any]:
-    """Return (stress, adjacency) on a ball or along a series."""
-    return pair_hull(s2, law)[:2] if isinstance(s2, arb) else pair_series(s2, law, piece)
-
-
-def _pair_and_slopes(s2: Any, law: PairNumbers, piece: Piece) -> tuple[Any, Any, Any, Any]:
-    """Return (stress, adjacency, and their slopes by s²) on a ball or along a series."""
-    return pair_hull(s2, law) if isinstance(s2, arb) else (*pair_series(s2, law, piece), *pair_slopes(s2, law, piece))
 
 
 def _table(size: int) -> list[list[Any]]:

@@ -1,109 +1,18 @@
-"""The scalar functions of flocking in ball arithmetic (Arb): every result encloses the true values.
+"""The scalar functions of flocking in ball arithmetic (Arb), as the checkers of certificates compute them.
 
-An argument is an `arb` ball, or an exact number (int, Fraction, fmpq; a float counts with its binary value): the result
-contains the function's values on all of it. Comparisons of balls are true only if certain. Work at a precision of your
-choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `square`: ``x**2`` gives nan there.
+Every result encloses the true values on all of a ball (`flockana.certified.balls`). They are written by hand, and
+share nothing with what proves: that is generated (`flockana.certified.formulas`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
-from fractions import Fraction
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, ctx
 
-
-def ball(x: Any) -> arb:
-    """Return an exact number, or a ball, as a ball at the present precision."""
-    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
-
-
-def exact(x: Any) -> fmpq:
-    """Return a number as the rational of its printed decimal, 0.1 = 1/10."""
-    fraction = Fraction(str(x))
-    return fmpq(fraction.numerator, fraction.denominator)
-
-
-def hull(*balls: arb) -> arb:
-    """Return the smallest ball around several."""
-    first, *rest = balls
-    for one in rest:
-        first = first.union(one)
-    return first
-
-
-def square(x: arb) -> arb:
-    """Return x², never below 0."""
-    return (x * x).nonnegative_part()
-
-
-def monotone(f: Callable[[arb], arb], x: arb) -> arb:
-    """Return the range of a monotone function on a ball, from the ends of the ball."""
-    return f(x) if x.is_exact() else hull(f(x.lower()), f(x.upper()))
-
-
-def clamp(x: arb) -> arb:
-    """Return the nearest number in [0, 1]."""
-    return x.max(arb(0)).min(arb(1))
-
-
-@dataclass(frozen=True)
-class AlphaParameters:
-    """Parameters of the α-pair law as exact rationals of their printed decimals."""
-
-    d: fmpq = 7
-    r: fmpq = "8.4"
-    eps: fmpq = "0.1"
-    h: fmpq = "0.2"
-    a: fmpq = 5
-    b: fmpq = 5
-
-    def __post_init__(self) -> None:
-        _rationals(self)
-        if not (0 < self.d < self.r and self.eps > 0 and 0 < self.h < 1 and 0 < self.a <= self.b):
-            raise ValueError(f"{self}: expected 0 < d < r, eps > 0, 0 < h < 1, 0 < a <= b")
-
-    @classmethod
-    def of(cls, alpha: Any) -> AlphaParameters:
-        """Return the parameters of an `AlphaInteraction` as exact decimals."""
-        return cls(**{field.name: getattr(alpha, field.name) for field in fields(cls)})
-
-    def __str__(self) -> str:
-        return _listed(self)
-
-
-@dataclass(frozen=True)
-class BetaParameters:
-    """Parameters of the β-pair law as exact rationals: d' (here d), ε and h."""
-
-    d: fmpq = "4.2"
-    eps: fmpq = "0.1"
-    h: fmpq = "0.9"
-
-    def __post_init__(self) -> None:
-        _rationals(self)
-        if not (self.d > 0 and self.eps > 0 and 0 < self.h < 1):
-            raise ValueError(f"{self}: expected d > 0, eps > 0, 0 < h < 1")
-
-    @classmethod
-    def of(cls, beta: Any) -> BetaParameters:
-        """Return the parameters of a `BetaInteraction` as exact decimals."""
-        return cls(**{field.name: getattr(beta, field.name) for field in fields(cls)})
-
-    def __str__(self) -> str:
-        return _listed(self)
-
-
-def _rationals(bundle: Any) -> None:
-    for field in fields(bundle):
-        object.__setattr__(bundle, field.name, exact(getattr(bundle, field.name)))
-
-
-def _listed(bundle: Any) -> str:
-    return ", ".join(f"{field.name} = {getattr(bundle, field.name)}" for field in fields(bundle))
+from flockana.certified.balls import AlphaParameters, BetaParameters, ball, clamp, hull, monotone, square
 
 
 def sigma_of_square(s: arb, eps: Any) -> arb:
@@ -149,11 +58,6 @@ def phi(s: arb, a: Any, b: Any) -> arb:
     return ((ball(a) + ball(b)) * sigma_1(ball(s) + shift(a, b)) + ball(a) - ball(b)) / 2
 
 
-def phi_slope(s: arb, a: Any, b: Any) -> arb:
-    """Return φ'(s) > 0."""
-    return (ball(a) + ball(b)) / 2 * sigma_1_slope(ball(s) + shift(a, b))
-
-
 def d_alpha(par: AlphaParameters) -> arb:
     """Return ‖d‖_σ."""
     return sigma_norm(ball(par.d), par.eps)
@@ -169,69 +73,95 @@ def adjacency(z: arb, par: AlphaParameters) -> arb:
     return bump(ball(z) / r_alpha(par), par.h)
 
 
-def phi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α)."""
-    return adjacency(z, par) * phi(ball(z) - d_alpha(par), par.a, par.b)
+def d_beta(par: BetaParameters) -> arb:
+    """Return ‖d'‖_σ."""
+    return sigma_norm(ball(par.d), par.eps)
 
 
-def phi_alpha_slope(z: arb, par: AlphaParameters) -> arb:
-    """Return dφ_α/dz, continuous."""
-    x, s, cutoff = ball(z) / r_alpha(par), ball(z) - d_alpha(par), r_alpha(par)
-    falling = bump_slope(x, par.h) / cutoff * phi(s, par.a, par.b)
-    return falling + bump(x, par.h) * phi_slope(s, par.a, par.b)
+@dataclass(frozen=True)
+class _Action:
+    """Action ρ_h(z/cutoff)(A σ₁(z + offset) + B), zero where the potential is, of either law."""
 
+    factor: arb
+    level: arb
+    offset: arb
+    zero: arb
+    cutoff: arb
+    h: arb
 
-def psi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """Return ψ_α(z) = ∫_{d_α}^{z} φ_α for z >= 0: decreasing to d_α, increasing to r_α, constant beyond.
+    def at(self, z: arb) -> arb:
+        """Return the action."""
+        return bump(z / self.cutoff, self.h) * self._smooth(z)
 
-    Closed form where ρ_h = 1; on the taper the integral is enclosed by Arb.
-    """
-    z, zero = ball(z).nonnegative_part(), d_alpha(par)
-    if z.is_exact():
-        return _psi_alpha(z, par)
-    if z <= zero or z >= zero:
-        return monotone(lambda z: _psi_alpha(z, par), z)
-    return hull(arb(0), _psi_alpha(z.lower(), par), _psi_alpha(z.upper(), par))
+    def slope(self, z: arb) -> arb:
+        """Return its derivative, continuous."""
+        x = z / self.cutoff
+        rising = self.factor * sigma_1_slope(z + self.offset)
+        return bump_slope(x, self.h) / self.cutoff * self._smooth(z) + bump(x, self.h) * rising
 
+    def _smooth(self, z: arb) -> arb:
+        return self.factor * sigma_1(z + self.offset) + self.level
 
-def _psi_alpha(z: arb, par: AlphaParameters) -> arb:
-    """Return ψ_α at a point."""
-    at_zero, at_cutoff = _alpha_levels(par, ctx.prec)
-    return (at_cutoff if z >= r_alpha(par) else _alpha_from_knee(z, par)) - at_zero
+    def potential(self, z: arb) -> arb:
+        """Return the integral from the zero: decreasing to it, increasing to the cutoff, constant beyond."""
+        if z.is_exact():
+            return self._potential(z)
+        if z <= self.zero or z >= self.zero:
+            return monotone(self._potential, z)
+        return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
+
+    def _potential(self, z: arb) -> arb:
+        """Return the potential at a point."""
+        return (self.at_cutoff if z >= self.cutoff else self._from_knee(z)) - self.at_zero
+
+    @cached_property
+    def at_zero(self) -> arb:
+        """Integral from h times the cutoff to the zero."""
+        return self._from_knee(self.zero)
+
+    @cached_property
+    def at_cutoff(self) -> arb:
+        """Integral from h times the cutoff to the cutoff."""
+        return self._from_knee(self.cutoff)
+
+    def _from_knee(self, z: arb) -> arb:
+        """Return the integral from h times the cutoff: closed form before it, enclosed by Arb after it."""
+        knee = self.h * self.cutoff
+        before = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
+        after = arb(0) if z <= knee else acb.integral(self._on_taper, knee, z.max(knee).min(self.cutoff)).real
+        return before + after
+
+    def _closed(self, z: arb) -> arb:
+        return self.factor * (1 + square(z + self.offset)).sqrt() + self.level * z
+
+    def _on_taper(self, z: acb, analytic: bool) -> acb:
+        s = z + self.offset
+        action = self.factor * s * (1 + s * s).rsqrt(analytic=analytic) + self.level
+        return (1 + ((z / self.cutoff - self.h) / (1 - self.h)).cos_pi()) * action / 2
 
 
 @cache
-def _alpha_levels(par: AlphaParameters, prec: int) -> tuple[arb, arb]:
-    """Return the integrals of φ_α from h r_α to d_α and to r_α (cached by precision)."""
-    return _alpha_from_knee(d_alpha(par), par), _alpha_from_knee(r_alpha(par), par)
+def _action(par: AlphaParameters | BetaParameters, prec: int) -> _Action:
+    """Return the action of a law, at a precision."""
+    if isinstance(par, BetaParameters):
+        return _Action(arb(1), arb(-1), -d_beta(par), d_beta(par), d_beta(par), ball(par.h))
+    a, b, zero = ball(par.a), ball(par.b), d_alpha(par)
+    return _Action((a + b) / 2, (a - b) / 2, shift(par.a, par.b) - zero, zero, r_alpha(par), ball(par.h))
 
 
-def _alpha_from_knee(z: arb, par: AlphaParameters) -> arb:
-    """Return the integral of φ_α from h r_α to z: closed form before, enclosed by Arb after."""
-    cutoff = r_alpha(par)
-    knee = ball(par.h) * cutoff
-    before = arb(0) if z >= knee else _alpha_closed(z.min(knee), par) - _alpha_closed(knee, par)
-    after = arb(0) if z <= knee else _alpha_taper(knee, z.max(knee).min(cutoff), par)
-    return before + after
+def phi_alpha(z: arb, par: AlphaParameters | BetaParameters) -> arb:
+    """Return φ_α(z) = ρ_h(z/r_α) φ(z − d_α)."""
+    return _action(par, ctx.prec).at(ball(z))
 
 
-def _alpha_closed(z: arb, par: AlphaParameters) -> arb:
-    """Return an antiderivative of φ(z − d_α)."""
-    a, b, s = ball(par.a), ball(par.b), z - d_alpha(par) + shift(par.a, par.b)
-    return ((a + b) * (1 + square(s)).sqrt() + (a - b) * z) / 2
+def phi_alpha_slope(z: arb, par: AlphaParameters | BetaParameters) -> arb:
+    """Return dφ_α/dz, continuous."""
+    return _action(par, ctx.prec).slope(ball(z))
 
 
-def _alpha_taper(low: arb, high: arb, par: AlphaParameters) -> arb:
-    """Return the integral of φ_α between two points of the taper."""
-    a, b, h, cutoff = ball(par.a), ball(par.b), ball(par.h), r_alpha(par)
-    offset = shift(par.a, par.b) - d_alpha(par)
-
-    def integrand(z: acb, analytic: bool) -> acb:
-        s = z + offset
-        action = (a + b) * s * (1 + s * s).rsqrt(analytic=analytic) + (a - b)
-        return (1 + ((z / cutoff - h) / (1 - h)).cos_pi()) * action / 4
-
-    return acb.integral(integrand, low, high).real
+def psi_alpha(z: arb, par: AlphaParameters | BetaParameters) -> arb:
+    """Return ψ_α(z) = ∫_{d_α}^{z} φ_α for z >= 0: decreasing to d_α, increasing to r_α, constant beyond."""
+    return _action(par, ctx.prec).potential(ball(z).nonnegative_part())
 
 
 def c_star(par: AlphaParameters) -> arb:
@@ -244,49 +174,5 @@ def far_potential(par: AlphaParameters) -> arb:
     return psi_alpha(r_alpha(par), par)
 
 
-def d_beta(par: BetaParameters) -> arb:
-    """Return ‖d'‖_σ."""
-    return sigma_norm(ball(par.d), par.eps)
-
-
-def phi_beta(z: arb, par: BetaParameters) -> arb:
-    """Return φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1)."""
-    return bump(ball(z) / d_beta(par), par.h) * (sigma_1(ball(z) - d_beta(par)) - 1)
-
-
-def phi_beta_slope(z: arb, par: BetaParameters) -> arb:
-    """Return dφ_β/dz, continuous."""
-    x, s = ball(z) / d_beta(par), ball(z) - d_beta(par)
-    falling = bump_slope(x, par.h) / d_beta(par) * (sigma_1(s) - 1)
-    return falling + bump(x, par.h) * sigma_1_slope(s)
-
-
-def psi_beta(z: arb, par: BetaParameters) -> arb:
-    """Return ψ_β(z) = ∫_{d_β}^{z} φ_β for z >= 0: decreasing to d_β, 0 beyond."""
-    return monotone(lambda z: _psi_beta(z, par), ball(z).nonnegative_part())
-
-
-def _psi_beta(z: arb, par: BetaParameters) -> arb:
-    """Return ψ_β at a point."""
-    cutoff = d_beta(par)
-    if z >= cutoff:
-        return arb(0)
-    knee = ball(par.h) * cutoff
-    before = arb(0) if z >= knee else _beta_closed(z.min(knee) - cutoff) - _beta_closed(knee - cutoff)
-    return before + _beta_taper(z.max(knee).min(cutoff), par)
-
-
-def _beta_closed(s: arb) -> arb:
-    """Return an antiderivative of σ₁(s) − 1."""
-    return (1 + square(s)).sqrt() - s
-
-
-def _beta_taper(low: arb, par: BetaParameters) -> arb:
-    """Return the integral of −φ_β from a point of the taper to its end."""
-    h, cutoff = ball(par.h), d_beta(par)
-
-    def integrand(z: acb, analytic: bool) -> acb:
-        s = z - cutoff
-        return (1 + ((z / cutoff - h) / (1 - h)).cos_pi()) * (1 - s * (1 + s * s).rsqrt(analytic=analytic)) / 2
-
-    return acb.integral(integrand, low, cutoff).real
+# φ_β(z) = ρ_h(z/d_β)(σ₁(z − d_β) − 1), dφ_β/dz, and ψ_β(z) = ∫_{d_β}^{z} φ_β, of `BetaParameters`
+phi_beta, phi_beta_slope, psi_beta = phi_alpha, phi_alpha_slope, psi_alpha

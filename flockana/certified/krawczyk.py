@@ -16,11 +16,6 @@ def column(values: Sequence[arb]) -> arb_mat:
     return arb_mat(len(values), 1, list(values))
 
 
-def midpoints(matrix: arb_mat) -> arb_mat:
-    """Return the midpoints of a matrix of balls."""
-    return arb_mat(matrix.nrows(), matrix.ncols(), [entry.mid() for entry in matrix.entries()])
-
-
 def identity(size: int) -> arb_mat:
     """Return the identity matrix."""
     return arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
@@ -39,7 +34,7 @@ def enclose_zero(
     """
     box = [x + arb(0, radius) for x in centre]
     enclosure = slope(box)
-    y = midpoints(midpoints(enclosure).inv())
+    y = enclosure.mid().inv().mid()
     shift = (identity(len(box)) - y * enclosure) * column([arb(0, radius)] * len(box)) - y * column(f(centre))
     if not all(abs(entry) < radius for entry in shift.entries()):
         return None

@@ -9,9 +9,9 @@ from flint import arb
 
 from flockana.base.errors import ArgumentError
 from flockana.certified.agent_terms import AgentTerm, Pull
+from flockana.certified.balls import exact
 from flockana.certified.flow import Flow
-from flockana.certified.intervals import exact
-from flockana.certified.obstacle_terms import BetaNumbers, SphereTerm
+from flockana.certified.obstacle_terms import SphereTerm
 from flockana.certified.series import PairNumbers
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget, StaticTarget
@@ -60,13 +60,15 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
         terms = (*terms, *sphere_terms(law))
         rates += [gains.c2_beta, sqrt(gains.c1_beta)]
     pace = max(rates) or 1.0
-    return Flow(n, m, PairNumbers.of(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms)
+    return Flow(
+        n, m, PairNumbers.of_alpha(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms
+    )
 
 
 def sphere_terms(law: Algorithm3) -> tuple[SphereTerm, ...]:
     """Return the terms of a law's obstacles at the present precision."""
     gains: Any = law.gains
-    beta, pull, drag = BetaNumbers.of(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
+    beta, pull, drag = PairNumbers.of_beta(law.beta), arb(exact(gains.c1_beta)), arb(exact(gains.c2_beta))
     spheres = [cast(Sphere, obstacle) for obstacle in law.obstacles]
     places = [(tuple(arb(exact(y)) for y in sphere.centre), arb(exact(sphere.radius))) for sphere in spheres]
     return tuple(SphereTerm(beta, centre, radius, pull, drag) for centre, radius in places)

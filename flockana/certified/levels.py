@@ -11,18 +11,9 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from flockana.certified.intervals import (
-    AlphaParameters,
-    ball,
-    c_star,
-    exact,
-    far_potential,
-    psi_alpha,
-    sigma_norm,
-    sigma_of_square,
-    square,
-)
-from flockana.certified.structural_energy import BITS, scaled
+from flockana.certified.balls import ball, exact, square
+from flockana.certified.series import PairNumbers
+from flockana.certified.structural_energy import BITS
 from flockana.equilibria.barrier import coincident_lattice, turan_pairs
 from flockana.lattice import harborth
 
@@ -30,68 +21,64 @@ _HALVINGS = 40  # of the bracket of the shortest length of a bound pair
 
 
 def gain(law: Any) -> arb:
-    """Return c1α ℓ², the factor of V in units of ℓ."""
-    return arb(exact(law.gains.c1_alpha)) * arb(exact(law.alpha.unit)) ** 2
+    """Return c1α, the factor of V."""
+    return arb(exact(law.gains.c1_alpha))
 
 
 def coincident_floor(alpha: Any, n: int, m: int) -> arb:
-    """Return a lower bound of V of n agents, two of which coincide, in units of ℓ²."""
+    """Return a lower bound of V of n agents, two of which coincide."""
     with ctx.workprec(BITS):
-        par = scaled(alpha)
-        clique = _largest_clique(par, m)
+        pair, clique = PairNumbers.of_alpha(alpha), _largest_clique(alpha, m)
         if clique is None:
-            return c_star(par)
-        pairs = (n - 1) * (n - 2) // 2 - turan_pairs(n - 1, clique)
-        return c_star(par) + pairs * far_potential(par)
+            return pair.c_star
+        return pair.c_star + ((n - 1) * (n - 2) // 2 - turan_pairs(n - 1, clique)) * pair.far
 
 
 def coincident_state(alpha: Any, n: int, m: int) -> arb:
-    """Return V, in units of ℓ², of a state of n agents two of which coincide."""
+    """Return V of a state of n agents two of which coincide."""
     q = coincident_lattice(alpha, n, m)
     with ctx.workprec(BITS):
-        par, area = scaled(alpha), arb(exact(alpha.unit)) ** 2
         s2 = (
             sum((square(arb(float(a)) - arb(float(b))) for a, b in zip(x, y, strict=True)), arb(0))
             for x, y in _pairs(q)
         )
-        return sum((psi_alpha(sigma_of_square(s / area, par.eps), par) for s in s2), arb(0))
+        return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
 
 def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
-    """Return V, in units of ℓ², of the best lattice of n − 1 agents with one agent far away; None if unknown."""
+    """Return V of the best lattice of n − 1 agents with one agent far away; None if unknown."""
     with ctx.workprec(BITS):
-        par = scaled(alpha)
-        square_of_kappa = (par.r / par.d) ** 2
+        square_of_kappa = (exact(alpha.r) / exact(alpha.d)) ** 2
         if n < 2 or square_of_kappa >= (4 if m == 1 else 3):
             return None
         bonds = n - 2 if m == 1 else harborth(n - 1)
-        return (n * (n - 1) // 2 - bonds) * far_potential(par)
+        return (n * (n - 1) // 2 - bonds) * PairNumbers.of_alpha(alpha).far
 
 
 def _pairs(q: Any) -> list[tuple[Any, Any]]:
     return [(q[i], q[j]) for i in range(len(q)) for j in range(i + 1, len(q))]
 
 
-def _shortest_bound(par: AlphaParameters) -> fmpq | None:
+def _shortest_bound(alpha: Any) -> fmpq | None:
     """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none.
 
     ψ_α falls up to d_α, so that it holds below any length at which it holds.
     """
-    far, low, high = far_potential(par), fmpq(0), par.d
-    if not c_star(par) > far:
+    pair, low, high = PairNumbers.of_alpha(alpha), fmpq(0), exact(alpha.d)
+    if not pair.c_star > pair.far:
         return None
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        low, high = (middle, high) if psi_alpha(sigma_norm(ball(middle), par.eps), par) > far else (low, middle)
+        low, high = (middle, high) if pair.potential(square(ball(middle))) > pair.far else (low, middle)
     return low
 
 
-def _largest_clique(par: AlphaParameters, m: int) -> int | None:
+def _largest_clique(alpha: Any, m: int) -> int | None:
     """Return a bound of the number of points whose pairs all have ψ_α < ψ_α(r_α); None if unbounded."""
-    shortest = _shortest_bound(par)
+    shortest = _shortest_bound(alpha)
     if not shortest:
         return None
-    ratio = ball(par.r / shortest)
+    ratio = ball(exact(alpha.r) / shortest)
     packed = floor(float(((1 + 2 * ratio * ball(fmpq(m, 2 * (m + 1))).sqrt()) ** m).upper()) * (1 + 2.0**-40))
     if m == 1:
         return min(packed, ceil(float(ratio.upper()) * (1 + 2.0**-40)))

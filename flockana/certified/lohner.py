@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from flint import arb, arb_mat
 
+from flockana.certified.balls import hull
 from flockana.certified.flow import Flow, Pieces
-from flockana.certified.intervals import hull
-from flockana.certified.krawczyk import column, identity, midpoints
+from flockana.certified.krawczyk import column, identity
 from flockana.certified.series import Piece
 
 _INFLATIONS = 12  # of a candidate enclosure, before a step is called too long
@@ -208,7 +208,7 @@ def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) 
     centre = tuple(x.mid() for x in moved)
     rest = column([x - y for x, y in zip(moved, centre, strict=True)])
     c, b = slope * before.c, slope * before.b
-    exact = midpoints(c)
+    exact = c.mid()
     rest += (c - exact) * column(before.start)
     frame = _frame(b, [float(x.abs_upper()) for x in before.error], pace)
     back = frame.inv()

@@ -27,8 +27,8 @@ import numpy as np
 from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
+from flockana.certified.balls import ball
 from flockana.certified.decimals import round_down, round_up
-from flockana.certified.intervals import ball
 
 _DIGITS, _CHOSEN = 3, 9  # of what is proved, and of the choice, some of whose differences are small
 _LEAST, _STEPS = 1e-6, 4000  # values of ε, from such a share of the largest: 0.4 % apart

@@ -23,7 +23,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from flockana.base.checks import FloatArray
-from flockana.certified.intervals import ball, square
+from flockana.certified.balls import ball, square
 from flockana.certified.structure import Structure
 
 LEVELS = 4  # cells of the first cut: 2^4 to either side, as many as there are shells

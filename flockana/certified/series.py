@@ -1,41 +1,39 @@
-"""α-pair law along a path as power series in time (Arb), piece by piece.
+"""Pair laws in balls and along paths as power series in time (Arb), piece by piece.
 
 ρ_h is only C¹ at z = h r_α and at z = r_α. Between these distances, below and beyond, φ_α and a_ij are analytic in the
 squared distance, so that the Taylor coefficients of a pair's force follow from those of its path by series arithmetic.
+The formulas are generated (`flockana.certified.formulas`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
+from functools import cached_property
 from typing import Any
 
-from flint import arb, arb_series
+from flint import acb, arb
 
-from flockana.certified.intervals import bump, bump_slope, exact, phi, phi_slope, shift, sigma_of_square
-
-
-class Piece(Enum):
-    """Piece of ρ_h on which the distance of a pair lies, or possibly two."""
-
-    CORE = "z < h r_α"
-    TAPER = "h r_α < z < r_α"
-    OUT = "z > r_α"
-    SWITCH = "about a distance where pieces meet"
+from flockana.certified import formulas
+from flockana.certified.balls import Piece as Piece
+from flockana.certified.balls import exact, hull, monotone
 
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """Numbers of the α-pair law as balls at one precision, lengths in units of ℓ where marked.
+    """Numbers of a pair law as balls at one precision.
+
+    The β-pair's action is the α-pair's with φ(s) = σ₁(s) − 1, which is φ of a = 0, b = 2 and c = 0.
 
     Attributes
     ----------
-    eps, h, a, b : arb
-        As of the law; ε in units of 1/ℓ².
-    offset : arb
-        c − d_α, what is added to z in φ; in units of ℓ².
-    cutoff, knee : arb
-        r_α and h r_α, in units of ℓ².
+    eps, h : arb
+        Of the σ-norm and of the bump.
+    a, b, c : arb
+        Of φ.
+    zero : arb
+        σ-norm at which the potential vanishes: d_α, or d_β.
+    cutoff : arb
+        σ-norm at which the force ends: r_α, or d_β.
     area : arb
         ℓ².
     """
@@ -44,97 +42,81 @@ class PairNumbers:
     h: arb
     a: arb
     b: arb
-    offset: arb
+    c: arb
+    zero: arb
     cutoff: arb
-    knee: arb
     area: arb
 
     @classmethod
-    def of(cls, alpha: Any) -> PairNumbers:
-        """Return the numbers of an `AlphaInteraction` as exact decimals."""
-        unit = exact(alpha.unit)
-        d, r, eps = exact(alpha.d) / unit, exact(alpha.r) / unit, exact(alpha.eps) * unit * unit
-        h, a, b = exact(alpha.h), exact(alpha.a), exact(alpha.b)
-        cutoff = sigma_of_square(arb(r * r), eps)
-        offset = shift(a, b) - sigma_of_square(arb(d * d), eps)
-        return cls(arb(eps), arb(h), arb(a), arb(b), offset, cutoff, arb(h) * cutoff, arb(unit * unit))
+    def of_alpha(cls, alpha: Any) -> PairNumbers:
+        """Return the numbers of an `AlphaInteraction`, or of exact parameters, where ℓ = 1, as exact decimals."""
+        eps, h, a, b, d, r = (arb(exact(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
+        zero, cutoff = (formulas.sigma_norm(x * x, eps) for x in (d, r))
+        return cls(eps, h, a, b, (b - a) / (4 * a * b).sqrt(), zero, cutoff, arb(exact(getattr(alpha, "unit", 1))) ** 2)
+
+    @classmethod
+    def of_beta(cls, beta: Any) -> PairNumbers:
+        """Return the numbers of a `BetaInteraction` as exact decimals."""
+        eps, h, d, unit = (arb(exact(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
+        cutoff = formulas.sigma_norm(d * d, eps)
+        return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
+
+    @property
+    def knee(self) -> arb:
+        """The σ-norm at which the bump begins to fall."""
+        return self.h * self.cutoff
 
     def piece(self, s2: arb) -> Piece:
         """Return the piece on which every squared distance in a ball lies."""
-        z = sigma_of_square(s2 / self.area, self.eps)
+        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
         if z > self.cutoff:
             return Piece.OUT
         if z < self.knee:
             return Piece.CORE
         return Piece.TAPER if z > self.knee and z < self.cutoff else Piece.SWITCH
 
+    def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
+        """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
+        return formulas.pair(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
 
-def pair_series(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """Return (stress s_ij, adjacency a_ij) along a path of squared distances, on one piece within range."""
-    slant, z = _slant_and_norm(s2, law)
-    rho, (s, root) = _bump(z, law, piece), _shifted(z, law)
-    return rho * _action(s, root, law) * slant, rho
+    def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
+        """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
+        return formulas.slopes(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
 
+    def stiffness(self, s2: arb) -> arb:
+        """Return F''(ℓ) of the potential F = ψ(‖·‖_σ), by s² = ℓ²."""
+        return formulas.stiffness(_nonnegative(s2), self, Piece.SWITCH)
 
-def pair_slopes(s2: arb_series, law: PairNumbers, piece: Piece) -> tuple[arb_series, arb_series]:
-    """Return (d s_ij/d s², d a_ij/d s²) along a path of squared distances, on one piece within range."""
-    slant, z = _slant_and_norm(s2, law)
-    rho, rho_slope, (s, root) = _bump(z, law, piece), _bump_slope(z, law, piece), _shifted(z, law)
-    action, action_slope = _action(s, root, law), (law.a + law.b) / 2 * (root * root * root)
-    along = rho_slope * action + rho * action_slope - law.eps * slant * rho * action
-    return along * slant * slant / (2 * law.area), rho_slope * slant / (2 * law.area)
+    def potential(self, s2: arb) -> arb:
+        """Return ψ at a squared distance: decreasing to its zero, increasing to the cutoff, constant beyond."""
+        z = formulas.sigma_norm(s2.nonnegative_part(), self.eps)
+        if z <= self.zero or z >= self.zero:
+            return monotone(self._potential, z)
+        return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
 
+    @cached_property
+    def far(self) -> arb:
+        """Potential of a pair out of range: ψ_α(r_α), or 0."""
+        return self._from_knee(self.cutoff) - self._from_knee(self.zero)
 
-def _slant_and_norm(s2: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """Return (1/√(1 + εs²), z = (√(1 + εs²) − 1)/ε)."""
-    square = 1 + law.eps * (s2 / law.area)
-    slant = square.rsqrt()
-    return slant, (square * slant - 1) / law.eps
+    @cached_property
+    def c_star(self) -> arb:
+        """Potential ψ(0) of a coincident pair."""
+        return self._potential(arb(0))
 
+    def _potential(self, z: arb) -> arb:
+        """Return ψ at a point."""
+        return self.far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
 
-def _shifted(z: arb_series, law: PairNumbers) -> tuple[arb_series, arb_series]:
-    """Return (s = z − d_α + c, 1/√(1 + s²)), from which φ and its slope follow."""
-    s = z + law.offset
-    return s, (1 + s * s).rsqrt()
-
-
-def _action(s: arb_series, root: arb_series, law: PairNumbers) -> arb_series:
-    """Return φ(z − d_α)."""
-    return ((law.a + law.b) * (s * root) + (law.a - law.b)) / 2
-
-
-def _bump(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """Return ρ_h(z/r_α) on a piece."""
-    if piece is Piece.CORE:
-        return arb_series([1])
-    return (1 + _phase(z, law).cos_pi()) / 2
-
-
-def _bump_slope(z: arb_series, law: PairNumbers, piece: Piece) -> arb_series:
-    """Return the derivative of ρ_h(z/r_α) on a piece."""
-    if piece is Piece.CORE:
-        return arb_series([0])
-    return -arb.pi() / (2 * (1 - law.h) * law.cutoff) * _phase(z, law).sin_pi()
+    def _from_knee(self, z: arb) -> arb:
+        """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
+        knee = self.knee
+        before = arb(0) if z >= knee else formulas.closed(z.min(knee), self) - formulas.closed(knee, self)
+        if z <= knee:
+            return before
+        end = z.max(knee).min(self.cutoff)
+        return before + acb.integral(lambda x, analytic: formulas.tapered(x, self, analytic), knee, end).real
 
 
-def _phase(z: arb_series, law: PairNumbers) -> arb_series:
-    """Return the position on the taper, from 0 to 1."""
-    return (z / law.cutoff - law.h) / (1 - law.h)
-
-
-def pair_hull(s2: arb, law: PairNumbers) -> tuple[arb, arb, arb, arb]:
-    """Return (s_ij, a_ij, and their derivatives by s²) on a ball of squared distances over several pieces.
-
-    The derivatives are continuous, so that their balls hold all of them, on either side of a switch and at it.
-    """
-    inside = (s2 / law.area).nonnegative_part()
-    slant, z = (1 + law.eps * inside).rsqrt(), sigma_of_square(inside, law.eps)
-    rho, rho_slope = bump(z / law.cutoff, law.h), bump_slope(z / law.cutoff, law.h) / law.cutoff
-    action, action_slope = _phi(z, law), phi_slope(z + law.offset - shift(law.a, law.b), law.a, law.b)
-    along = rho_slope * action + rho * action_slope - law.eps * slant * rho * action
-    return rho * action * slant, rho, along * slant * slant / (2 * law.area), rho_slope * slant / (2 * law.area)
-
-
-def _phi(z: arb, law: PairNumbers) -> arb:
-    """Return φ(z − d_α) on a ball."""
-    return phi(z + law.offset - shift(law.a, law.b), law.a, law.b)
+def _nonnegative(s2: Any) -> Any:
+    return s2.nonnegative_part() if isinstance(s2, arb) else s2

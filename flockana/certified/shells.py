@@ -21,8 +21,8 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from flockana.base.checks import FloatArray
+from flockana.certified.balls import ball, hull
 from flockana.certified.decimals import round_down
-from flockana.certified.intervals import ball, hull
 from flockana.certified.krawczyk import column, identity, least_eigenvalue
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.structure import Balls, Structure, outer

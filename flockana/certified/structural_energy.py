@@ -8,7 +8,8 @@ from typing import Any
 
 from flint import arb, ctx
 
-from flockana.certified.intervals import AlphaParameters, exact, psi_alpha, sigma_of_square, square
+from flockana.certified.balls import exact, norm2, square
+from flockana.certified.series import PairNumbers
 from flockana.laws.olfati_saber import Algorithm2
 
 BITS = 100
@@ -31,23 +32,9 @@ def structural_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence
 
 def energy_of(law: Any, s2: Sequence[arb], q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
     """Return the structural energy from squared distances, positions and velocities of a box."""
-    par, area = scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
-    pairs = sum((psi_alpha(sigma_of_square(x / area, par.eps), par) for x in s2), arb(0)) * area
+    pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, s2), arb(0))
     total = arb(exact(law.gains.c1_alpha)) * pairs + _inertia(p)
     return total + arb(exact(law.gains.c1_gamma)) * _inertia(q) if isinstance(law, Algorithm2) else total
-
-
-def scaled(alpha: Any) -> AlphaParameters:
-    """Return the pair law's exact parameters in units of ℓ."""
-    unit = exact(alpha.unit)
-    lengths = {name: exact(getattr(alpha, name)) / unit for name in ("d", "r")}
-    rest = {name: exact(getattr(alpha, name)) for name in ("h", "a", "b")}
-    return AlphaParameters(**lengths, eps=exact(alpha.eps) * unit * unit, **rest)
-
-
-def norm2(x: Sequence[arb]) -> arb:
-    """Return ‖x‖²."""
-    return sum(map(square, x), arb(0))
 
 
 def _inertia(x: Sequence[Sequence[arb]]) -> arb:

@@ -8,25 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import combinations
 from typing import Any
 
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
 from flockana.base.errors import ArgumentError
 from flockana.base.units import rescale
-from flockana.certified.intervals import (
-    AlphaParameters,
-    adjacency,
-    ball,
-    exact,
-    far_potential,
-    phi_alpha,
-    phi_alpha_slope,
-    psi_alpha,
-    sigma_of_square,
-    square,
-)
+from flockana.certified.balls import AlphaParameters, ball, exact, square
+from flockana.certified.series import PairNumbers
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
@@ -90,18 +81,15 @@ class Structure:
 
     def tension(self, s: arb) -> arb:
         """Return the stress F'(ℓ)/ℓ of a pair's potential F = c1α ψ_α(‖·‖_σ), by s = ℓ²."""
-        z = sigma_of_square(s, self.par.eps)
-        return ball(self.c1_alpha) * phi_alpha(z, self.par) / self._root(s)
+        return ball(self.c1_alpha) * self._law.pair(s)[0]
 
     def stiffness(self, s: arb) -> arb:
-        """Return F''(ℓ), by s = ℓ²: c1α (φ_α' s/(1 + εs) + φ_α/(1 + εs)^(3/2))."""
-        z, root = sigma_of_square(s, self.par.eps), self._root(s)
-        along = phi_alpha_slope(z, self.par) * s / square(root) + phi_alpha(z, self.par) / (root * square(root))
-        return ball(self.c1_alpha) * along
+        """Return F''(ℓ), by s = ℓ²."""
+        return ball(self.c1_alpha) * self._law.stiffness(s)
 
     def weight(self, s: arb) -> arb:
         """Return a_ij by s = ℓ²."""
-        return adjacency(sigma_of_square(s, self.par.eps), self.par)
+        return self._law.pair(s)[1]
 
     def gradient(self, x: Balls) -> list[arb]:
         """Return ∇U."""
@@ -136,10 +124,10 @@ class Structure:
 
     def energy(self, x: Balls) -> arb:
         """Return U."""
-        far, total = far_potential(self.par), arb(0)
+        law, total = self._law, arb(0)
         beyond = ball(self.par.r) ** 2
         for *_, s in self.pairs(x):
-            total += far if s >= beyond else psi_alpha(sigma_of_square(s, self.par.eps), self.par)
+            total += law.far if s >= beyond else law.potential(s)
         return ball(self.c1_alpha) * total + ball(self.c1_gamma) / 2 * sum(map(square, x), arb(0))
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
@@ -157,8 +145,15 @@ class Structure:
         """Return the translations along the axes."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
-    def _root(self, s: arb) -> arb:
-        return (1 + ball(self.par.eps) * s).sqrt()
+    @property
+    def _law(self) -> PairNumbers:
+        """Return the pair law at the present precision."""
+        return _numbers(self.par, ctx.prec)
+
+
+@cache
+def _numbers(par: AlphaParameters, bits: int) -> PairNumbers:
+    return PairNumbers.of_alpha(par)
 
 
 def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
@@ -167,8 +162,3 @@ def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
         [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
         for a, x in enumerate(gap)
     ]
-
-
-def dot(a: Balls, b: Balls) -> arb:
-    """Return ⟨a, b⟩."""
-    return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))

@@ -7,11 +7,11 @@ from typing import Any
 
 from flint import arb, arb_series, ctx
 
-from flockana.certified.flow import Flow, Pieces, series_length
-from flockana.certified.intervals import exact, hull, psi_alpha, psi_beta, sigma_of_square, square
+from flockana.certified.balls import exact, hull, norm2, series_length, square
+from flockana.certified.flow import Flow, Pieces
 from flockana.certified.laws import flow_of, sphere_terms
-from flockana.certified.series import Piece
-from flockana.certified.structural_energy import BITS, norm2, scaled
+from flockana.certified.series import PairNumbers, Piece
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube
 
 _ORDER = 12  # of the rate's Taylor polynomials
@@ -20,16 +20,14 @@ _ORDER = 12  # of the rate's Taylor polynomials
 def total_energy(law: Any, q: Sequence[Sequence[arb]], p: Sequence[Sequence[arb]]) -> arb:
     """Return the energy H of Algorithm 3 (obstacles, bounded pull, every pair once) on a box of states."""
     with ctx.workprec(BITS):
-        gains, par, area = law.gains, scaled(law.alpha), arb(exact(law.alpha.unit)) ** 2
+        gains, area = law.gains, arb(exact(law.alpha.unit)) ** 2
         squares = [norm2([b - a for a, b in zip(x, y, strict=True)]) for k, x in enumerate(q) for y in q[k + 1 :]]
-        pairs = sum((psi_alpha(sigma_of_square(s2 / area, par.eps), par) for s2 in squares), arb(0)) * area
+        pairs = sum(map(PairNumbers.of_alpha(law.alpha).potential, squares), arb(0))
         start = [arb(exact(x)) for x in law.target.harmonic.terms[0].tolist()]
         far = sum(((1 + norm2([a - b for a, b in zip(x, start, strict=True)]) / area).sqrt() - 1 for x in q), arb(0))
         total = arb(exact(gains.c1_alpha)) * pairs + arb(exact(gains.c1_gamma)) * area * far
         for term in sphere_terms(law):
-            beta = term.beta
-            depths = [sigma_of_square(square(term.clearance(x)) / beta.area, beta.eps) for x in q]
-            total += term.stiffness * beta.area * sum((psi_beta(z, beta.par) for z in depths), arb(0))
+            total += term.stiffness * sum((term.beta.potential(square(term.clearance(x))) for x in q), arb(0))
         return total + sum(map(norm2, p), arb(0)) / 2
 
 

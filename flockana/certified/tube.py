@@ -15,7 +15,8 @@ from flint import arb, ctx
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import ensure_sealed, replace_sealed
-from flockana.certified.structural_energy import BITS, energy_of, norm2, structural_energy
+from flockana.certified.balls import norm2
+from flockana.certified.structural_energy import BITS, energy_of, structural_energy
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
-from flockana.kernels.scalars import bump, on_panels, phi, phi_integral, sigma_norm
-from flockana.kernels.tables import integral_panels, panel_edges
+from flockana.kernels.scalars import bump, phi, phi_integral, sigma_norm
+from flockana.kernels.tables import integral_panels, on_panels, panel_edges
 
 _STRENGTH_GRID = 2049
 _PROOFS = (
@@ -169,11 +169,10 @@ class AlphaInteraction(PairInteraction):
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
 
+        numbers = par.tolist()
+
         def taper(z: FloatArray) -> FloatArray:
-            rho = 0.5 * (1.0 + np.cos(np.pi * (z / r_alpha - self.h) / (1.0 - self.h)))
-            action = np.array([phi(s, self.a, self.b, self.c) for s in (z - d_alpha) / area])
-            tapered: FloatArray = rho * action
-            return tapered
+            return np.array([kernel.phi_alpha(each, numbers) for each in z.tolist()])
 
         edges = area * panel_edges(knee / area, r_alpha / area, d_alpha / area - self.c)
         doublings = d_alpha * (1.0 + 2.0 ** np.arange(max(0.0, np.ceil(np.log2(r_alpha / d_alpha)))))

@@ -15,8 +15,8 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
-from flockana.kernels.scalars import on_panels, sigma_norm
-from flockana.kernels.tables import integral_panels, panel_edges
+from flockana.kernels.scalars import sigma_norm
+from flockana.kernels.tables import integral_panels, on_panels, panel_edges
 
 _ADJACENCY_BETA = lift_scalar(kernel.adjacency_beta)
 _PHI_BETA = lift_scalar(kernel.phi_beta)
@@ -77,17 +77,14 @@ class BetaInteraction:
     def _parts(self) -> tuple[FloatArray, FloatArray]:
         d_beta, knee, area = self.d_beta, self.h * self.d_beta, self.unit**2
         par = np.array([self.eps, self.h, d_beta, 0.0, area])
+        numbers = par.tolist()
 
         def taper(z: FloatArray) -> FloatArray:
-            rho = 0.5 * (1.0 + np.cos(np.pi * (z / d_beta - self.h) / (1.0 - self.h)))
-            s = (z - d_beta) / area
-            repulsion: FloatArray = rho * (s / np.sqrt(1.0 + s**2) - 1.0)
-            return repulsion
+            return np.array([kernel.phi_beta(each, numbers) for each in z.tolist()])
 
         edges = area * panel_edges(knee / area, d_beta / area, d_beta / area)
         panels = integral_panels(taper, edges, anchor=edges[-1])
-        closed = area * sigma_norm(((knee - d_beta) / area) ** 2, 1.0) - knee
-        par[kernel.BETA_OFFSET] = on_panels(knee, panels) - closed
+        par[kernel.BETA_OFFSET] = on_panels(knee, panels) - kernel.integral_beta(knee, numbers)
         for array in (par, panels):
             array.setflags(write=False)
         return par, panels

@@ -16,8 +16,7 @@ from flockana.base.units import Powers
 from flockana.interactions.pair import PairInteraction, evaluate
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
-from flockana.kernels.scalars import on_panels
-from flockana.kernels.tables import integral_panels
+from flockana.kernels.tables import integral_panels, on_panels
 
 _ACTION = lift_scalar(kernel.action)
 _FORCE = lift_scalar(kernel.force)

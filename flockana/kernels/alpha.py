@@ -1,9 +1,12 @@
-"""The α- and β-pair laws as scalar functions of the squared distance.
+"""The α- and β-pair laws as scalar functions of the squared distance or of the σ-norm.
+
+Generated from `flockana.symbolic` by `python -m tools.formulas`; edit these.
 
 Parameters are vectors of float64 whose places have the names below: OFFSET is the constant of ψ where ρ_h = 1, FAR is
 ψ_α(r_α), AREA is ℓ², ℓ the length that σ₁ counts in. A pair contributes w (q_j − q_i) + ρ (p_j − p_i) to u_i.
 """
 
+# fmt: off
 from __future__ import annotations
 
 from math import sqrt
@@ -12,15 +15,15 @@ from flockana.jit import register_jitable
 from flockana.kernels.scalars import (
     bump,
     bump_slope,
-    on_panels,
     phi,
+    phi_above,
+    phi_below,
     phi_integral,
-    phi_parts,
-    phi_slope,
     sigma_1,
     sigma_norm,
     taper,
 )
+from flockana.kernels.tables import on_panels
 
 EPS, H, A, B, C, D_ALPHA, R_ALPHA, OFFSET, FAR, AREA = range(10)
 D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h
@@ -29,102 +32,167 @@ D_BETA, BETA_OFFSET, BETA_AREA = range(2, 5)  # after ε and h
 @register_jitable
 def phi_alpha(z, par):
     """φ_α(z) = ρ_h(z/r_α) φ((z − d_α)/ℓ²)."""
-    return bump(z / par[R_ALPHA], par[H]) * phi((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C])
+    x0 = bump(z/par[R_ALPHA], par[H])
+    x1 = phi((-par[D_ALPHA] + z)/par[AREA], par[A], par[B], par[C])
+    return x0*x1
 
 
 @register_jitable
 def phi_alpha_slope(z, par):
     """dφ_α/dz."""
-    x, s = z / par[R_ALPHA], (z - par[D_ALPHA]) / par[AREA]
-    a, b, c = par[A], par[B], par[C]
-    return bump_slope(x, par[H]) / par[R_ALPHA] * phi(s, a, b, c) + bump(x, par[H]) * phi_slope(s, a, b, c) / par[AREA]
+    x0 = 1.0/par[AREA]
+    x1 = x0*(-par[D_ALPHA] + z)
+    x2 = par[C] + x1
+    x3 = (x2*x2) + 1.0
+    x4 = 1.0/par[R_ALPHA]
+    x5 = x4*z
+    x6 = bump(x5, par[H])
+    x7 = bump_slope(x5, par[H])
+    x8 = phi(x1, par[A], par[B], par[C])
+    return 0.5*x0*x6*(par[A] + par[B])/(x3*sqrt(x3)) + x4*x7*x8
 
 
 @register_jitable
 def psi_alpha(z, par, panels):
-    """ψ_α(z): closed form where ρ_h = 1, Chebyshev panels on the taper, constant from r_α on."""
-    if z >= par[R_ALPHA]:
+    """ψ_α(z), constant from r_α on."""
+    if par[R_ALPHA] <= z:
         return par[FAR]
-    if z < par[H] * par[R_ALPHA]:
-        return par[AREA] * phi_integral((z - par[D_ALPHA]) / par[AREA], par[A], par[B], par[C]) + par[OFFSET]
+    if z < par[H]*par[R_ALPHA]:
+        return par[AREA]*phi_integral((-par[D_ALPHA] + z)/par[AREA], par[A], par[B], par[C]) + par[OFFSET]
     return on_panels(z, panels)
 
 
 @register_jitable
 def adjacency_alpha(z, par):
-    """a_ij as a function of z = ‖q_j − q_i‖_σ."""
-    return bump(z / par[R_ALPHA], par[H])
+    """a_ij by z = ‖q_j − q_i‖_σ."""
+    return bump(z/par[R_ALPHA], par[H])
 
 
 @register_jitable
 def norm_alpha(s2, par):
-    """(‖x‖_σ, √(1 + ε‖x‖²)) of a pair at squared distance s2 within range: `sigma_norm` without its branch."""
-    root = sqrt(1.0 + par[EPS] * s2)
-    return s2 / (root + 1.0), root
+    """(‖x‖_σ, √(1 + ε‖x‖²))."""
+    x0 = sqrt(par[EPS]*s2 + 1.0)
+    return s2/(x0 + 1.0), x0
 
 
 @register_jitable
 def stress_alpha(z, root, par):
-    """(stress s_ij, adjacency a_ij) of a pair from what `norm_alpha` gives."""
-    rho = taper(z * (1.0 / par[R_ALPHA]), par[H])
-    above, below = phi_parts((z - par[D_ALPHA]) * (1.0 / par[AREA]), par[A], par[B], par[C])
-    return rho * above / (below * root), rho
+    """(s_ij, a_ij) from `norm_alpha`."""
+    c0 = 1.0/par[AREA]
+    c1 = 1.0/par[R_ALPHA]
+    x0 = c0*(-par[D_ALPHA] + z)
+    x1 = phi_above(x0, par[A], par[B], par[C])
+    x2 = phi_below(x0, par[A], par[B], par[C])
+    x3 = taper(c1*z, par[H])
+    return x1*x3/(x2*root), x3
 
 
 @register_jitable
 def pair_alpha(s2, par):
-    """(stress s_ij, adjacency a_ij) of a pair at squared distance s2."""
+    """(s_ij, a_ij) at squared distance s2."""
     z, root = norm_alpha(s2, par)
     return stress_alpha(z, root, par)
 
 
 @register_jitable
 def pair_alpha_slope(s2, par):
-    """d(s_ij)/d(s2), what the Hessian of V needs beside s_ij itself."""
-    eps = par[EPS]
-    z, g = sigma_norm(s2, eps), 1.0 + eps * s2
-    return 0.5 * (phi_alpha_slope(z, par) - eps * phi_alpha(z, par) / sqrt(g)) / g
+    """d(s_ij)/d(s2), for the Hessian of V."""
+    x0 = 1.0/par[AREA]
+    x1 = sigma_norm(s2, par[EPS])
+    x2 = x0*(-par[D_ALPHA] + x1)
+    x3 = par[C] + x2
+    x4 = par[EPS]*s2 + 1.0
+    x5 = (x3*x3) + 1.0
+    x6 = 1.0/par[R_ALPHA]
+    x7 = x1*x6
+    x8 = bump(x7, par[H])
+    x9 = bump_slope(x7, par[H])
+    x10 = phi(x2, par[A], par[B], par[C])
+    x11 = 1.0/x4
+    x12 = 0.5*x10
+    return -x12*x8*par[EPS]/(x4*sqrt(x4)) + 0.25*x0*x11*x8*(par[A] + par[B])/(x5*sqrt(x5)) + x11*x12*x6*x9
 
 
 @register_jitable
 def pair_alpha_adjacency_slope(s2, par):
-    """d(a_ij)/d(s2), what the Jacobian of the consensus term needs where velocities differ."""
-    r_alpha, x = par[R_ALPHA], sigma_norm(s2, par[EPS]) / par[R_ALPHA]
-    return 0.5 * bump_slope(x, par[H]) / (r_alpha * sqrt(1.0 + par[EPS] * s2))
+    """d(a_ij)/d(s2), for Jacobians."""
+    x0 = 1.0/par[R_ALPHA]
+    x1 = sigma_norm(s2, par[EPS])
+    x2 = bump_slope(x0*x1, par[H])
+    return 0.5*x0*x2/sqrt(par[EPS]*s2 + 1.0)
 
 
 @register_jitable
 def pair_alpha_potential(s2, par, panels):
-    """ψ_α of a pair at squared distance s2."""
-    return psi_alpha(sigma_norm(s2, par[EPS]), par, panels)
+    """ψ_α at squared distance s2."""
+    x0 = sigma_norm(s2, par[EPS])
+    return psi_alpha(x0, par, panels)
 
 
 @register_jitable
 def phi_beta(z, par):
     """φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1)."""
-    return bump(z / par[D_BETA], par[H]) * (sigma_1((z - par[D_BETA]) / par[BETA_AREA]) - 1.0)
+    x0 = bump(z/par[D_BETA], par[H])
+    x1 = sigma_1((-par[D_BETA] + z)/par[BETA_AREA])
+    return x0*(x1 - 1.0)
+
+
+@register_jitable
+def integral_beta(z, par):
+    """An antiderivative of φ_β where ρ_h = 1."""
+    x0 = -z
+    x1 = -par[D_BETA] - x0
+    x2 = sigma_norm((x1*x1)/(par[BETA_AREA]*par[BETA_AREA]), 1.0)
+    return x2*par[BETA_AREA] + x0
 
 
 @register_jitable
 def psi_beta(z, par, panels):
-    """ψ_β(z): closed form where ρ_h = 1, Chebyshev panels on the taper, 0 from d_β on."""
-    if z >= par[D_BETA]:
+    """ψ_β(z), 0 from d_β on."""
+    if par[D_BETA] <= z:
         return 0.0
-    if z < par[H] * par[D_BETA]:
-        s = (z - par[D_BETA]) / par[BETA_AREA]
-        return par[BETA_AREA] * sigma_norm(s**2, 1.0) - z + par[BETA_OFFSET]  # √(1+s²) − 1 − z: no cancellation
+    if z < par[D_BETA]*par[H]:
+        return par[BETA_OFFSET] + integral_beta(z, par)
     return on_panels(z, panels)
 
 
 @register_jitable
 def adjacency_beta(z, par):
-    """b_ik as a function of z = ‖q̂_ik − q_i‖_σ."""
-    return bump(z / par[D_BETA], par[H])
+    """b_ik by z = ‖q̂_ik − q_i‖_σ."""
+    return bump(z/par[D_BETA], par[H])
 
 
 @register_jitable
 def pair_beta(s2, par):
-    """(weight of q̂_ik − q_i, b_ik) of an agent and its β-agent at squared distance s2."""
-    z = sigma_norm(s2, par[EPS])
-    rho = bump(z / par[D_BETA], par[H])
-    return rho * (sigma_1((z - par[D_BETA]) / par[BETA_AREA]) - 1.0) / sqrt(1.0 + par[EPS] * s2), rho
+    """(weight of q̂_ik − q_i, b_ik) at squared distance s2."""
+    x0 = sigma_norm(s2, par[EPS])
+    x1 = sigma_1((-par[D_BETA] + x0)/par[BETA_AREA])
+    x2 = bump(x0/par[D_BETA], par[H])
+    return x2*(x1 - 1.0)/sqrt(par[EPS]*s2 + 1.0), x2
+
+
+@register_jitable
+def pair_beta_slope(s2, par):
+    """d(weight)/d(s2), for the Hessian of ψ_β."""
+    x0 = sigma_norm(s2, par[EPS])
+    x1 = -par[D_BETA] + x0
+    x2 = 1.0 + (x1*x1)/(par[BETA_AREA]*par[BETA_AREA])
+    x3 = par[EPS]*s2 + 1.0
+    x4 = 1.0/par[D_BETA]
+    x5 = x0*x4
+    x6 = bump(x5, par[H])
+    x7 = bump_slope(x5, par[H])
+    x8 = 1.0/par[BETA_AREA]
+    x9 = sigma_1(x1*x8)
+    x10 = 0.5/x3
+    x11 = x9 - 1.0
+    return -0.5*x11*x6*par[EPS]/(x3*sqrt(x3)) + x10*x11*x4*x7 + x10*x6*x8/(x2*sqrt(x2))
+
+
+@register_jitable
+def adjacency_beta_slope(s2, par):
+    """d(b_ik)/d(s2)."""
+    x0 = 1.0/par[D_BETA]
+    x1 = sigma_norm(s2, par[EPS])
+    x2 = bump_slope(x0*x1, par[H])
+    return 0.5*x0*x2/sqrt(par[EPS]*s2 + 1.0)

@@ -13,7 +13,7 @@ from math import inf, log, log1p, sqrt
 import numpy as np
 
 from flockana.jit import njit, register_jitable
-from flockana.kernels.scalars import on_panels
+from flockana.kernels.tables import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
 ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)

@@ -19,7 +19,7 @@ _IMPORTS = f"""from math import {_MATH}
 
 from flockana.jit import register_jitable
 from flockana.kernels.elementary import cosine, sine
-from flockana.kernels.scalars import on_panels
+from flockana.kernels.tables import on_panels
 
 
 @register_jitable

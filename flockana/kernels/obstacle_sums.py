@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from flockana.jit import njit, register_jitable
-from flockana.kernels.alpha import pair_beta, psi_beta
-from flockana.kernels.beta_slopes import adjacency_beta_slope, pair_beta_slope
+from flockana.kernels.alpha import adjacency_beta_slope, pair_beta, pair_beta_slope, psi_beta
 from flockana.kernels.bodies import BETA, C1, C2, REACH, STARTS, bodies_of
 from flockana.kernels.encounters import SLACK
 from flockana.kernels.obstacles import no_turn as turn  # bound

@@ -1,4 +1,4 @@
-"""Panels of polynomials for an integral that has no closed form: built once, to rounding; `on_panels` evaluates.
+"""Panels of polynomials for an integral that has no closed form: built once, to rounding, and evaluated by kernels.
 
 What leads from values to coefficients is the same for every panel: three matrices, whose products are summed here. The
 solvers of linear algebra, which sum otherwise on other processors, have no part in it.
@@ -12,6 +12,8 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev, polynomial  # noqa: F401  # the doctest's
+
+from flockana.jit import register_jitable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -116,3 +118,29 @@ def _powers() -> FloatArray:
         powers = chebyshev.cheb2poly(series)
         matrix[j, : powers.size] = powers
     return matrix
+
+
+@register_jitable
+def on_panels(z, panels):
+    """A function given by panels of polynomials at z: each row is (left, right, coefficients), rows in rising order.
+
+    A coefficient is that of a power of x, which is −1 at the left end and 1 at the right one; they are one more than a
+    multiple of four, whose four sums need not wait for each other.
+    Points outside take the value at the nearest end. No branch hangs on z: a loop over it runs ahead of itself.
+    """
+    row, rest = 0, panels.shape[0]
+    while rest > 1:
+        half = rest // 2
+        row += half * (z >= panels[row + half - 1, 1])
+        rest -= half
+    left, right = panels[row, 0], panels[row, 1]
+    x = (2.0 * z - left - right) / (right - left)
+    if abs(x) > 1.0:  # not by min and max, which would turn a NaN into a number
+        x = 1.0 if x > 0.0 else -1.0
+    last = panels.shape[1] - 1
+    a, b, c, d, x2 = panels[row, last], 0.0, 0.0, 0.0, x * x
+    x4 = x2 * x2
+    for k in range(last - 4, 1, -4):
+        a, b = x4 * a + panels[row, k], x4 * b + panels[row, k + 1]
+        c, d = x4 * c + panels[row, k + 2], x4 * d + panels[row, k + 3]
+    return (a + x2 * c) + x * (b + x2 * d)

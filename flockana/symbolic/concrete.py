@@ -40,8 +40,6 @@ class ConcreteFlock:
     ----------
     law : str
         ``"algorithm1"`` or ``"algorithm2"``.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     kinetic_factor : sympy.Expr
         Of sum |p_i|^2 (sum |v_i|^2) in the energy: 1/2; the printed H of erratum E1 has 1.
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from functools import reduce
+from operator import add, mul
 from typing import Any
 
 import sympy as sp
@@ -128,9 +130,9 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
     if node in (sp.pi, sp.E):
         return lambda x: arb_series([arb.pi() if node == sp.pi else arb.const_e()])
     if node.is_Add:
-        return lambda x, *terms: _total(terms)
+        return lambda x, *terms: reduce(add, terms)
     if node.is_Mul:
-        return lambda x, *factors: _product(factors)
+        return lambda x, *factors: reduce(mul, factors)
     if node.is_Pow and node.exp.is_Rational:
         whole, root, up = int(abs(node.exp.p)), int(node.exp.q), bool(node.exp.p > 0)
         return lambda x, base: _power(base, whole, root, up=up)
@@ -145,20 +147,6 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
 
 def _undefined(x: arb, *arguments: Any) -> Any:
     raise UndefinedError
-
-
-def _total(terms: tuple[Any, ...]) -> Any:
-    value = terms[0]
-    for each in terms[1:]:
-        value = value + each
-    return value
-
-
-def _product(factors: tuple[Any, ...]) -> Any:
-    value = factors[0]
-    for each in factors[1:]:
-        value = value * each
-    return value
 
 
 def _value(series: Any) -> arb:
@@ -201,15 +189,10 @@ def _multiplied(base: Any, whole: int) -> Any:
 
 def _power_range(base: arb, whole: int) -> arb:
     """Return the range of a whole power, which includes 0 where it turns."""
-    ends = interval_of(*(_multiplied(end, whole) for end in (base.lower(), base.upper())))
+    ends = _multiplied(base.lower(), whole).union(_multiplied(base.upper(), whole))
     if whole % 2 or base > 0 or base < 0:
         return ends
-    return interval_of(arb(0), abs(ends).upper())
-
-
-def interval_of(low: arb, high: arb) -> arb:
-    """Return the ball that covers two ends."""
-    return low.union(high)
+    return arb(0).union(abs(ends).upper())
 
 
 def _exp(x: Any) -> Any:
@@ -217,7 +200,7 @@ def _exp(x: Any) -> Any:
         return x.exp()
     if not _value(x) < _LARGEST:
         raise UndefinedError
-    least = interval_of(arb(0), arb(-_LARGEST).max(_value(x).upper()).exp().upper())
+    least = arb(0).union(arb(-_LARGEST).max(_value(x).upper()).exp().upper())
     return _with_value(x, arb(0)).exp() * least
 
 
@@ -228,7 +211,7 @@ def _integrated(value: arb, slope: Any, x: Any) -> Any:
 
 def _tanh(x: Any) -> Any:
     """Return tanh of a series, from its ends, as it increases; its slope is 1 − tanh²."""
-    at = interval_of(*(end.tanh() for end in (_value(x).lower(), _value(x).upper())))
+    at = _value(x).lower().tanh().union(_value(x).upper().tanh())
     value = arb_series([at])
     for _ in range(ctx.cap - 1):
         value = _integrated(at, 1 - value * value, x)
@@ -240,11 +223,11 @@ def _wave(x: arb) -> arb:
     turns = x / arb.pi()
     if x.is_exact() or not turns.rad() < 0.25:
         return x.cos()
-    ends = interval_of(x.lower().cos(), x.upper().cos())
+    ends = x.lower().cos().union(x.upper().cos())
     if not turns.contains_integer():
         return ends
     whole = round(float(turns.mid()))
-    return interval_of(ends, arb(1 - 2 * (whole % 2))).intersection(interval_of(arb(-1), arb(1)))
+    return ends.union(arb(1 - 2 * (whole % 2))).intersection(arb(0, 1))
 
 
 def _tan(x: Any) -> Any:

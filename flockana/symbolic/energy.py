@@ -160,8 +160,6 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
 
     Parameters
     ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     kinetic_factor : sympy.Expr
         H = V + factor * sum |p_i|^2. Anything but 1/2 leaves a residual (erratum E1).
 

@@ -1,17 +1,17 @@
 """The scalar functions of flocking as sympy expressions: bump, action functions, adjacency.
 
 Every function takes and returns sympy expressions. Parameters come in a frozen bundle, symbols by default
-and numbers where given, so that one formula serves a proof, a picture in LaTeX and a forty-digit value.
+and numbers where given, so that one formula serves a proof, a picture in LaTeX and a forty-digit value; kernels and
+enclosures are generated from it too (`tools.formulas`).
 """
 
 from __future__ import annotations
 
 import sympy as sp
 
-from flockana.symbolic.norms import sigma_1
+from flockana.symbolic.named import HALF as HALF
+from flockana.symbolic.named import Bump, Phi, Place, Sigma1, SigmaNorm, Taper, written
 from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
-
-HALF = sp.Rational(1, 2)
 
 
 def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
@@ -22,7 +22,7 @@ def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     >>> taper(sp.Rational(3, 4), h=sp.Rational(1, 2))
     1/2
     """
-    return HALF * (1 + sp.cos(sp.pi * (z - h) / (1 - h)))
+    return written(Taper(Place(z, h)))
 
 
 def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
@@ -42,9 +42,7 @@ def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     >>> bump(sp.Symbol("z"), h=sp.Integer(1))
     Piecewise((1, z < 1), (0, True))
     """
-    if h == 1:
-        return sp.Piecewise((1, z < 1), (0, True))
-    return sp.Piecewise((1, z < h), (taper(z, h=h), z <= 1), (0, True))
+    return sp.Piecewise((1, z < 1), (0, True)) if h == 1 else Bump(z, h).formula
 
 
 def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
@@ -54,15 +52,13 @@ def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     s : sympy.Expr
         Its argument.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
     >>> phi(sp.Integer(0), alpha=AlphaSymbols(a=1, b=9))
     0
     """
-    return HALF * ((alpha.a + alpha.b) * sigma_1(s / alpha.unit**2 + alpha.c) + (alpha.a - alpha.b))
+    return Phi(s / alpha.unit**2, alpha.a, alpha.b, alpha.c).formula
 
 
 def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
@@ -72,15 +68,13 @@ def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     z : sympy.Expr
         A sigma-norm, z >= 0.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
     >>> phi_alpha(sp.Integer(1), alpha=AlphaSymbols(eps=1, h=0.5, a=1, b=1, d=sp.sqrt(8), r=sp.sqrt(24)))
     -sqrt(2)/2
     """
-    return adjacency(z, alpha=alpha) * phi(z - alpha.d_alpha, alpha=alpha)
+    return adjacency(z, alpha=alpha) * written(alpha_smooth(z, alpha))
 
 
 def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
@@ -90,8 +84,6 @@ def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     ----------
     z : sympy.Expr
         A sigma-norm, z >= 0.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
@@ -116,4 +108,20 @@ def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     >>> phi_beta(sp.Integer(0), beta=BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)))
     -1 - sqrt(2)/2
     """
-    return bump(z / beta.d_beta, h=beta.h) * (sigma_1((z - beta.d_beta) / beta.unit**2) - 1)
+    return bump(z / beta.d_beta, h=beta.h) * written(beta_smooth(z, beta))
+
+
+def alpha_smooth(z: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
+    """Return phi_alpha without its bump, by named functions."""
+    return Phi((z - alpha.d_alpha) / alpha.unit**2, alpha.a, alpha.b, alpha.c)
+
+
+def beta_smooth(z: sp.Expr, beta: BetaSymbols) -> sp.Expr:
+    """Return phi_beta without its bump, by named functions."""
+    return Sigma1((z - beta.d_beta) / beta.unit**2) - 1
+
+
+def beta_closed(z: sp.Expr, beta: BetaSymbols) -> sp.Expr:
+    """Return an antiderivative of `beta_smooth`, by named functions, without a cancellation."""
+    area = beta.unit**2
+    return area * SigmaNorm(((z - beta.d_beta) / area) ** 2, sp.S.One) - z

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 from flint import arb, fmpq
 
-from flockana.symbolic.enclosed import Enclosed, interval_of
+from flockana.symbolic.enclosed import Enclosed
 
 _ODD = (sp.sin, sp.tan, sp.sinh, sp.tanh, sp.asin, sp.atan, sp.asinh, sp.atanh)  # they vanish at 0
 _SLOW = Fraction(1, 64)  # a logarithm grows slower than this power
@@ -87,7 +87,7 @@ class _Near:
         """Return the range of t^power, power ≥ 0."""
         if power == 0:
             return arb(1)
-        return interval_of(arb(0), (self.width.log() * arb(fmpq(power.numerator, power.denominator))).exp().upper())
+        return arb(0).union((self.width.log() * arb(fmpq(power.numerator, power.denominator))).exp().upper())
 
     def _power(self, base: Germ, exponent: sp.Rational) -> Germ:
         power = Fraction(int(exponent.p), int(exponent.q))
@@ -110,16 +110,16 @@ class _Near:
                 return Germ(argument.power, argument.factor * _first(slope, at.union(arb(0))))
             return Germ(none, _first(Enclosed(of(_T), _T), at))
         if of in (sp.sin, sp.cos):
-            return Germ(none, interval_of(arb(-1), arb(1)))
+            return Germ(none, arb(0, 1))
         least = abs(argument.factor).lower() * (1 / self._until(-argument.power).upper())
         rises = bool(argument.factor > 0)
         if not (rises or argument.factor < 0):
             raise _UnknownError
         if of is sp.exp and not rises:
-            return Germ(none, interval_of(arb(0), (-least).exp().upper()))
+            return Germ(none, arb(0).union((-least).exp().upper()))
         if of in (sp.atan, sp.tanh):
             limit, value = (arb.pi() / 2, least.atan()) if of is sp.atan else (arb(1), least.tanh())
-            found = interval_of(value.lower(), limit.upper())
+            found = value.lower().union(limit.upper())
             return Germ(none, found if rises else -found)
         raise _UnknownError
 
@@ -131,7 +131,7 @@ class _Near:
         turn = (-1 / slow).exp()  # where t^slow |log t| is largest, 1/(slow e)
         most = 1 / (slow * arb(1).exp()) if self.width >= turn else -self.width.log() * (self.width.log() * slow).exp()
         power = arb(fmpq(argument.power.numerator, argument.power.denominator))
-        return Germ(-_SLOW, -power * interval_of(arb(0), most.upper()) + argument.factor.log() * self._until(_SLOW))
+        return Germ(-_SLOW, -power * arb(0).union(most.upper()) + argument.factor.log() * self._until(_SLOW))
 
 
 def _first(of: Enclosed, at: arb) -> arb:

@@ -37,8 +37,6 @@ def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS
     ----------
     q_i, q_j : sympy.Matrix, shape (m, 1)
         Positions.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
 
     Examples
     --------
@@ -57,8 +55,6 @@ def pair_force(
     ----------
     q_i, p_i, q_j, p_j : sympy.Matrix, shape (m, 1)
         Positions and velocities.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
 
     Examples
     --------

@@ -14,8 +14,8 @@ import sympy as sp
 
 from flockana.base.errors import ArgumentError
 from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.functions import HALF, phi, taper
-from flockana.symbolic.norms import sigma_1
+from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth, phi, taper
+from flockana.symbolic.named import PhiIntegral, written
 from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
 
 Z = sp.Symbol("z", nonnegative=True)
@@ -86,14 +86,12 @@ class _Potential:
 
 
 def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
-    """Return an antiderivative of phi(z - d_alpha): ((a + b) sqrt(1 + (z - d_alpha + c)^2) + (a - b) z)/2.
+    """Return the integral of phi(z - d_alpha) from d_alpha, a closed form.
 
     Parameters
     ----------
     z : sympy.Expr
         A sigma-norm.
-    alpha : AlphaSymbols
-        Parameters; all symbolic if not given.
 
     Examples
     --------
@@ -101,9 +99,7 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     >>> sp.simplify(sp.diff(alpha_antiderivative(z), z) - phi(z - ALPHA.d_alpha))
     0
     """
-    area = alpha.unit**2
-    root = sp.sqrt(1 + ((z - alpha.d_alpha) / area + alpha.c) ** 2)
-    return HALF * ((alpha.a + alpha.b) * area * root + (alpha.a - alpha.b) * z)
+    return written(alpha.unit**2 * PhiIntegral(*alpha_smooth(z, alpha).args))
 
 
 def alpha_potential(alpha: AlphaSymbols) -> _Potential:
@@ -120,15 +116,10 @@ def alpha_potential(alpha: AlphaSymbols) -> _Potential:
 
 def _beta(beta: BetaSymbols) -> _Potential:
     """Return the pieces of psi_beta, which is 0 at its cut-off."""
-    area = beta.unit**2
-
-    def repulsion(z: sp.Expr) -> sp.Expr:
-        return sigma_1((z - beta.d_beta) / area) - 1
-
     return _Potential(
-        smooth=repulsion,
-        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * repulsion(z),
-        closed=lambda z: area * sp.sqrt(1 + ((z - beta.d_beta) / area) ** 2) - z,
+        smooth=lambda z: written(beta_smooth(z, beta)),
+        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * written(beta_smooth(z, beta)),
+        closed=lambda z: written(beta_closed(z, beta)),
         zero=beta.d_beta,
         edge=beta.h * beta.d_beta,
         cutoff=beta.d_beta,

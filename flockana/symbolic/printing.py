@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
+
+from flockana.symbolic.named import Named
 
 _WHOLE = 8  # powers up to it are products
 
@@ -38,6 +41,8 @@ class Constants:
             fixed = [each for each in expression.args if not each.free_symbols & self.variables]
             moving = [self.taken_out(each) for each in expression.args if each.free_symbols & self.variables]
             return expression.func(self._named(expression.func(*fixed)), *moving)
+        if isinstance(expression, sp.Piecewise):
+            return expression.func(*((self.taken_out(value), where) for value, where in expression.args))
         if not expression.args:
             return expression
         return expression.func(*(self.taken_out(each) for each in expression.args))
@@ -49,7 +54,7 @@ class Constants:
         return self.places.setdefault(constant, symbol)
 
 
-class _Code(PythonCodePrinter):
+class FloatCode(PythonCodePrinter):
     """Code printer with the kernels' scalar functions, powers as products and roots."""
 
     def _print_Pow(self, power: sp.Expr, rational: bool = False) -> str:  # noqa: N802  # sympy's name
@@ -58,25 +63,22 @@ class _Code(PythonCodePrinter):
             whole, half = divmod(abs(int(2 * exponent)), 2)
             text = self.parenthesize(base, 100)
             factors = [text] * whole + [f"sqrt({self._print(base)})"] * half
-            product = "*".join(factors)
-            return (
-                product
-                if exponent > 0 and len(factors) == 1
-                else f"({product})"
-                if exponent > 0
-                else f"(1.0/({product}))"
-            )
+            product = factors[0] if len(factors) == 1 else f"({'*'.join(factors)})"
+            return product if exponent > 0 else f"1.0/{product}"
         return f"{self.parenthesize(base, 100)}**({self._print(exponent)})"
 
     def _print_Mul(self, product: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        number, rest = product.as_coeff_Mul()
         above: list[sp.Expr] = []
         below: list[sp.Expr] = []
-        for factor in product.args:
+        for factor in sp.Mul.make_args(rest):
             exponent = factor.as_base_exp()[1]
             inverse = exponent.is_Rational and exponent < 0
             (below if inverse else above).append(1 / factor if inverse else factor)
-        text = "*".join(self.parenthesize(each, 50) for each in above) or "1.0"
-        return f"{text}/({'*'.join(self.parenthesize(each, 50) for each in below)})" if below else text
+        factors = [self._print(abs(number))] * (abs(number) != 1 or not above)
+        text = "-" * bool(number < 0) + "*".join([*factors, *(self.parenthesize(each, 50) for each in above)])
+        divisor = "*".join(self.parenthesize(each, 50) for each in below)
+        return f"{text}/({divisor})" if len(below) > 1 else f"{text}/{divisor}" if below else text
 
     def _print_Integer(self, number: sp.Integer) -> str:  # noqa: N802  # sympy's name
         return f"{int(number)}.0"
@@ -86,7 +88,19 @@ class _Code(PythonCodePrinter):
 
     def _print_Function(self, function: sp.Expr) -> str:  # noqa: N802  # sympy's name
         name = {"sin": "sine", "cos": "cosine"}.get(function.func.__name__, function.func.__name__)
+        name = re.sub("(?<=[a-z])(?=[A-Z0-9])", "_", name).lower() if isinstance(function, Named) else name
         return f"{name}({', '.join(self._print(each) for each in function.args)})"
+
+    def _print_Pi(self, pi: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        return "pi"
+
+    def _print_Abs(self, magnitude: sp.Expr) -> str:  # noqa: N802  # sympy's name
+        return f"abs({self._print(magnitude.args[0])})"
+
+    def _print_Piecewise(self, pieces: sp.Piecewise) -> str:  # noqa: N802  # sympy's name
+        *chosen, (last, _) = pieces.args
+        head = "".join(f"{self._print(value)} if {self._print(where)} else " for value, where in chosen)
+        return f"({head}{self._print(last)})"
 
     _print_sin = _print_cos = _print_tan = _print_exp = _print_log = _print_Function
     _print_sinh = _print_cosh = _print_tanh = _print_asin = _print_acos = _print_atan = _print_Function
@@ -107,7 +121,7 @@ def function_text(name: str, arguments: str, before: list[str], expressions: lis
         v0 = p0 if y < m0 else p1
         return v0
     """
-    printer = _Code()
+    printer = FloatCode()
     flat = [each for row in expressions for each in row]
     shared, reduced = sp.cse(flat, symbols=sp.numbered_symbols("x"), order="none")
     lines = [*before, *(f"{symbol} = {printer.doprint(value)}" for symbol, value in shared)]

@@ -74,11 +74,6 @@ def sigma_distance(base: sp.IndexedBase = Q, m: sp.Expr = M) -> sp.Basic:
 def collective_potential(gains: GainSymbols = GAINS) -> sp.Expr:
     """Return V, c1_alpha psi_alpha(z_ij) summed over every pair once, non-neighbours included.
 
-    Parameters
-    ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
     Examples
     --------
     >>> write_out(collective_potential(GainSymbols(c1_alpha=1)), 2)
@@ -108,8 +103,6 @@ def hamiltonian(m: sp.Expr = M, *, gains: GainSymbols = GAINS, factor: sp.Expr =
 
     Parameters
     ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     factor : sympy.Expr
         Of the kinetic energy: 1/2.
 
@@ -126,8 +119,6 @@ def structural_potential(m: sp.Expr = M, *, gains: GainSymbols = GAINS, lambda_:
 
     Parameters
     ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     lambda_ : sympy.Expr
         Weight of the inertia; Algorithm 2 has lambda = c1_gamma.
 
@@ -144,8 +135,6 @@ def structural_hamiltonian(m: sp.Expr = M, *, gains: GainSymbols = GAINS, lambda
 
     Parameters
     ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     lambda_ : sympy.Expr
         Weight of the inertia; Algorithm 2 has lambda = c1_gamma.
 

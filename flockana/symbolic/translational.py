@@ -15,11 +15,6 @@ SQUARE = sp.Symbol("w", nonnegative=True)  # ω²
 def natural_frequency(gains: GainSymbols = GAINS) -> sp.Expr:
     """Return omega_n = sqrt(c1_gamma), in radians per time unit.
 
-    Parameters
-    ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
-
     Examples
     --------
     >>> natural_frequency(GainSymbols(c1_gamma=4))
@@ -30,11 +25,6 @@ def natural_frequency(gains: GainSymbols = GAINS) -> sp.Expr:
 
 def damping_ratio(gains: GainSymbols = GAINS) -> sp.Expr:
     """Return zeta = c2_gamma/(2 sqrt(c1_gamma)).
-
-    Parameters
-    ----------
-    gains : GainSymbols
-        Gains; all symbolic if not given.
 
     Examples
     --------
@@ -53,8 +43,6 @@ def transfer_function(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, 
     ----------
     scale : number or sympy.Expr
         1 for the true velocity, 0 for a p_r held at zero; erratum E12 has the step, a p_r per iteration.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     s : sympy.Symbol
         The Laplace variable.
 
@@ -81,8 +69,6 @@ def frequency_gain(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, ome
     ----------
     scale : number or sympy.Expr
         As in `transfer_function`, real.
-    gains : GainSymbols
-        Gains; all symbolic if not given.
     omega : number or sympy.Expr
         Angular frequency, real.
 

@@ -113,8 +113,8 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
     """The ultimate bound is proved; the end of the run stands beside, with what is left of the start by then."""
     from flint import arb, ctx
 
+    from flockana.certified.balls import ball
     from flockana.certified.basin import DIGITS
-    from flockana.certified.intervals import ball
 
     bound, run, basin = case.bound, seen.given, case.bound.basin
     distance, speed = case.unit * float(bound.distance), case.unit * float(bound.speed)

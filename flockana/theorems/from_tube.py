@@ -220,7 +220,7 @@ def rest_strain(basin: BasinLike, alpha: Any) -> arb:
     """
     from flint import arb
 
-    from flockana.certified.intervals import exact
+    from flockana.certified.balls import exact
 
     d, r = arb(exact(alpha.d)), arb(exact(alpha.r))
     lengths = [s.sqrt() for *_, s in basin.proof.structure.pairs(basin.proof.rest) if not s >= r * r]

@@ -1,5 +1,6 @@
 """Basins that several tests read, each certified once."""
 
+import copy
 from functools import cache
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, find_equilibrium, lattice
+from flockana.base.seals import with_digest
 
 TETRAHEDRON = 7.0 / np.sqrt(8.0) * np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 STARTS = {"pair": lattice.hexagonal_spiral(2, 7.0), "triangle": lattice.hexagonal_spiral(3, 7.0)}
@@ -56,3 +58,18 @@ def oscillator(t):
         t = arb(t)
         fade = (-t / 2).exp()
         return fade * (t.cos() + t.sin() / 2), -fade * t.sin() * arb(1.25)
+
+
+def with_leaf(data, at, change):
+    """A copy of a certificate in which what stands at a path of keys is changed."""
+    altered = copy.deepcopy(data)
+    place = altered
+    for key in at[:-1]:
+        place = place[key]
+    place[at[-1]] = change(place[at[-1]])
+    return altered
+
+
+def resealed(data):
+    """A certificate with a digest that fits."""
+    return with_digest({key: value for key, value in data.items() if key != "digest"})

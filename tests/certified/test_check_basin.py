@@ -9,13 +9,12 @@ from fractions import Fraction
 import pytest
 from flint import arb, ctx, fmpq
 
-from flockana.base.seals import with_digest
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError, check_data, unit
 from flockana.certified.check_basin import DIGITS
 from flockana.certified.check_net import ROOT_TWO, Net
 from flockana.certified.decimals import format_decimal, round_down
-from tests.certified.conftest import basin_of
+from tests.certified.conftest import basin_of, resealed
 
 
 @pytest.fixture
@@ -24,7 +23,7 @@ def data():
 
 
 def checked(data):
-    return check_data(with_digest({key: item for key, item in data.items() if key != "digest"}))
+    return check_data(resealed(data))
 
 
 def test_each_bound_is_asked_for_about_all_lengths_of_its_pairs_and_up_to_its_shell_s_end(data, monkeypatch):

@@ -16,10 +16,9 @@ from flockana import (
     Sphere,
     StaticTarget,
 )
+from flockana.certified.balls import AlphaParameters, BetaParameters, series_length
 from flockana.certified.check_motion import Motion
 from flockana.certified.check_sphere import Sphere as Rested
-from flockana.certified.check_tube import capped
-from flockana.certified.intervals import AlphaParameters, BetaParameters
 
 ALPHA = AlphaInteraction(a=1.0, b=3.0)
 GAINS = Gains(c1_alpha=4.0, c2_alpha=0.75, c1_gamma=1.5, c2_gamma=0.5, c1_beta=20.0, c2_beta=6.0)
@@ -66,7 +65,7 @@ def test_force_and_slope_are_those_of_the_law(law):
     assert {0, 1, 2} <= set(pieces)
     expected = law.acceleration(T, Q, P).ravel()
     for known in (pieces, [None] * len(pieces)):
-        with capped(1):
+        with series_length(1):
             u = motion.force(arb(T), [arb_series([x]) for x in state], known)
         np.testing.assert_allclose([float(x[0]) for x in u], expected, atol=1e-11)
     found = np.array([[float(x) for x in row] for row in motion.slope(state).tolist()])
@@ -87,7 +86,7 @@ def test_the_force_along_a_path_rises_as_the_law_s_does(law):
     motion, state, step = motion_of(law), balls([Q, P]), 1e-5
     path = [arb_series([x, v]) for x, v in zip(state[:10], state[10:], strict=True)]
     path += [arb_series([v]) for v in state[10:]]
-    with capped(2):
+    with series_length(2):
         u = motion.force(arb(T), path, motion.pieces(state[:10]))
     ends = [law.acceleration(T + s, Q + s * P, P).ravel() for s in (-step, step)]
     np.testing.assert_allclose([float(x[1]) for x in u], (ends[1] - ends[0]) / (2.0 * step), atol=1e-6)

@@ -1,6 +1,5 @@
 """Certificates of runs past a sphere: the checker's own formulas, and that what was altered is rejected."""
 
-import copy
 import json
 from dataclasses import replace
 
@@ -10,10 +9,11 @@ from flint import arb, arb_series
 
 from flockana import Algorithm3, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget, enclose
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import with_digest
+from flockana.certified.balls import series_length
 from flockana.certified.check import RejectedError, check_data
-from flockana.certified.check_tube import Run, capped
+from flockana.certified.check_tube import Run
 from flockana.certified.tube_certificate import tube_certificate
+from tests.certified.conftest import resealed, with_leaf
 
 LAW = Algorithm3(
     gains=Gains(c1_alpha=1.5, c2_alpha=2.0, c1_beta=100.0, c2_beta=20.0),
@@ -32,19 +32,6 @@ def tube():
 @pytest.fixture(scope="module")
 def data(tube):
     return json.loads(json.dumps(tube_certificate(tube)))
-
-
-def altered(data, *at, change):
-    other = copy.deepcopy(data)
-    place = other
-    for key in at[:-1]:
-        place = place[key]
-    place[at[-1]] = change(place[at[-1]])
-    return other
-
-
-def resealed(data):
-    return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
 def more(value):
@@ -70,7 +57,7 @@ def test_the_checkers_force_and_slope_are_those_of_the_law(data, x):
     np.testing.assert_allclose(found, LAW.jacobian(0.0, q, p), atol=1e-10)
     expected = LAW.acceleration(0.0, q, p).ravel()
     for pieces in (run.pieces(state[:4]), [None, None, None]):  # of series on their pieces, and across them
-        with capped(1):
+        with series_length(1):
             u = run.force(arb(0), [arb_series([y]) for y in state], pieces)
         np.testing.assert_allclose([float(y[0]) for y in u], expected, atol=1e-10)
 
@@ -112,7 +99,7 @@ def test_a_box_of_places_is_on_a_piece_only_if_all_of_it_is(data, clearance, off
 )
 def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, message):
     with pytest.raises(RejectedError, match=message):
-        check_data(resealed(altered(data, *at, change=more)))
+        check_data(resealed(with_leaf(data, at, more)))
 
 
 def leaves(data, at=()):
@@ -133,25 +120,25 @@ def test_any_one_number_that_is_altered_is_rejected(data):
     assert ("law", "spheres", 0, "radius") in places
     for at in places:
         with pytest.raises(RejectedError, match="digest"):
-            check_data(altered(data, *at, change=other))
+            check_data(with_leaf(data, at, other))
 
 
 def test_a_sphere_left_out_or_turned_is_rejected(data):
-    bare = altered(data, "law", "spheres", change=lambda spheres: [])
+    bare = with_leaf(data, ("law", "spheres"), lambda spheres: [])
     with pytest.raises(RejectedError, match=r"clearance = .*: expected null"):
         check_data(resealed(bare))
     with pytest.raises(RejectedError, match="the error may exceed"):
         check_data(resealed(bare | {"clearance": None}))
     with pytest.raises(RejectedError, match="another dimension"):
-        check_data(resealed(altered(data, "law", "spheres", 0, "centre", change=lambda centre: centre[:1])))
+        check_data(resealed(with_leaf(data, ("law", "spheres", 0, "centre"), lambda centre: centre[:1])))
     with pytest.raises(RejectedError, match="another dimension"):
-        check_data(resealed(altered(data, "law", "spheres", 0, "radius", change=lambda radius: f"-{radius}")))
+        check_data(resealed(with_leaf(data, ("law", "spheres", 0, "radius"), lambda radius: f"-{radius}")))
 
 
 def test_no_basin_among_spheres_is_believed(data):
     """Basins are those of Algorithms 1 and 2."""
     with pytest.raises(RejectedError, match="a basin of Algorithm 3"):
-        check_data(resealed(altered(data, "basin", change=lambda none: {"kind": "basin"})))
+        check_data(resealed(with_leaf(data, ("basin",), lambda none: {"kind": "basin"})))
 
 
 def test_a_moving_target_has_no_certificate():

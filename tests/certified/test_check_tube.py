@@ -6,8 +6,9 @@ import pytest
 from flint import arb, arb_mat, ctx
 
 from flockana import Algorithm1, enclose
-from flockana.certified.check_tube import Run, positive
-from flockana.certified.intervals import AlphaParameters
+from flockana.certified.balls import AlphaParameters
+from flockana.certified.check import positive
+from flockana.certified.check_tube import Run
 from flockana.certified.tube_certificate import tube_certificate
 
 

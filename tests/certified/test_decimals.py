@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 import proofs as package
 from flockana.certified import decimals
-from flockana.certified.intervals import AlphaParameters
+from flockana.certified.balls import AlphaParameters
 from proofs import n_max, unstressed_patches
 from proofs.proof import Step, names, proofs
 from proofs.run import Outcome

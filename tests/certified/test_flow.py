@@ -5,9 +5,9 @@ import pytest
 from flint import arb, arb_series, ctx
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, LinearTarget, StaticTarget
-from flockana.certified.flow import series_length
+from flockana.certified.balls import series_length
 from flockana.certified.laws import flow_of
-from flockana.certified.series import PairNumbers, Piece, pair_hull, pair_series, pair_slopes
+from flockana.certified.series import PairNumbers, Piece
 from flockana.kernels import alpha as kernel
 
 LAWS = [AlphaInteraction(), AlphaInteraction(d=3.0, r=4.5, eps=0.2, h=0.4, a=2.0, b=7.0, unit=1.5)]
@@ -17,7 +17,7 @@ LENGTHS = {Piece.CORE: 0.4, Piece.TAPER: 0.8, Piece.OUT: 1.1}  # of r
 @pytest.mark.parametrize("alpha", LAWS)
 @pytest.mark.parametrize("piece", [Piece.CORE, Piece.TAPER])
 def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece):
-    law, share = PairNumbers.of(alpha), 0.1 if piece is Piece.CORE else 0.8
+    law, share = PairNumbers.of_alpha(alpha), 0.1 if piece is Piece.CORE else 0.8
     s2 = (share * alpha.r) ** 2
     assert law.piece(arb(s2)) is piece
     expected = (
@@ -27,16 +27,17 @@ def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece
     )
     with series_length(1):
         series = arb_series([arb(s2)])
-        found = [float(x[0]) for x in (*pair_series(series, law, piece), *pair_slopes(series, law, piece))]
+        found = [float(x[0]) for x in (*law.pair(series, piece), *law.slopes(series, piece))]
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
-    np.testing.assert_allclose([float(x) for x in pair_hull(arb(s2), law)], expected, rtol=1e-12, atol=1e-14)
+    hull = (*law.pair(arb(s2)), *law.slopes(arb(s2)))
+    np.testing.assert_allclose([float(x) for x in hull], expected, rtol=1e-12, atol=1e-14)
 
 
 @pytest.mark.parametrize("alpha", LAWS)
 def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
-    law = PairNumbers.of(alpha)
+    law = PairNumbers.of_alpha(alpha)
     for z in (law.knee, law.cutoff):
-        length2 = float(((1 + law.eps * z) ** 2 - 1) / law.eps * law.area)
+        length2 = float(((1 + law.eps * z) ** 2 - 1) / law.eps)
         wide = arb(length2, 0.3)
         assert law.piece(wide) is Piece.SWITCH
         for s2 in (length2 - 0.25, length2, length2 + 0.25):
@@ -45,11 +46,12 @@ def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
                 kernel.pair_alpha_slope(s2, alpha.par),
                 kernel.pair_alpha_adjacency_slope(s2, alpha.par),
             )
-            assert all((x + arb(0, 1e-12)).contains(arb(y)) for x, y in zip(pair_hull(wide, law), point, strict=True))
+            hull = (*law.pair(wide), *law.slopes(wide))
+            assert all((x + arb(0, 1e-12)).contains(arb(y)) for x, y in zip(hull, point, strict=True))
 
 
 def test_out_of_range_is_a_piece_of_its_own_and_exactly_r_lies_on_the_switch():
-    law = PairNumbers.of(AlphaInteraction(d=7.0, r=8.5))
+    law = PairNumbers.of_alpha(AlphaInteraction(d=7.0, r=8.5))
     assert law.piece(arb(8.6) ** 2) is Piece.OUT
     assert law.piece(arb(8.5) ** 2) is Piece.SWITCH
 

@@ -6,6 +6,7 @@ from flint import arb, ctx
 
 from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.certified import levels
+from flockana.certified.series import PairNumbers
 from flockana.equilibria.barrier import coincident_lattice, collision_bounds
 from flockana.theorems.olfati_saber.any_potential import disconnected_energy
 
@@ -29,13 +30,10 @@ def test_two_agents_at_one_place_cost_c_star_and_no_more():
 
 
 def test_a_length_at_which_a_pair_is_bound_is_not_called_too_short():
-    par = levels.scaled(AlphaInteraction())
     with ctx.workprec(100):
-        shortest = levels._shortest_bound(par)
+        pair, shortest = PairNumbers.of_alpha(AlphaInteraction()), levels._shortest_bound(AlphaInteraction())
         assert abs(float(shortest) - 6.568) < 1e-3
-        value = levels.psi_alpha(levels.sigma_norm(arb(shortest), par.eps), par)
-        assert value > levels.far_potential(par)
-        assert value < levels.far_potential(par) + arb("1e-9")
+        assert pair.far < pair.potential(arb(shortest) ** 2) < pair.far + arb("1e-9")
 
 
 def test_a_state_left_behind_has_the_energy_of_its_lattice_and_none_where_there_is_none():
@@ -53,8 +51,8 @@ WEAK = AlphaInteraction(d=1.0, r=10.0)  # what holds a pair out to r costs more 
 
 
 def test_a_unit_of_length_counts_twice():
-    """V in units of ℓ², with the gain that makes up for it, is the energy of the law at the same state."""
-    assert levels.gain(HEAVY) == 12
+    """V with its gain is the energy of the law at the same state, in any unit."""
+    assert levels.gain(HEAVY) == 3
     q = coincident_lattice(HEAVY.alpha, 5, 2)
     found = levels.gain(HEAVY) * levels.coincident_state(HEAVY.alpha, 5, 2)
     assert float(found) == pytest.approx(HEAVY.structural_energy(q, np.zeros_like(q)), rel=1e-12)
@@ -66,25 +64,23 @@ def test_a_floor_is_a_ball_about_a_number_that_no_digits_write():
 
 @pytest.mark.parametrize("n", [2, 9])
 def test_where_pairs_cost_more_apart_than_together_only_the_coincident_pair_counts(n):
-    par = levels.scaled(WEAK)
     with ctx.workprec(100):
-        assert levels.c_star(par) < levels.far_potential(par)
-        assert levels._shortest_bound(par) is None
-        assert levels._largest_clique(par, 2) is None
-        assert levels.coincident_floor(WEAK, n, 2).overlaps(levels.c_star(par))
+        pair = PairNumbers.of_alpha(WEAK)
+        assert pair.c_star < pair.far
+        assert levels._shortest_bound(WEAK) is None
+        assert levels._largest_clique(WEAK, 2) is None
+        assert levels.coincident_floor(WEAK, n, 2).overlaps(pair.c_star)
 
 
 @pytest.mark.parametrize("r", [7.5, 8.4, 12.0, 16.0, 18.0])
 def test_below_the_shortest_length_of_a_bound_pair_a_pair_costs_more_than_one_apart(r):
-    par = levels.scaled(AlphaInteraction(r=r))
     with ctx.workprec(100):
-        shortest = levels._shortest_bound(par)
+        pair, shortest = PairNumbers.of_alpha(AlphaInteraction(r=r)), levels._shortest_bound(AlphaInteraction(r=r))
         if shortest is None:
-            assert not levels.c_star(par) > levels.far_potential(par)
+            assert not pair.c_star > pair.far
             return
-        assert levels.psi_alpha(levels.sigma_norm(arb(shortest), par.eps), par) > levels.far_potential(par)
-        longer = arb(shortest) + arb("1e-9")
-        assert levels.psi_alpha(levels.sigma_norm(longer, par.eps), par) < levels.far_potential(par)
+        assert pair.potential(arb(shortest) ** 2) > pair.far
+        assert pair.potential((arb(shortest) + arb("1e-9")) ** 2) < pair.far
 
 
 def ratio_of(points):
@@ -114,23 +110,22 @@ def test_the_least_ratios_are_those_of_the_best_sets_of_points():
 )
 def test_so_many_points_fit(r, m, most):
     """Between the shortest distance of a bound pair and r: ratios of 1.10, 1.60 and 4.27."""
-    par = levels.scaled(AlphaInteraction(r=r))
     with ctx.workprec(100):
-        assert levels._largest_clique(par, m) == most
+        assert levels._largest_clique(AlphaInteraction(r=r), m) == most
 
 
 def test_one_agent_alone_is_not_left_behind_and_of_two_one_is():
     alpha = AlphaInteraction()
     assert levels.disconnected_state(alpha, 1, 2) is None
     with ctx.workprec(100):
-        assert levels.disconnected_state(alpha, 2, 2).overlaps(levels.far_potential(levels.scaled(alpha)))
+        assert levels.disconnected_state(alpha, 2, 2).overlaps(PairNumbers.of_alpha(alpha).far)
 
 
 def test_on_a_line_a_lattice_is_exact_below_twice_its_length():
     """κ = 1.9: agents d apart hold to their neighbours alone; at κ = 2 they hold to the next as well."""
     alpha = AlphaInteraction(d=5.0, r=9.5)
     with ctx.workprec(100):
-        far = levels.far_potential(levels.scaled(alpha))
+        far = PairNumbers.of_alpha(alpha).far
         assert levels.disconnected_state(alpha, 5, 1).overlaps(7 * far)  # 10 pairs less 3 bonds
     assert levels.disconnected_state(alpha, 5, 2) is None
     assert levels.disconnected_state(AlphaInteraction(d=5.0, r=10.0), 5, 1) is None

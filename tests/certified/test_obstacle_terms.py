@@ -7,8 +7,7 @@ from flint import arb, ctx
 from flockana import Algorithm3, BetaInteraction, Gains, Sphere, StaticTarget, enclose, simulate
 from flockana.certified import lohner
 from flockana.certified.laws import flow_of, sphere_terms
-from flockana.certified.obstacle_terms import BetaNumbers
-from flockana.certified.series import Piece
+from flockana.certified.series import PairNumbers, Piece
 
 GAINS = Gains(c1_alpha=12.0, c2_alpha=3.5, c1_gamma=1.25, c2_gamma=0.75, c1_beta=40.0, c2_beta=5.0)
 BETAS = [BetaInteraction(), BetaInteraction(d=2.0, r=3.0, eps=0.2, h=0.5, unit=1.5)]
@@ -82,10 +81,10 @@ def test_taylor_coefficients_are_those_of_the_flow_and_of_its_derivative(beta):
 
 @pytest.mark.parametrize(("clearance", "piece"), [(0.25, Piece.CORE), (0.9, Piece.TAPER), (1.5, Piece.OUT)])
 def test_the_pieces_are_those_of_the_clearance_on_either_side_of_the_surface(clearance, piece):
-    numbers = BetaNumbers.of(LAW.beta)
-    assert numbers.piece(arb(clearance)) is numbers.piece(arb(-clearance)) is piece
+    numbers = PairNumbers.of_beta(LAW.beta)
+    assert numbers.piece(arb(clearance) ** 2) is piece
     assert numbers.piece(arb(1.0)) is Piece.SWITCH
-    assert numbers.piece(arb(0, 0.25)) is Piece.CORE  # the surface is no switch
+    assert numbers.piece(arb(0, 0.25) * arb(0, 0.25)) is Piece.CORE  # the surface is no switch
 
 
 def test_the_centre_of_a_sphere_has_no_force():

@@ -7,10 +7,10 @@ import pytest
 from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana.certified.balls import square
 from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
 from flockana.certified.decimals import format_decimal, round_down, round_up
-from flockana.certified.intervals import square
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.structure import Structure

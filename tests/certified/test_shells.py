@@ -7,7 +7,7 @@ from flint import arb, ctx, fmpq
 
 from flockana import Algorithm1
 from flockana.certified import shells
-from flockana.certified.intervals import ball
+from flockana.certified.balls import ball
 from flockana.certified.pair_floors import LengthCells
 from flockana.certified.shells import SHELLS, Shells, Surroundings
 from flockana.certified.structure import Structure

@@ -6,7 +6,8 @@ from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, CuckerSmale, Gains, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.certified.structure import Structure, dot, outer
+from flockana.certified.balls import dot
+from flockana.certified.structure import Structure, outer
 
 GAINS = Gains(c1_alpha=2.5, c2_alpha=0.75, c1_gamma=1.25, c2_gamma=0.5)
 ALPHA = AlphaInteraction(a=2.0, b=5.0, d=6.0, r=7.5)

@@ -1,6 +1,5 @@
 """Certificates of tubes: what was altered is rejected, by the digest or, sealed again, by the mathematics."""
 
-import copy
 import json
 from math import sqrt
 from types import SimpleNamespace
@@ -11,10 +10,10 @@ from flint import arb, ctx
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, certify, check_certificate, enclose, find_equilibrium
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import with_digest
 from flockana.certified import check_tube
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
+from tests.certified.conftest import resealed, with_leaf
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))
 
@@ -37,20 +36,6 @@ def leaves(data, at=()):
             yield from leaves(value, (*at, key))
     elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
         yield at
-
-
-def with_leaf(data, at, change):
-    """A copy in which one of them is changed, sealed again."""
-    altered = copy.deepcopy(data)
-    place = altered
-    for key in at[:-1]:
-        place = place[key]
-    place[at[-1]] = change(place[at[-1]])
-    return altered
-
-
-def resealed(data):
-    return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
 def test_it_holds_and_says_what_was_verified(data, tmp_path, tube):

@@ -13,7 +13,8 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 import z3
 from flint import arb, ctx
 
-from flockana.certified.intervals import AlphaParameters, c_star, far_potential
+from flockana.certified.balls import AlphaParameters
+from flockana.certified.intervals import c_star, far_potential
 from flockana.dynamics.simulate import simulate
 from flockana.equilibria.barrier import (
     bound_range,

@@ -10,7 +10,7 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 from flint import arb, arb_mat, ctx
 
 from flockana.certified import krawczyk
-from flockana.certified.intervals import AlphaParameters
+from flockana.certified.balls import AlphaParameters
 from flockana.equilibria import find_equilibrium
 from flockana.equilibria.potential import Potential
 from flockana.interactions import AlphaInteraction

@@ -5,7 +5,7 @@ import pytest
 from flint import arb, ctx
 
 from flockana.certified import intervals
-from flockana.certified.intervals import AlphaParameters, BetaParameters
+from flockana.certified.balls import AlphaParameters, BetaParameters, exact
 from flockana.interactions import AlphaInteraction, BetaInteraction
 from proofs import enclosures
 
@@ -133,7 +133,7 @@ def test_psi_is_continuous_where_its_pieces_meet(h):
 
 def test_parameters_are_the_decimals_that_are_printed():
     assert AlphaParameters.of(AlphaInteraction()) == AlphaParameters(7, "8.4", 0.1, "0.2", 5, 5)
-    assert str(intervals.exact(0.1)) == "1/10"
+    assert str(exact(0.1)) == "1/10"
     assert str(AlphaParameters()).startswith("d = 7, r = 42/5, eps = 1/10")
     with pytest.raises(ValueError, match=r"d = 7, r = 6, .*: expected 0 < d < r"):
         AlphaParameters(r=6)

@@ -105,7 +105,7 @@ def root_enclosure(share: Fraction) -> Any:
     """
     from flint import acb, arb, ctx
 
-    from flockana.certified.intervals import ball
+    from flockana.certified.balls import ball
 
     with ctx.workdps(_DIGITS):
         delay = ball(share) * arb.pi() / 2

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
-from flockana.certified.intervals import c_star, exact, far_potential
+from flockana.certified.balls import exact
 from flockana.certified.levels import coincident_floor, coincident_state, disconnected_state, gain
-from flockana.certified.structural_energy import BITS, scaled
+from flockana.certified.series import PairNumbers
+from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, down, up
 from flockana.theorems.claims import undecided, vacuous
 from flockana.theorems.from_tube import (
@@ -34,8 +35,7 @@ _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 def _coincident_energy(tube: Tube) -> arb:
     """Return c* with its gain, c1α ψ_α(0)."""
-    unit = arb(exact(tube.law.alpha.unit))
-    return arb(exact(tube.law.gains.c1_alpha)) * unit * unit * c_star(scaled(tube.law.alpha))
+    return gain(tube.law) * PairNumbers.of_alpha(tube.law.alpha).c_star
 
 
 def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
@@ -73,7 +73,7 @@ def _stays_together(tube: Tube) -> Hypothesis:
     with ctx.workprec(BITS):
         apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
         excess = arb(0) if apart is None else tube.energy(0) - gain(tube.law) * apart
-        room = gain(tube.law) * (tube.n - 1) * far_potential(scaled(tube.law.alpha)) - tube.energy(0)
+        room = gain(tube.law) * (tube.n - 1) * PairNumbers.of_alpha(tube.law.alpha).far - tube.energy(0)
     if excess > 0:
         return condition(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
     if room > 0:

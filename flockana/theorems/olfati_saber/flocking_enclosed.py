@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
-from flockana.certified.intervals import exact, square
+from flockana.certified.balls import exact, square
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Pair, Tube, norm
 from flockana.theorems.from_tube import certain_links, decided, groups

@@ -1,0 +1,138 @@
+"""Ball arithmetic (Arb): exact numbers, ranges of monotone functions, and the exact parameters of pair laws.
+
+An argument is an `arb` ball, or an exact number (int, Fraction, fmpq; a float counts with its binary value): the result
+contains the function's values on all of it. Comparisons of balls are true only if certain. Work at a precision of your
+choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `square`: ``x**2`` gives nan there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from typing import Any, Self
+
+from flint import arb, arb_series, ctx, fmpq
+
+
+class Piece(Enum):
+    """Piece of ρ_h on which the distance of a pair lies, or possibly two."""
+
+    CORE = "z < h r_α"
+    TAPER = "h r_α < z < r_α"
+    OUT = "z > r_α"
+    SWITCH = "about a distance where pieces meet"
+
+
+def ball(x: Any) -> arb:
+    """Return an exact number, or a ball, as a ball at the present precision."""
+    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
+
+
+def exact(x: Any) -> fmpq:
+    """Return a number as the rational of its printed decimal, 0.1 = 1/10."""
+    fraction = Fraction(str(x))
+    return fmpq(fraction.numerator, fraction.denominator)
+
+
+def hull(*balls: arb) -> arb:
+    """Return the smallest ball around several."""
+    first, *rest = balls
+    for one in rest:
+        first = first.union(one)
+    return first
+
+
+def square(x: Any) -> Any:
+    """Return x² of a ball, never below 0, or of a series."""
+    return (x * x).nonnegative_part() if isinstance(x, arb) else x * x
+
+
+def dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    """Return ⟨a, b⟩ of balls or of series."""
+    products = [x * y for x, y in zip(a, b, strict=True)]
+    return sum(products[1:], products[0])
+
+
+def norm2(x: Sequence[Any]) -> Any:
+    """Return ‖x‖² of balls, never below 0, or of series."""
+    return sum(map(square, x[1:]), square(x[0]))
+
+
+def monotone(f: Callable[[Any], Any], x: Any) -> Any:
+    """Return the range of a monotone function on a ball, from the ends of the ball; the function of a series."""
+    return f(x) if not isinstance(x, arb) or x.is_exact() else hull(f(x.lower()), f(x.upper()))
+
+
+def clamp(x: arb) -> arb:
+    """Return the nearest number in [0, 1]."""
+    return x.max(arb(0)).min(arb(1))
+
+
+def place(z: Any, h: arb, piece: Piece) -> Any:
+    """Return the place on the taper from 0 to 1: of a ball on any pieces, or of a series on one within the range."""
+    if piece is Piece.CORE and not isinstance(z, arb):
+        return arb_series([0])
+    on_taper = (z - h) / (1 - h)
+    return clamp(on_taper) if isinstance(z, arb) else on_taper
+
+
+@contextmanager
+def series_length(length: int) -> Iterator[None]:
+    """Set the length of power series inside the block."""
+    before, ctx.cap = ctx.cap, length
+    try:
+        yield
+    finally:
+        ctx.cap = before
+
+
+class _Exact:
+    """Base class of bundles of exact rationals, given as printed decimals."""
+
+    def __post_init__(self) -> None:
+        for name in vars(self):
+            object.__setattr__(self, name, exact(getattr(self, name)))
+        self._ensure_valid()
+
+    def _ensure_valid(self) -> None:
+        """Raise ValueError on a number out of its range."""
+
+    @classmethod
+    def of(cls, interaction: Any) -> Self:
+        """Return the parameters of an interaction as exact decimals."""
+        return cls(**{name: getattr(interaction, name) for name in cls.__annotations__})
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} = {value}" for name, value in vars(self).items())
+
+
+@dataclass(frozen=True)
+class AlphaParameters(_Exact):
+    """Parameters of the α-pair law."""
+
+    d: fmpq = 7
+    r: fmpq = "8.4"
+    eps: fmpq = "0.1"
+    h: fmpq = "0.2"
+    a: fmpq = 5
+    b: fmpq = 5
+
+    def _ensure_valid(self) -> None:
+        if not (0 < self.d < self.r and self.eps > 0 and 0 < self.h < 1 and 0 < self.a <= self.b):
+            raise ValueError(f"{self}: expected 0 < d < r, eps > 0, 0 < h < 1, 0 < a <= b")
+
+
+@dataclass(frozen=True)
+class BetaParameters(_Exact):
+    """Parameters of the β-pair law: d' (here d), ε and h."""
+
+    d: fmpq = "4.2"
+    eps: fmpq = "0.1"
+    h: fmpq = "0.9"
+
+    def _ensure_valid(self) -> None:
+        if not (self.d > 0 and self.eps > 0 and 0 < self.h < 1):
+            raise ValueError(f"{self}: expected d > 0, eps > 0, 0 < h < 1")
