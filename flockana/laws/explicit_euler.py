@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flockana.base.checks import FloatArray
 from flockana.laws.scheme import Scheme
 
 
@@ -13,17 +11,7 @@ from flockana.laws.scheme import Scheme
 class ExplicitEuler(Scheme):
     """q' = q + dt p, p' = p + dt u(t, q, p): of first order, and unstable wherever a swing is not damped.
 
-    Parameters
-    ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    Parameters and errors are those of every `Scheme`.
 
     Examples
     --------
@@ -35,9 +23,3 @@ class ExplicitEuler(Scheme):
     """
 
     position_factor = 0.0
-
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        u = self.law.flow(t, q, p)[0]
-        return q + self.dt * p, p + self.dt * u, u, memory

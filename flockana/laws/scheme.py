@@ -15,10 +15,14 @@ from flockana.laws.law import Law
 
 @dataclass(frozen=True)
 class Scheme(DiscreteLaw):
-    """A map that approximates the flow of a law; a subclass says how it steps.
+    """A map that approximates the flow of a law: q' = q + dt p + f dt² u, p' = p + dt u, with f `position_factor`.
+
+    A subclass gives f, or a step of its own.
 
     Parameters
     ----------
+    law : Law
+        The continuous law.
     dt : float
         Step.
 
@@ -48,3 +52,9 @@ class Scheme(DiscreteLaw):
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         # the energy of the law that is stepped; the scheme does not keep its balance
         return self.law.hamiltonian(t, q, p)
+
+    def step(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        u, h, f = self.law.flow(t, q, p)[0], self.dt, float(self.position_factor or 0.0)
+        return q + h * p + (f * h * h) * u, p + h * u, u, memory

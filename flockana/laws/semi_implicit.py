@@ -22,17 +22,7 @@ class SemiImplicitEuler(Scheme):
     A scheme of first order with a fixed step: where the law jumps it neither sees the jump nor resolves it, and where
     the law holds a pair at a jump it chatters about it (erratum L7).
 
-    Parameters
-    ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    Parameters and errors are those of every `Scheme`.
 
     Examples
     --------

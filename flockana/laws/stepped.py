@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, isclose
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_positive
+from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
-from flockana.base.units import Powers
-from flockana.laws.discrete import DiscreteLaw, IndexArray
-from flockana.laws.law import Law
+from flockana.laws.delayed import Delayed
+from flockana.laws.discrete import IndexArray
+from flockana.laws.scheme import Scheme
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
 ORDERS = (1, 2, 4)
@@ -24,7 +24,7 @@ _Past = deque[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]  # q, p, u 
 
 
 @dataclass(frozen=True)
-class Stepped(DiscreteLaw):
+class Stepped(Scheme):
     """A wrapped law in fixed steps, as `simulate(law, ..., dt=)` runs it.
 
     Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. Order 2 is
@@ -59,21 +59,16 @@ class Stepped(DiscreteLaw):
     0.75
     """
 
-    law: Law
-    dt: float = 0.01
     order: int = 2
 
-    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
-    approximates = True
     steps_at_once = 512
     private = ("step", "past", "held")
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, Wrapper):
             raise ArgumentError(f"law = {self.law!r}: expected a law that wraps one, such as Disturbed(law, ...)")
-        dt = ensure_positive("dt", self.dt)
-        object.__setattr__(self, "dt", dt)
+        super().__post_init__()
+        dt = self.dt
         if self.order not in ORDERS:
             raise ArgumentError(f"order = {self.order!r}: expected one of 1, 2, 4")
         for clock in (clock for one in self.law.wrappers for clock in one.clocks):
@@ -82,13 +77,10 @@ class Stepped(DiscreteLaw):
                     f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
                     f"{clock / max(1, ceil(clock / dt)):.12g}"
                 )
+        for late in self._late:
+            late.ensure_remembered(self._memory)
         if self.order == 4 and self.noisy:
             raise ArgumentError("order = 4: noise is stepped with order 1 or 2; expected one of them")
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
-        """Keys of the law's bibliography."""
-        return self.law.references
 
     @property
     def noisy(self) -> bool:
@@ -100,23 +92,31 @@ class Stepped(DiscreteLaw):
         return tuple(self.law.wrappers) if isinstance(self.law, Wrapper) else ()
 
     @cached_property
+    def _late(self) -> tuple[Delayed, ...]:
+        return tuple(one for one in self._wrappers if isinstance(one, Delayed))
+
+    @cached_property
+    def _memory(self) -> float:
+        """Longest time that the law looks back: delays within each other add up."""
+        return sum(one.memory for one in self._wrappers)
+
+    @cached_property
     def past_steps(self) -> int:
         """Steps of the past that are kept, the present one among them."""
-        longest = sum(one.memory for one in self._wrappers)
-        return 2 + ceil(longest / self.dt - _WHOLE) if longest > 0.0 else 0
+        return 2 + ceil(self._memory / self.dt - _WHOLE) if self._memory > 0.0 else 0
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         self.law.check_agents(n)
 
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
-        return self.law.hamiltonian(t, q, p)
-
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The past: before the start the flock moved with its initial velocities."""
+        """Return the past: the history of a delayed law, else a motion with the initial velocities."""
         rows = (self.past_steps, *q.shape)
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
-        back, still = self.dt * np.arange(1 - self.past_steps, 1)[:, None, None], np.zeros(rows)
-        past = np.stack([q + back * p, still + p, still, still], axis=1)
+        past = np.empty((0, 4, *q.shape))
+        if self.past_steps:
+            told = next((one for one in self._late if one.history_t is not None), self._late[0])
+            before, speeds, push = told.past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
     def step(  # noqa: D102

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flockana.base.checks import FloatArray
 from flockana.laws.scheme import Scheme
 
 
@@ -16,17 +14,7 @@ class TaylorStep(Scheme):
     The R² notebook's iteration, and the plainest reading of a source that prints a step and no scheme. It is of first
     order: the input is not looked at again within the step, so that fast vibrations are fed with energy.
 
-    Parameters
-    ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    Parameters and errors are those of every `Scheme`.
 
     Examples
     --------
@@ -43,9 +31,3 @@ class TaylorStep(Scheme):
     """
 
     position_factor = 0.5
-
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        u, h = self.law.flow(t, q, p)[0], self.dt
-        return q + h * p + (0.5 * h * h) * u, p + h * u, u, memory

@@ -106,14 +106,57 @@ class Step:
         return numbers
 
 
-class Wrapper(Law):
+class Around(Law):
+    """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
+
+    law: Law
+
+    @property
+    def target(self) -> Target | None:  # type: ignore[override]
+        """The γ-agent of the inner law."""
+        return self.law.target
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
+        """Obstacles of the inner law."""
+        return self.law.obstacles
+
+    @property
+    def obstacle_field(self) -> ObstacleField | None:
+        """β-interaction of the inner law with its obstacles."""
+        return self.law.obstacle_field
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
+        """Keys of the inner law's bibliography."""
+        return self.law.references
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
+        return self.law.surfaces
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.law.check_dimension(m)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        self.law.check_start(q, p)
+
+
+class Wrapper(Around):
     """A law with one imperfection of the loop around it; wraps any law, another wrapper too.
 
     A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says
     whether it can be integrated by fixed steps only, because it has a past, a clock or chance.
     """
 
-    law: Law
     stepped: ClassVar[bool] = True
 
     @abstractmethod
@@ -144,6 +187,11 @@ class Wrapper(Law):
     def noisy(self) -> bool:
         """Whether it has random numbers, anew at each step."""
         return hasattr(self, "seed") and self.stepped
+
+    @property
+    def moving(self) -> bool:
+        """Whether the law's energy is that in the frame of the centre of mass."""
+        return bool(getattr(self.law, "moving", False))
 
     @property
     def memory(self) -> float:
@@ -182,46 +230,8 @@ class Wrapper(Law):
         """The law within all wrappers."""
         return self.law.core if isinstance(self.law, Wrapper) else self.law
 
-    @property
-    def target(self) -> Target | None:  # type: ignore[override]
-        """The γ-agent of the law."""
-        return self.law.target
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
-        """What the law's agents keep off."""
-        return self.law.obstacles
-
-    @property
-    def obstacle_field(self) -> ObstacleField | None:
-        """How they do."""
-        return self.law.obstacle_field
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
-        """Keys of the law's bibliography."""
-        return self.law.references
-
-    @property
-    def scales(self) -> Scales | None:  # noqa: D102
-        return self.law.scales
-
-    @property
-    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
-        return self.law.surfaces
-
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         return self.law.hamiltonian(t, q, p)  # of the law; its balance is not kept
-
-    def check_dimension(self, m: int) -> None:  # noqa: D102
-        self.law.check_dimension(m)
-
-    def check_agents(self, n: int) -> None:  # noqa: D102
-        self.law.check_agents(n)
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
-        super().check_start(q, p)
-        self.law.check_start(q, p)
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Any:  # noqa: D102
         return self.law.measures(t, q, p, extra)
