@@ -17,6 +17,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positive, ensure_state
 from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.directed import directed_forces, seen_edges
@@ -99,6 +100,10 @@ class DirectedNet(Around):
     def alpha(self) -> AlphaInteraction:
         """The pair law."""
         return paper_pair(self.law)
+
+    @property
+    def scales(self) -> Scales:  # noqa: D102
+        return self.law.scales
 
     @property
     def lattice(self) -> None:
