@@ -17,7 +17,7 @@ from flockana.kernels import force as kernel
 from flockana.kernels.listed import no_energy
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, TermKernel
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of, normal_numbers
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
@@ -191,6 +191,22 @@ class Disturbed(Wrapper):
         kick: FloatArray = self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
         return kick
 
+    def kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
+        """Return `kick` of the steps from `first` on, stacked.
+
+        Parameters
+        ----------
+        first, count : int
+            Number of the first step, and of steps.
+        h : float
+            Their length.
+        shape : (int, int)
+            (n, m).
+        """
+        if not self.intensity:
+            return np.zeros((count, *shape))
+        return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
+
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         if self.stepped:
             return super().flow(t, q, p)
@@ -200,7 +216,18 @@ class Disturbed(Wrapper):
         return u + push, rate + float(np.sum(push * velocity))
 
     def compiled(self, m: int) -> Compiled | None:  # noqa: D102
-        form = None if self.stepped or callable(self.force) or self.times else self.law.compiled(m)
+        return None if self.stepped else self.compiled_push(m)
+
+    def compiled_push(self, m: int) -> Compiled | None:
+        """The law with its pushes and without its noise, as `compiled` gives it.
+
+        Parameters
+        ----------
+        m : int
+            Dimension of the flock.
+        """
+        inner = self.law.compiled_push(m) if isinstance(self.law, Disturbed) else self.law.compiled(m)
+        form = None if callable(self.force) or self.times else inner
         if form is None:
             return None
         numbers = kernel.numbers(form.moving, *self._rows(m), 2.0 * pi * self.frequency)

@@ -13,8 +13,13 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
+from flockana.kernels.blocks import BLOCK
+from flockana.kernels.euler_maruyama import march
+from flockana.kernels.runge_kutta import System
+from flockana.kernels.verlet import SKIN
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import IndexArray
+from flockana.laws.disturbed import Disturbed
 from flockana.laws.scheme import Scheme
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
@@ -27,9 +32,10 @@ _Past = deque[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]  # q, p, u 
 class Stepped(Scheme):
     """A wrapped law in fixed steps, as `simulate(law, ..., dt=)` runs it.
 
-    Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. Order 2 is
-    Heun's scheme, with noise that is added a weak one of order 2. Order 4 is the classical Runge-Kutta scheme, of laws
-    without noise; the past between steps is a Hermite cubic. Steps must divide delays and sampling periods.
+    Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. It is compiled
+    where the law within is and all that is around it are pushes. Order 2 is Heun's scheme, with noise that is added a
+    weak one of order 2. Order 4 is the classical Runge-Kutta scheme, of laws without noise; the past between steps is a
+    Hermite cubic. Steps must divide delays and sampling periods.
 
     Parameters
     ----------
@@ -133,6 +139,8 @@ class Stepped(Scheme):
     def visit(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        if self.order == 1 and (made := self._marched(t, q, p, int(memory["step"]), wanted)) is not None:
+            return made
         shape, advance = q.shape, {1: self._euler, 2: self._heun, 4: self._runge_kutta}[self.order]
         past: _Past = deque([tuple(row) for row in memory["past"]], maxlen=self.past_steps or 1)
         first = int(memory["step"])
@@ -157,6 +165,27 @@ class Stepped(Scheme):
         after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
         after["past"] = np.array(past) if self.past_steps else np.empty((0, 4, *shape))
         return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
+
+    def _marched(
+        self, t: float, q: FloatArray, p: FloatArray, first: int, wanted: IndexArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+        """What `visit` gives, from one compiled call; None of a law that is not compiled, or has more than pushes."""
+        law, (n, m), steps = self.law, q.shape, int(wanted[-1])
+        pushing = [one for one in self._wrappers if isinstance(one, Disturbed)]
+        if not isinstance(law, Disturbed) or len(pushing) < len(self._wrappers):
+            return None
+        if (form := law.compiled_push(m)) is None or any(term.guard is not None for term in form.terms):
+            return None
+        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        still, own = (t, np.zeros(m), np.zeros(m)), np.arange(n, dtype=np.uint64)
+        reach = (form.reach, SKIN * form.reach)
+        system = System(*form.functions, form.numbers, still, form.moving, reach, own, *room)
+        kicks = sum((one.kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
+        y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
+        if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, out):
+            return None
+        held, past = np.full((1, len(self._wrappers), n, m), np.nan), np.empty((1, 0, 4, n, m))
+        return out[0], out[1], out[2], {"step": np.array([float(first + steps)]), "held": held, "past": past}
 
     def _ask(self, now: Step, t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         return input_of(self.law, now, View(t, q, p))

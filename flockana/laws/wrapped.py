@@ -100,10 +100,21 @@ class Step:
         block, row = divmod(self.number, _BLOCK)
         found = self._drawn.get((seed, channel))
         if found is None or found[0] != block:
-            generator = np.random.Generator(np.random.Philox(key=seed * _CHANNELS + channel, counter=[0, 0, 0, block]))
-            found = self._drawn[(seed, channel)] = block, generator.standard_normal((_BLOCK, *shape))
+            found = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
         numbers: FloatArray = found[1][row]
         return numbers
+
+
+def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -> FloatArray:
+    generator = np.random.Generator(np.random.Philox(key=seed * _CHANNELS + channel, counter=[0, 0, 0, block]))
+    return generator.standard_normal((_BLOCK, *shape))
+
+
+def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, count: int) -> FloatArray:
+    """Return what `Step.normal` gives of the steps from `first` on, stacked."""
+    blocks = range(first // _BLOCK, (first + count - 1) // _BLOCK + 1)
+    numbers = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
+    return numbers[first % _BLOCK :][:count]
 
 
 class Around(Law):

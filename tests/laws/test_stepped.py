@@ -8,7 +8,7 @@ import pytest
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
+from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.lattice import hexagonal_patch
 from flockana.laws.delayed import Delayed
 from flockana.laws.disturbed import Disturbed
@@ -45,6 +45,30 @@ def test_steps_are_the_same_in_any_pieces():
         q, p, memory = states[0][-1], states[1][-1], {name: values[-1] for name, values in states[3].items()}
         done += piece
     np.testing.assert_array_equal(q, whole[0][-1])
+
+
+class Interpreted(Stepped):
+    """Steps one by one, as those of a law that is not compiled."""
+
+    def _marched(self, *_):
+        return None
+
+
+@pytest.mark.parametrize("target", [StaticTarget((0.0, 0.0)), LinearTarget((3.0, 0.0), (1.0, 2.0))])
+def test_compiled_steps_of_noise_are_those_made_one_by_one(target):
+    """Across blocks of random numbers, at some steps only, with two noises and a swing; and from the middle on."""
+    noisy = Disturbed(Algorithm2(target=target), intensity=0.1, seed=3)
+    law = Disturbed(noisy, force=(0.1, 0.2), swing=(0.3, 0.1), frequency=0.2, intensity=0.2)
+    p, wanted = 0.1 * Q[::-1], np.array([1, 255, 256, 257, 600])
+    found, one_by_one = (
+        each.visit(2.0, Q, p, each.start(Q, p), wanted) for each in (Stepped(law, 0.01, 1), Interpreted(law, 0.01, 1))
+    )
+    for fast, slow, size in zip(found[:3], one_by_one[:3], (1.0, 1.0, 100.0), strict=True):
+        np.testing.assert_allclose(fast, slow, rtol=0.0, atol=1e-11 * size)
+    assert Stepped(law, 0.01, 1)._marched(2.0, Q, p, 0, wanted) is not None
+    memory = {name: values[-1] for name, values in found[3].items()}
+    later = [each(law, 0.01, 1).iterate(8.0, Q, p, memory, 30)[1] for each in (Stepped, Interpreted)]
+    np.testing.assert_allclose(later[0], later[1], rtol=0.0, atol=1e-11)
 
 
 def test_a_step_of_order_1_holds_the_input():
