@@ -41,7 +41,7 @@ from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.blocks import complement
+from flockana.stability.blocks import complement, reduced
 from flockana.stability.specifications import Specifications, SpecifiedGains, evaluated
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -86,10 +86,7 @@ class GainProblem:
         """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
-        positions, velocities = self._kept
-        top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
-        forces = (self.stiffness + np.diag(pull)) @ positions, (self.damping + np.diag(drag)) @ velocities
-        return np.vstack([top, -velocities.T @ np.hstack(forces)])
+        return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
         """Return the eigenvalues of `matrix`, largest real part first."""

@@ -8,7 +8,9 @@ import pytest
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
+from flockana.ensemble import ensemble
 from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.explore.parameters import changed, numbers, tree_of
 from flockana.lattice import hexagonal_patch
 from flockana.laws.delayed import Delayed
 from flockana.laws.disturbed import Disturbed
@@ -79,6 +81,23 @@ def test_a_step_of_order_1_holds_the_input():
     np.testing.assert_allclose(q_1, Q + h * p + 0.5 * h**2 * u, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(p_1, p + h * u, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(held, u, rtol=0.0, atol=1e-12)
+
+
+def test_runs_are_the_same_at_any_number_of_workers():
+    """All wrappers, and compiled noise: in this process, and in two others."""
+    for law in (Stepped(ALL, 0.01), Stepped(Disturbed(LAW, intensity=0.1), 0.01, 1)):
+        flock = {"law": law, "q0": Q, "p0": 0.0 * Q, "t_span": (0.0, 0.3), "theorems": []}
+        alone, both = (ensemble(seeds=(0, 1), metrics=["cohesion_radius"], jobs=n, **flock) for n in (1, 2))
+        assert alone.drop_vars("seconds").identical(both.drop_vars("seconds"))
+        assert alone["cohesion_radius"].values[0] > 7.0
+
+
+def test_knobs_of_an_explorer_are_those_of_every_wrapper():
+    found = {number.path for number in numbers(Stepped(ALL, 0.01))}
+    assert {"dt", "law.intensity", "law.law.limit", "law.law.law.period", "law.law.law.law.delay"} <= found
+    changes = tree_of(Stepped(ALL, 0.01), {"law.intensity": 0.3, "law.law.law.law.delay": 0.01})
+    law = changed(Stepped(ALL, 0.01), changes).law
+    assert (law.intensity, law.law.law.law.delay, law.law.law.period) == (0.3, 0.01, 0.02)
 
 
 def test_what_wraps_shows_through():
