@@ -205,7 +205,8 @@ class Disturbed(Wrapper):
         """
         if not self.intensity:
             return np.zeros((count, *shape))
-        return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
+        kicks: FloatArray = self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
+        return kicks
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         if self.stepped:
