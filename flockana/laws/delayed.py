@@ -93,32 +93,18 @@ class Delayed(Wrapper):
             raise ArgumentError(f"history_t = {format_value(self.history_t)}: expected rising times below 0, the start")
         object.__setattr__(self, "history_t", tuple(t.tolist()))
         object.__setattr__(self, "history_q", tuple(tuple(map(tuple, row)) for row in q.tolist()))
-        self.ensure_remembered(self.memory)
+        self._ensure_remembered(self.memory)
 
-    def ensure_remembered(self, longest: float) -> None:
-        """Raise if a delay is longer than the history that was given.
-
-        Parameters
-        ----------
-        longest : float
-            Delay, or the sum of the delays of laws around each other.
-        """
+    def _ensure_remembered(self, longest: float) -> None:
+        """Raise if a delay, or the sum of delays around each other, is longer than the history that was given."""
         if self.history_t is not None and longest > -self.history_t[0] * (1.0 + _ROUNDED):
             raise ArgumentError(
                 f"delay = {longest:g}: the history given goes back {-self.history_t[0]:g}, expected one as long as the "
                 "delay, or none (before the start the flock then moved with its initial velocities)"
             )
 
-    def past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions, velocities and accelerations before the start, shape (K, n, m) each.
-
-        Parameters
-        ----------
-        back : ndarray, shape (K,)
-            Times, 0 at the start, none above it.
-        q, p : ndarray, shape (n, m)
-            State at the start.
-        """
+    def _past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions, velocities and accelerations, (K, n, m), at times before the start, at which the state is q, p."""
         if self.history_t is None:
             still = np.zeros((len(back), *q.shape))
             return q + back[:, None, None] * p, still + p, still

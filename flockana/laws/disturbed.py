@@ -114,7 +114,11 @@ class Disturbed(Wrapper):
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
         """Names and pushes at one time, shape (m,) or (n, m), of all that pushes."""
-        given = {"force": self.called(0.0), "swing": self.swing, "table": None if self.table is None else self.table[0]}
+        given = {
+            "force": self._called(0.0),
+            "swing": self.swing,
+            "table": None if self.table is None else self.table[0],
+        }
         yield from ((name, push) for name, push in given.items() if push is not None)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -139,17 +143,11 @@ class Disturbed(Wrapper):
         """
         if not callable(self.force):
             return Disturbed(**scaled_fields(self, length, time))
-        own, rest = self.called, replace(self, force=None)
+        own, rest = self._called, replace(self, force=None)
         return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(own(t / time)))
 
-    def called(self, t: float) -> Any:
-        """Return the force alone at a time, a function of time called; None without one.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+    def _called(self, t: float) -> Any:
+        """Return the force alone at a time, a function of time called; None without one."""
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def push(self, t: float) -> FloatArray:
@@ -162,7 +160,7 @@ class Disturbed(Wrapper):
         """
         total: FloatArray = np.zeros(1)
         if self.force is not None:
-            total = total + np.asarray(self.called(t))
+            total = total + np.asarray(self._called(t))
         if self.swing is not None:
             total = total + np.asarray(self.swing) * np.sin(2.0 * pi * self.frequency * t + self.phase)
         if self.times is not None:
@@ -177,13 +175,9 @@ class Disturbed(Wrapper):
     def _table(self) -> tuple[FloatArray, FloatArray]:
         return np.array(self.times), np.array(self.table)
 
-    @property
-    def _pushes_nobody(self) -> bool:
-        return self.force is None and self.swing is None and self.times is None
-
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         u = input_of(self.law, step, view)
-        return u if self._pushes_nobody else u + self.push(view.t)
+        return u if self.force is None and self.swing is None and self.times is None else u + self.push(view.t)
 
     def kick(self, step: Step, shape: tuple[int, ...]) -> FloatArray | None:  # noqa: D102
         if not self.intensity:
@@ -191,18 +185,8 @@ class Disturbed(Wrapper):
         kick: FloatArray = self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
         return kick
 
-    def kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
-        """Return `kick` of the steps from `first` on, stacked.
-
-        Parameters
-        ----------
-        first, count : int
-            Number of the first step, and of steps.
-        h : float
-            Their length.
-        shape : (int, int)
-            (n, m).
-        """
+    def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
+        """Return `kick` of `count` steps of length h from step `first` on, stacked."""
         if not self.intensity:
             return np.zeros((count, *shape))
         kicks: FloatArray = self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
@@ -220,13 +204,7 @@ class Disturbed(Wrapper):
         return None if self.stepped else self.compiled_push(m)
 
     def compiled_push(self, m: int) -> Compiled | None:
-        """The law with its pushes and without its noise, as `compiled` gives it.
-
-        Parameters
-        ----------
-        m : int
-            Dimension of the flock.
-        """
+        """The law with its pushes and without its noise, as `compiled` gives it."""
         inner = self.law.compiled_push(m) if isinstance(self.law, Disturbed) else self.law.compiled(m)
         form = None if callable(self.force) or self.times else inner
         if form is None:

@@ -84,7 +84,7 @@ class Stepped(Scheme):
                     f"{clock / max(1, ceil(clock / dt)):.12g}"
                 )
         for late in self._late:
-            late.ensure_remembered(self._memory)
+            late._ensure_remembered(self._memory)
         if self.order == 4 and self.noisy:
             raise ArgumentError("order = 4: noise is stepped with order 1 or 2; expected one of them")
 
@@ -121,7 +121,7 @@ class Stepped(Scheme):
         past = np.empty((0, 4, *q.shape))
         if self.past_steps:
             told = next((one for one in self._late if one.history_t is not None), self._late[0])
-            before, speeds, push = told.past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            before, speeds, push = told._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
             past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
@@ -180,7 +180,7 @@ class Stepped(Scheme):
         still, own = (t, np.zeros(m), np.zeros(m)), np.arange(n, dtype=np.uint64)
         reach = (form.reach, SKIN * form.reach)
         system = System(*form.functions, form.numbers, still, form.moving, reach, own, *room)
-        kicks = sum((one.kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
+        kicks = sum((one._kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
         y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
         if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, out):
             return None

@@ -214,16 +214,7 @@ class Wrapper(Around):
         """Times that a step must divide."""
         return ()
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Refused: what the agents do depends on more than their state.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         raise ArgumentError(
             f"{type(self).__name__} has no input at an instant: expected a run in fixed steps, simulate(law, ..., "
             "dt=0.01), or the law that it wraps"
@@ -293,17 +284,7 @@ def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
 
 
 def input_of(law: Law, step: Step, view: View) -> FloatArray:
-    """Return the accelerations of a law, wrapped or not, from what the agents know.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    step : Step
-        In which it is asked.
-    view : View
-        What agents know.
-    """
+    """Return the accelerations of a law, wrapped or not, in a step from what the agents know."""
     if isinstance(law, Wrapper):
         return law.input(step, view)
     if view.heard is None and view.linked is None:
