@@ -11,7 +11,10 @@ from flockana.laws.scheme import Scheme
 class ExplicitEuler(Scheme):
     """q' = q + dt p, p' = p + dt u(t, q, p): of first order, and unstable wherever a swing is not damped.
 
-    Parameters and errors are those of every `Scheme`.
+    Parameters
+    ----------
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------

@@ -22,7 +22,10 @@ class SemiImplicitEuler(Scheme):
     A scheme of first order with a fixed step: where the law jumps it neither sees the jump nor resolves it, and where
     the law holds a pair at a jump it chatters about it (erratum L7).
 
-    Parameters and errors are those of every `Scheme`.
+    Parameters
+    ----------
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------

@@ -14,7 +14,10 @@ class TaylorStep(Scheme):
     The R² notebook's iteration, and the plainest reading of a source that prints a step and no scheme. It is of first
     order: the input is not looked at again within the step, so that fast vibrations are fed with energy.
 
-    Parameters and errors are those of every `Scheme`.
+    Parameters
+    ----------
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------
