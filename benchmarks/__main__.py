@@ -28,6 +28,7 @@ STUDIES = (
     "costs",
     "million",
     "zones",
+    "noise",
     "search",
     "commands",
     "waits",

@@ -71,6 +71,8 @@ import numpy as np
 import flockana as fl
 from flockana import lattice, plots, stability
 from flockana.course import figures, grade
+from flockana.lattice.rigidity import rigidity_matrix
+from flockana.stability.blocks import complement
 
 figure, axes = plots.subplots(1, 3, size=(12, 3.9))
 _ = figures.equilibria(axes=axes)
@@ -238,6 +240,109 @@ assert late(1.1 * alone) > 5.0
 # are the ones that a designer makes stiff in order to keep the pattern tight. So there is a trade-off that no gain
 # removes: *tight formations need fast radios*.
 #
+# ## Sampled and noisy
+#
+# A drone's computer reads the state every $h$ and holds its input until the next time. What is late by $\tau$ is
+# held here: on average the input is $\tfrac12h$ old. So a guess is that the flock bears a period of twice its delay
+# margin. The linear model says more than a guess.
+#
+# Between two samples $u$ is constant and each agent moves on a parabola. With $u = -S\tilde x - D\tilde v$ the state
+# at the next sample is
+#
+# $$\tilde x^+ = \tilde x + h\tilde v + \tfrac12h^2u, \qquad \tilde v^+ = \tilde v + hu .$$
+#
+# This is a *map*, and a map is stable if all its eigenvalues, the *multipliers* $z$, lie inside the unit circle:
+# after $k$ samples a mode has the size $|z|^k$. Suppose first that $S$ and $D$ have their modes in common, and let one
+# of them have the stiffness $\omega'^2$ and the damping $d'$. Then $z = 1 + hw$, where
+#
+# $$w^2 + \bigl(d' + \tfrac12h\omega'^2\bigr)w + \omega'^2 = 0 .$$
+#
+# *Derivation.* Call the multiplier $z = 1 + hw$ and look for $\tilde x_k = z^k\nu$.
+#
+# 1. The second equation gives $w\tilde v = u$, the first $w\tilde x = \tilde v + \tfrac12hu$.
+# 2. Multiply the first by $w$: $w^2\tilde x = u + \tfrac12hwu$.
+# 3. $u = -\omega'^2\tilde x - d'\tilde v$, and by 1 again $\tilde v = w\tilde x - \tfrac12hu$. Put this into $u$:
+#    $u\,(1 - \tfrac12hd') = -(\omega'^2 + d'w)\tilde x$.
+# 4. With 2: $w^2(1 - \tfrac12hd') = -(1 + \tfrac12hw)(\omega'^2 + d'w)$. The terms $\tfrac12hd'w^2$ cancel, and the
+#    equation above is left.
+#
+# It is the equation of a flow whose damping has *grown*, by $\tfrac12h\omega'^2$, and yet sampling destabilises. For
+# the circle is not the half-plane: $|z|^2$ is the product of the two roots, $1 - hd' + \tfrac12h^2\omega'^2$, so a mode
+# that swings decays exactly if $h < 2d'/\omega'^2$. The stiffer the mode and the weaker its damping, the shorter the
+# period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
+
+# %%
+held = stability.sampling_margin(law, rest)
+print(f"stable for periods below {held.period:.5f}, {held.period / margin.delay:.2f} times the delay margin")
+print(f"the mode that goes first swings at {held.first.frequency:.1f} radians a time unit")
+generator = np.random.default_rng(0)
+for share in (0.95, 1.05):
+    start = rest.q + 1e-4 * generator.standard_normal(rest.q.shape)
+    run = fl.simulate(fl.TaylorStep(law, share * held.period), start, 0.0 * start, (0.0, 20.0))
+    lengths = np.linalg.norm(run.q[:, rest.links[:, 0]] - run.q[:, rest.links[:, 1]], axis=2)
+    swing = np.ptp(lengths[-200:], axis=0).max()
+    print(f"at {share} of that period the lengths of links vary by {swing:.1e} in the end")
+
+# %% [markdown]
+# The guess was good: 2.13 times. And the nonlinear flock obeys: below the margin its links come to rest, above it they
+# shake, by a few hundredths of a length here, because the bounded force of a link catches what the linear model lets
+# grow for ever.
+#
+# Now the gust. Push every agent by white noise of intensity $g$: in a time $\Delta t$ it adds to each component of its
+# velocity a random number of variance $g^2\Delta t$. A stable linear flock then neither rests nor grows. It reaches a
+# *stationary covariance* $\Sigma$ of its state $y = (\tilde x, \tilde v)$: with $\dot y = Ay$ and $B = (0, I)$ the
+# covariance changes by
+#
+# $$\dot\Sigma = A\Sigma + \Sigma A^T + g^2BB^T ,$$
+#
+# the first two terms from the motion, the third from the noise, and in the long run $\dot\Sigma = 0$. This is a linear
+# equation for $\Sigma$, *Lyapunov's*. For one mode it is solved by hand: its coordinate has the variance
+# $g^2/(2d'\omega'^2)$. The square root of the trace of $\Sigma$, for $g = 1$, is the *$H_2$ norm* from the forces to
+# the shape.
+#
+# One caution: the zero mode. Nothing brings the orientation back, so noise turns the flock like a random walk and its
+# variance grows for ever. Lengths of links do not see this. So let the model predict how much each of the 42 links
+# vibrates, and the nonlinear flock answer.
+
+# %%
+flow, g = stability.law_blocks(law, rest.q), 0.2
+shape = stability.stationary_covariance(stability.disturbance_system(flow), g)
+stretch = rigidity_matrix(rest.q, rest.links).toarray() @ complement(flow.rigid)
+predicted = np.sqrt(np.diag(stretch @ shape @ stretch.T))
+noisy = fl.simulate(
+    fl.Disturbed(law, intensity=g, seed=1), rest.q, 0.0 * rest.q, (0.0, 100.0), dt=0.005, t_eval=np.arange(5, 100, 0.05)
+)
+lengths = np.linalg.norm(noisy.q[:, rest.links[:, 0]] - noisy.q[:, rest.links[:, 1]], axis=2)
+shaken = lengths.std(axis=0)
+print(f"predicted {predicted.min():.5f} to {predicted.max():.5f}, measured {shaken.min():.5f} to {shaken.max():.5f}")
+figure, (left, right) = plots.subplots(1, 2, size=(8, 3.6))
+turn = np.linspace(0.0, 2.0 * np.pi, 200)
+left.plot(np.cos(turn), np.sin(turn), linewidth=0.8)
+for share, mark in ((0.5, "o"), (1.1, "x")):
+    z = fl.linearise(fl.TaylorStep(law, share * held.period), rest).multipliers
+    left.plot(z.real, z.imag, mark, markersize=4, label=f"{share} of the margin")
+left.set(xlabel="Re z", ylabel="Im z", aspect="equal")
+left.legend(loc="lower left")
+right.plot(1e3 * predicted, 1e3 * shaken, "o", markersize=4)
+right.axline((2.6, 2.6), slope=1.0, linewidth=0.8)
+_ = right.set(xlabel="predicted (1e-3 length)", ylabel="measured (1e-3 length)")
+
+# %% tags=["facts"]
+assert abs(held.period - 0.02716) < 1e-5
+assert abs(held.period / margin.delay - 2.13) < 0.01
+assert swing > 1e-2
+assert np.abs(shaken / predicted - 1.0).max() < 0.1
+
+# %% [markdown]
+# **Figure 6.4.** Left: multipliers of the sampled flock, and the unit circle; at 1.1 times the margin a pair is
+# outside. Right: how much each link vibrates in white noise, predicted by Lyapunov's equation and measured in a
+# nonlinear run; on the line both agree.
+#
+# Every link vibrates within ten percent as predicted, the outer ones most: they have fewer neighbours that hold them.
+# Both lessons point the same way. Sampling and delay are about the *stiffest* modes, noise is about the *softest and
+# least damped* ones: a designer who stiffens links against noise pays with a faster computer, and friction between
+# neighbours, $c_2^\alpha$, helps with both until it is itself too fast for the clock.
+#
 # ## What does a stronger damping buy?
 #
 # Raise $c_2^\gamma$. The centre returns fastest at critical damping, $c_2^\gamma = 2\sqrt{c_1^\gamma}$; beyond, one
@@ -269,7 +374,7 @@ assert margin.delay < 0.2 * alone
 assert slow.name == "breathing"
 
 # %% [markdown]
-# **Figure 6.4.** The rightmost pole over $c_2^\gamma$. The table below the figure is for the structure alone: its
+# **Figure 6.5.** The rightmost pole over $c_2^\gamma$. The table below the figure is for the structure alone: its
 # decay rate grows until about $c_2^\gamma = 16$, to 8.6, and falls to 5.1 at 20 and to 0.87 at 100.
 #
 # So "more damping is better" is false twice: for the centre beyond 2.1, for the structure beyond 16.
@@ -286,6 +391,8 @@ assert slow.name == "breathing"
 # - Near an equilibrium a flock is a mechanical system $s^2I + sD + S$; symmetric $D > 0$, $S \ge 0$ put all poles in
 #   the left half-plane, but for zero modes of a symmetry.
 # - A linearisation is checked against the nonlinear law before it is used.
+# - Sampled, a flock is a map: its multipliers must lie in the unit circle, and the stiffest modes leave it first. In
+#   white noise its covariance solves Lyapunov's equation.
 # - Poles, delay margin and gain sweeps follow from it; more damping helps up to a point, which differs for centre
 #   and structure.
 
@@ -476,3 +583,34 @@ grade(
 #
 # **Rubric, a point each:** a table or figure of rates over $n$ and $c_1^\gamma$, with equilibria found anew; an
 # independent prediction with its assumptions; a nonlinear check and a conclusion.
+
+# %% [markdown] tags=["exercise"]
+# **11.** ★★ (2 points, derivation) One mode of a flock has the stiffness $\omega'^2 = 400$ and the damping $d' = 4$.
+# (a) Up to which sampling period does it decay? (b) What variance does its coordinate have in white noise of
+# intensity 2? (c) What variance if $d'$ is doubled? Give the list, exactly.
+
+# %% tags=["answer"]
+one_mode = ...
+
+# %% tags=["solution"]
+one_mode = [2.0 * 4.0 / 400.0, 4.0 / (2.0 * 4.0 * 400.0), 4.0 / (2.0 * 8.0 * 400.0)]
+
+# %% tags=["check"]
+grade(one_mode, [0.02, 0.00125, 0.000625], hint="both formulas are in the part on sampling and noise")
+
+# %% [markdown] tags=["exercise"]
+# **12.** ★★ (2 points, experiment) The hexagon of seven agents under the law of the lecture, at its equilibrium
+# (`fl.find_equilibrium(law, lattice.hexagonal_patch(1, 7.0))`): what is its sampling margin (a), and how many times
+# its delay margin is that (b)? Give the list, each to three significant digits.
+
+# %% tags=["answer"]
+seven_sampled = ...
+
+# %% tags=["solution"]
+seven = fl.find_equilibrium(law, lattice.hexagonal_patch(1, 7.0))
+longest = stability.sampling_margin(law, seven).period
+seven_sampled = [longest, longest / stability.delay_margin(stability.delay_system(law, seven.q)).delay]
+print(seven_sampled)
+
+# %% tags=["check"]
+grade(seven_sampled, [0.0262623035, 2.05451], digits=3, hint="sampling_margin(...).period, delay_margin(...).delay")

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, real_array
+from flockana.base.checks import FloatArray, ensure_choice, ensure_series, real_array
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
 from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_wrappable, input_of
 
 LATE = ("all", "pairs", "neighbours")
+_ROUNDED = 1e-9  # relative: a history that is as long as the delay but for rounding is as long
 
 
 @dataclass(frozen=True)
 class Delayed(Wrapper):
-    """Agents act on what is `delay` old; before the start the flock moved with its initial velocities.
+    """Agents act on what is `delay` old; before the start the flock moved with its initial velocities, or as told.
 
     Late is everything, an agent's own state and the γ-agent's included (``"all"``); or the terms between agents, their
     own state in them included (``"pairs"``); or what they hear of other agents, their own state being known at once
@@ -33,11 +34,14 @@ class Delayed(Wrapper):
         τ >= 0; or, of ``"neighbours"``, how late agent i hears agent j.
     late : {"all", "pairs", "neighbours"}
         What is late, as in `flockana.stability.delay_system`.
+    history_t, history_q : array_like, shapes (K,) and (K, n, m)
+        Rising times before the start of the run, all below 0, and the positions then; velocities are those of the cubic
+        spline through them and the start.
 
     Raises
     ------
     ArgumentError
-        On a delay below 0, or a law without a pair term if not everything is late.
+        On a delay below 0 or longer than the history, or a law without a pair term if not everything is late.
 
     Examples
     --------
@@ -49,8 +53,11 @@ class Delayed(Wrapper):
     law: Law
     delay: Any
     late: str = "all"
+    _: KW_ONLY
+    history_t: Any = None
+    history_q: Any = None
 
-    units: ClassVar[Mapping[str, Powers]] = {"delay": (0, 1)}
+    units: ClassVar[Mapping[str, Powers]] = {"delay": (0, 1), "history_t": (0, 1), "history_q": (1, 0)}
 
     def __post_init__(self) -> None:
         ensure_wrappable(self.law)
@@ -68,6 +75,45 @@ class Delayed(Wrapper):
         if self.late != "all":
             ensure_hears(self.law)
         object.__setattr__(self, "delay", float(lag) if lag.ndim == 0 else tuple(map(tuple, lag.tolist())))
+        if self.history_t is not None or self.history_q is not None:
+            self._check_history()
+
+    def _check_history(self) -> None:
+        """Raise unless the history is one, and goes back as far as the delay; keep it as tuples."""
+        t = ensure_series("history_t", self.history_t)
+        try:
+            q = real_array(self.history_q)
+        except (TypeError, ValueError):
+            q = np.array(np.nan)
+        if q.ndim != 3 or len(q) != len(t) or not np.isfinite(q).all():
+            raise ArgumentError(
+                f"history_q has shape {q.shape}: expected finite positions ({len(t)}, n, m), one row for each time"
+            )
+        if not (np.diff(t) > 0.0).all() or t[-1] >= 0.0:
+            raise ArgumentError(f"history_t = {format_value(self.history_t)}: expected rising times below 0, the start")
+        object.__setattr__(self, "history_t", tuple(t.tolist()))
+        object.__setattr__(self, "history_q", tuple(tuple(map(tuple, row)) for row in q.tolist()))
+        self._ensure_remembered(self.memory)
+
+    def _ensure_remembered(self, longest: float) -> None:
+        """Raise if a delay, or the sum of delays around each other, is longer than the history that was given."""
+        if self.history_t is not None and longest > -self.history_t[0] * (1.0 + _ROUNDED):
+            raise ArgumentError(
+                f"delay = {longest:g}: the history given goes back {-self.history_t[0]:g}, expected one as long as the "
+                "delay, or none (before the start the flock then moved with its initial velocities)"
+            )
+
+    def _past(self, back: FloatArray, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions, velocities and accelerations, (K, n, m), at times before the start, at which the state is q, p."""
+        if self.history_t is None:
+            still = np.zeros((len(back), *q.shape))
+            return q + back[:, None, None] * p, still + p, still
+        from scipy.interpolate import CubicSpline
+
+        t, places = np.append(self.history_t, 0.0), np.append(self.history_q, q[None], axis=0)
+        path: Any = CubicSpline(t, places, bc_type=((2, np.zeros_like(q)), (1, p)))
+        at = np.maximum(back, t[0])
+        return path(at), path(at, 1), path(at, 2)
 
     @property
     def memory(self) -> float:  # noqa: D102
@@ -78,8 +124,19 @@ class Delayed(Wrapper):
         """The positive delay common to all agents, at whose multiples the solution has kinks; else empty."""
         return (self.delay,) if isinstance(self.delay, float) and self.delay > 0.0 else ()
 
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        super().check_dimension(m)
+        if self.history_q is not None and np.shape(self.history_q)[2] != m:
+            raise ArgumentError(
+                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected as many"
+            )
+
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)
+        if self.history_q is not None and np.shape(self.history_q)[1] != n:
+            raise ArgumentError(
+                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected as many"
+            )
         if np.ndim(self.delay) == 2 and np.shape(self.delay) != (n, n):
             raise ArgumentError(f"delay has shape {np.shape(self.delay)}: expected ({n}, {n}), a delay for each pair")
 

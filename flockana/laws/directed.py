@@ -19,16 +19,13 @@ from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_positi
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.environment.beta import ObstacleField
-from flockana.environment.obstacles import Obstacle
-from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.directed import directed_forces, seen_edges
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.wrapped import Around
 from flockana.measures.perception import Edges
 
 _ALL_ROUND = 2.0 * pi
@@ -37,7 +34,7 @@ _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are coun
 
 
 @dataclass(frozen=True)
-class DirectedNet(Law):
+class DirectedNet(Around):
     """A law of Olfati-Saber whose agents see what is within a range of their own, and in a cone ahead of them.
 
     u_i = Σ w_ij (c1α φ_α n_ij + c2α a_ij (p_j − p_i)) over the j that i sees, in which the bump ends at agent i's own
@@ -105,21 +102,6 @@ class DirectedNet(Law):
         return paper_pair(self.law)
 
     @property
-    def target(self) -> Target | None:  # type: ignore[override]
-        """The γ-agent of the law."""
-        return self.law.target
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
-        """Obstacles of the underlying law."""
-        return self.law.obstacles
-
-    @property
-    def obstacle_field(self) -> ObstacleField | None:
-        """β-interaction with the obstacles."""
-        return self.law.obstacle_field
-
-    @property
     def scales(self) -> Scales:  # noqa: D102
         return self.law.scales
 
@@ -132,17 +114,10 @@ class DirectedNet(Law):
     def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
         return (self.alpha.r if self.ranges is None else self.ranges,)
 
-    def check_dimension(self, m: int) -> None:  # noqa: D102
-        self.law.check_dimension(m)
-
     def check_agents(self, n: int) -> None:  # noqa: D102
-        self.law.check_agents(n)
+        super().check_agents(n)
         if isinstance(self.ranges, tuple) and len(self.ranges) != n:
             raise ArgumentError(f"there are {len(self.ranges)} ranges and {n} agents: expected one range each")
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
-        super().check_start(q, p)
-        self.law.check_start(q, p)
 
     def _reach(self, n: int) -> FloatArray:
         return np.full(n, self.alpha.r if self.ranges is None else self.ranges, dtype=np.float64)

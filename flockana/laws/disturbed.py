@@ -1,21 +1,23 @@
-"""A law whose agents are pushed by a disturbance: a constant force, a sinusoid, white noise."""
+"""A law whose agents are pushed by a disturbance: a force of time, a table, a sinusoid, white noise."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.units import scaled_fields
 from flockana.kernels import force as kernel
 from flockana.kernels.listed import no_energy
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, TermKernel
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of, normal_numbers
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
@@ -26,7 +28,10 @@ _NOISE = 0  # channel of random numbers
 
 @dataclass(frozen=True)
 class Disturbed(Wrapper):
-    """u + w: agents are pushed by w(t) = force + swing sin(2π frequency t + phase), and by white noise.
+    """u + w: agents are pushed by w(t) = force + swing sin(2π frequency t + phase) + table, and by white noise.
+
+    A force that is a function of time cannot be saved to a file; a table can. An integrator with steps of its own may
+    step over a push that is shorter than these: then take method RK4 with a step shorter than the push.
 
     White noise of intensity s gives a velocity of variance s² t in each coordinate after the time t. Without noise the
     law stays a continuous one, which every method integrates; with noise it is stepped (`simulate(..., dt=)`).
@@ -35,8 +40,12 @@ class Disturbed(Wrapper):
     ----------
     law : Law
         The law that is disturbed.
-    force, swing : array_like, shape (m,) or (n, m)
-        Acceleration that is constant, and amplitude of one that swings: the same for all agents, or one for each.
+    force : array_like, shape (m,) or (n, m), or callable
+        Acceleration that is constant, or a function t -> w(t) of that shape: the same for all agents, or one for each.
+    swing : array_like, shape (m,) or (n, m)
+        Amplitude of an acceleration that swings.
+    times, table : array_like, shapes (K,) and (K, m) or (K, n, m)
+        Rising times and accelerations there, linear in between; the first holds before, the last afterwards.
     frequency : float
         Cycles per time unit.
     phase : float
@@ -49,7 +58,7 @@ class Disturbed(Wrapper):
     Raises
     ------
     ArgumentError
-        On a negative intensity, or forces that are none.
+        On a negative intensity, forces that are none, or a table without times.
 
     Examples
     --------
@@ -57,12 +66,17 @@ class Disturbed(Wrapper):
     >>> wind = Disturbed(Algorithm1(), force=(0.5, 0.0))
     >>> wind.acceleration(0.0, [[0.0, 0.0]], [[0.0, 0.0]]).tolist()
     [[0.5, 0.0]]
+    >>> gust = Disturbed(Algorithm1(), times=(0.0, 1.0), table=((0.0, 0.0), (4.0, 0.0)))
+    >>> gust.push(0.25).tolist(), Disturbed(Algorithm1(), force=lambda t: (t, 0.0)).push(3.0).tolist()
+    ([1.0, 0.0], [3.0, 0.0])
     """
 
     law: Law
     _: KW_ONLY
     force: Any = None
     swing: Any = None
+    times: Any = None
+    table: Any = None
     frequency: float = 0.0
     phase: float = 0.0
     intensity: float = 0.0
@@ -71,14 +85,23 @@ class Disturbed(Wrapper):
     units: ClassVar[Mapping[str, tuple[float, float]]] = {
         "force": (1, -2),
         "swing": (1, -2),
+        "times": (0, 1),
+        "table": (1, -2),
         "frequency": (0, -1),
         "intensity": (1, -1.5),
     }
 
     def __post_init__(self) -> None:
         ensure_wrappable(self.law)
-        for name in ("force", "swing"):
-            object.__setattr__(self, name, _pushes(name, getattr(self, name)))
+        for name, least in (("force", 1), ("swing", 1), ("times", 1), ("table", 2)):
+            if not callable(getattr(self, name)) or name != "force":
+                object.__setattr__(self, name, _pushes(name, getattr(self, name), least))
+        if (self.times is None) != (self.table is None) or len(self.times or ()) != len(self.table or ()):
+            raise ArgumentError(
+                f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected as many"
+            )
+        if self.times is not None and (np.ndim(self.times) != 1 or (np.diff(self.times) <= 0.0).any()):
+            raise ArgumentError(f"times = {format_value(self.times)}: expected rising times, one for each row of table")
         object.__setattr__(self, "frequency", ensure_nonnegative("frequency", self.frequency))
         object.__setattr__(self, "phase", ensure_finite_scalar("phase", self.phase))
         object.__setattr__(self, "intensity", ensure_nonnegative("intensity", self.intensity))
@@ -89,19 +112,43 @@ class Disturbed(Wrapper):
         """Whether there is noise."""
         return self.intensity > 0.0
 
+    def _pushed(self) -> Iterator[tuple[str, Any]]:
+        """Names and pushes at one time, shape (m,) or (n, m), of all that pushes."""
+        given = {
+            "force": self._called(0.0),
+            "swing": self.swing,
+            "table": None if self.table is None else self.table[0],
+        }
+        yield from ((name, push) for name, push in given.items() if push is not None)
+
     def check_dimension(self, m: int) -> None:  # noqa: D102
         super().check_dimension(m)
-        for name in ("force", "swing"):
-            given = getattr(self, name)
-            if given is not None and np.shape(given)[-1] != m:
-                raise ArgumentError(f"{name} has {np.shape(given)[-1]} components, the agents {m}: expected as many")
+        for name, push in self._pushed():
+            if np.shape(push)[-1] != m:
+                raise ArgumentError(f"{name} has {np.shape(push)[-1]} components, the agents {m}: expected as many")
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)
-        for name in ("force", "swing"):
-            given = getattr(self, name)
-            if np.ndim(given) == 2 and len(given) != n:
-                raise ArgumentError(f"{name} has {len(given)} rows and there are {n} agents: expected one for each")
+        for name, push in self._pushed():
+            if np.ndim(push) == 2 and len(push) != n:
+                raise ArgumentError(f"{name} has {len(push)} rows and there are {n} agents: expected one for each")
+
+    def in_units(self, length: float, time: float) -> Disturbed:
+        """Return the law in other units (`flockana.rescale`).
+
+        Parameters
+        ----------
+        length, time : float
+            Factors of lengths and times.
+        """
+        if not callable(self.force):
+            return Disturbed(**scaled_fields(self, length, time))
+        own, rest = self._called, replace(self, force=None)
+        return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(own(t / time)))
+
+    def _called(self, t: float) -> Any:
+        """Return the force alone at a time, a function of time called; None without one."""
+        return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def push(self, t: float) -> FloatArray:
         """Return w(t) without its noise, shape (m,) or (n, m); 0 without a force.
@@ -113,14 +160,24 @@ class Disturbed(Wrapper):
         """
         total: FloatArray = np.zeros(1)
         if self.force is not None:
-            total = total + np.asarray(self.force)
+            total = total + np.asarray(self._called(t))
         if self.swing is not None:
             total = total + np.asarray(self.swing) * np.sin(2.0 * pi * self.frequency * t + self.phase)
+        if self.times is not None:
+            times, rows = self._table
+            k = min(max(int(np.searchsorted(times, t)), 1), len(times) - 1) if len(times) > 1 else 0
+            share = (t - times[k - 1]) / (times[k] - times[k - 1]) if k else 1.0
+            share = min(max(share, 0.0), 1.0)
+            total = total + (1.0 - share) * rows[k - 1] + share * rows[k]
         return total
+
+    @cached_property
+    def _table(self) -> tuple[FloatArray, FloatArray]:
+        return np.array(self.times), np.array(self.table)
 
     def input(self, step: Step, view: View) -> FloatArray:  # noqa: D102
         u = input_of(self.law, step, view)
-        return u if self.force is None and self.swing is None else u + self.push(view.t)
+        return u if self.force is None and self.swing is None and self.times is None else u + self.push(view.t)
 
     def kick(self, step: Step, shape: tuple[int, ...]) -> FloatArray | None:  # noqa: D102
         if not self.intensity:
@@ -128,21 +185,28 @@ class Disturbed(Wrapper):
         kick: FloatArray = self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
         return kick
 
+    def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
+        """Return `kick` of `count` steps of length h from step `first` on, stacked."""
+        if not self.intensity:
+            return np.zeros((count, *shape))
+        kicks: FloatArray = self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
+        return kicks
+
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         if self.stepped:
             return super().flow(t, q, p)
         u, rate = self.law.flow(t, q, p)
         push = np.broadcast_to(self.push(t), q.shape)
-        velocity = moving_frame(p) if getattr(self.law, "moving", False) else p
+        velocity = moving_frame(p) if self.moving else p
         return u + push, rate + float(np.sum(push * velocity))
 
-    @property
-    def moving(self) -> bool:
-        """Whether the law's energy is that in the frame of the centre of mass."""
-        return bool(getattr(self.law, "moving", False))
-
     def compiled(self, m: int) -> Compiled | None:  # noqa: D102
-        form = None if self.stepped else self.law.compiled(m)
+        return None if self.stepped else self.compiled_push(m)
+
+    def compiled_push(self, m: int) -> Compiled | None:
+        """The law with its pushes and without its noise, as `compiled` gives it."""
+        inner = self.law.compiled_push(m) if isinstance(self.law, Disturbed) else self.law.compiled(m)
+        form = None if callable(self.force) or self.times else inner
         if form is None:
             return None
         numbers = kernel.numbers(form.moving, *self._rows(m), 2.0 * pi * self.frequency)
@@ -159,14 +223,19 @@ class Disturbed(Wrapper):
         return self.law.derivatives(t, q, p)
 
 
-def _pushes(name: str, value: Any) -> Any:
-    """Return a force as nested tuples, for comparison and files; None stays None."""
+def _pushes(name: str, value: Any, least: int) -> Any:
+    """Return finite numbers with `least` axes or one more as nested tuples; None stays None."""
     if value is None:
         return None
     try:
         array = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         array = np.array(np.nan)
-    if array.ndim not in (1, 2) or not array.size or not np.isfinite(array).all():
-        raise ArgumentError(f"{name} = {value!r}: expected finite components, (m,) for all agents or (n, m)")
-    return tuple(array.tolist()) if array.ndim == 1 else tuple(map(tuple, array.tolist()))
+    if array.ndim not in (least, least + 1) or not array.size or not np.isfinite(array).all():
+        shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"
+        raise ArgumentError(f"{name} = {format_value(value)}: expected finite components, {shape}")
+    return _nested(array)
+
+
+def _nested(array: FloatArray) -> Any:
+    return tuple(array.tolist()) if array.ndim == 1 else tuple(map(_nested, array))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flockana.base.checks import FloatArray
 from flockana.laws.scheme import Scheme
 
 
@@ -15,15 +13,8 @@ class ExplicitEuler(Scheme):
 
     Parameters
     ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------
@@ -35,9 +26,3 @@ class ExplicitEuler(Scheme):
     """
 
     position_factor = 0.0
-
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        u = self.law.flow(t, q, p)[0]
-        return q + self.dt * p, p + self.dt * u, u, memory

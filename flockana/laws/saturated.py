@@ -84,8 +84,3 @@ class Saturated(Wrapper):
         given = self.bounded(u)
         velocity = moving_frame(p) if self.moving else p
         return given, rate + float(np.sum((given - u) * velocity))
-
-    @property
-    def moving(self) -> bool:
-        """Whether the law's energy is that in the frame of the centre of mass."""
-        return bool(getattr(self.law, "moving", False))

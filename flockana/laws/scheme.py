@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_positive, normalise
+from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.laws.discrete import DiscreteLaw
@@ -15,7 +15,22 @@ from flockana.laws.law import Law
 
 @dataclass(frozen=True)
 class Scheme(DiscreteLaw):
-    """A map that approximates the flow of a law; a subclass says how it steps."""
+    """A map that approximates the flow of a law: q' = q + dt p + f dt² u, p' = p + dt u, with f `position_factor`.
+
+    A subclass gives f, or a step of its own.
+
+    Parameters
+    ----------
+    law : Law
+        The continuous law.
+    dt : float
+        Step.
+
+    Raises
+    ------
+    ArgumentError
+        If the law is no continuous one, or the step not positive.
+    """
 
     law: Law
     dt: float = 0.01
@@ -27,7 +42,7 @@ class Scheme(DiscreteLaw):
     def __post_init__(self) -> None:
         if not isinstance(self.law, Law):
             raise ArgumentError(f"law = {self.law!r}: expected a continuous law such as DeadZoneFlocking()")
-        normalise(self, ensure_positive, "dt")
+        object.__setattr__(self, "dt", ensure_positive("dt", self.dt))
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
@@ -37,3 +52,9 @@ class Scheme(DiscreteLaw):
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         # the energy of the law that is stepped; the scheme does not keep its balance
         return self.law.hamiltonian(t, q, p)
+
+    def step(  # noqa: D102
+        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        u, h, f = self.law.flow(t, q, p)[0], self.dt, float(self.position_factor or 0.0)
+        return q + h * p + (f * h * h) * u, p + h * u, u, memory

@@ -24,15 +24,8 @@ class SemiImplicitEuler(Scheme):
 
     Parameters
     ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------

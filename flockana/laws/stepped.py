@@ -7,15 +7,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, isclose
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_positive
+from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
-from flockana.base.units import Powers
-from flockana.laws.discrete import DiscreteLaw, IndexArray
-from flockana.laws.law import Law
+from flockana.kernels.blocks import BLOCK
+from flockana.kernels.euler_maruyama import march
+from flockana.kernels.runge_kutta import System
+from flockana.kernels.verlet import SKIN
+from flockana.laws.delayed import Delayed
+from flockana.laws.discrete import IndexArray
+from flockana.laws.disturbed import Disturbed
+from flockana.laws.scheme import Scheme
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
 ORDERS = (1, 2, 4)
@@ -24,12 +29,13 @@ _Past = deque[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]  # q, p, u 
 
 
 @dataclass(frozen=True)
-class Stepped(DiscreteLaw):
+class Stepped(Scheme):
     """A wrapped law in fixed steps, as `simulate(law, ..., dt=)` runs it.
 
-    Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. Order 2 is
-    Heun's scheme, with noise that is added a weak one of order 2. Order 4 is the classical Runge-Kutta scheme, of laws
-    without noise; the past between steps is a Hermite cubic. Steps must divide delays and sampling periods.
+    Order 1 is Euler-Maruyama: q' = q + h p + ½ h² u, p' = p + h u + Δw, exact where the input is held. It is compiled
+    where the law within is and all that is around it are pushes. Order 2 is Heun's scheme, with noise that is added a
+    weak one of order 2. Order 4 is the classical Runge-Kutta scheme, of laws without noise; the past between steps is a
+    Hermite cubic. Steps must divide delays and sampling periods.
 
     Parameters
     ----------
@@ -59,21 +65,16 @@ class Stepped(DiscreteLaw):
     0.75
     """
 
-    law: Law
-    dt: float = 0.01
     order: int = 2
 
-    units: ClassVar[Mapping[str, Powers]] = {"dt": (0, 1)}
-
-    approximates = True
     steps_at_once = 512
     private = ("step", "past", "held")
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, Wrapper):
             raise ArgumentError(f"law = {self.law!r}: expected a law that wraps one, such as Disturbed(law, ...)")
-        dt = ensure_positive("dt", self.dt)
-        object.__setattr__(self, "dt", dt)
+        super().__post_init__()
+        dt = self.dt
         if self.order not in ORDERS:
             raise ArgumentError(f"order = {self.order!r}: expected one of 1, 2, 4")
         for clock in (clock for one in self.law.wrappers for clock in one.clocks):
@@ -82,13 +83,10 @@ class Stepped(DiscreteLaw):
                     f"dt = {dt:g}: expected a step that divides the delay or period {clock:g}, such as "
                     f"{clock / max(1, ceil(clock / dt)):.12g}"
                 )
+        for late in self._late:
+            late._ensure_remembered(self._memory)
         if self.order == 4 and self.noisy:
             raise ArgumentError("order = 4: noise is stepped with order 1 or 2; expected one of them")
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law that is stepped
-        """Keys of the law's bibliography."""
-        return self.law.references
 
     @property
     def noisy(self) -> bool:
@@ -100,23 +98,31 @@ class Stepped(DiscreteLaw):
         return tuple(self.law.wrappers) if isinstance(self.law, Wrapper) else ()
 
     @cached_property
+    def _late(self) -> tuple[Delayed, ...]:
+        return tuple(one for one in self._wrappers if isinstance(one, Delayed))
+
+    @cached_property
+    def _memory(self) -> float:
+        """Longest time that the law looks back: delays within each other add up."""
+        return sum(one.memory for one in self._wrappers)
+
+    @cached_property
     def past_steps(self) -> int:
         """Steps of the past that are kept, the present one among them."""
-        longest = sum(one.memory for one in self._wrappers)
-        return 2 + ceil(longest / self.dt - _WHOLE) if longest > 0.0 else 0
+        return 2 + ceil(self._memory / self.dt - _WHOLE) if self._memory > 0.0 else 0
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         self.law.check_agents(n)
 
-    def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
-        return self.law.hamiltonian(t, q, p)
-
     def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
-        """The past: before the start the flock moved with its initial velocities."""
+        """Return the past: the history of a delayed law, else a motion with the initial velocities."""
         rows = (self.past_steps, *q.shape)
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
-        back, still = self.dt * np.arange(1 - self.past_steps, 1)[:, None, None], np.zeros(rows)
-        past = np.stack([q + back * p, still + p, still, still], axis=1)
+        past = np.empty((0, 4, *q.shape))
+        if self.past_steps:
+            told = next((one for one in self._late if one.history_t is not None), self._late[0])
+            before, speeds, push = told._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
     def step(  # noqa: D102
@@ -133,6 +139,8 @@ class Stepped(DiscreteLaw):
     def visit(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+        if self.order == 1 and (made := self._marched(t, q, p, int(memory["step"]), wanted)) is not None:
+            return made
         shape, advance = q.shape, {1: self._euler, 2: self._heun, 4: self._runge_kutta}[self.order]
         past: _Past = deque([tuple(row) for row in memory["past"]], maxlen=self.past_steps or 1)
         first = int(memory["step"])
@@ -157,6 +165,27 @@ class Stepped(DiscreteLaw):
         after = {"step": np.array(float(first + int(wanted[-1]))), "held": stored}
         after["past"] = np.array(past) if self.past_steps else np.empty((0, 4, *shape))
         return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
+
+    def _marched(
+        self, t: float, q: FloatArray, p: FloatArray, first: int, wanted: IndexArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+        """What `visit` gives, from one compiled call; None of a law that is not compiled, or has more than pushes."""
+        law, (n, m), steps = self.law, q.shape, int(wanted[-1])
+        pushing = [one for one in self._wrappers if isinstance(one, Disturbed)]
+        if not isinstance(law, Disturbed) or len(pushing) < len(self._wrappers):
+            return None
+        if (form := law.compiled_push(m)) is None or any(term.guard is not None for term in form.terms):
+            return None
+        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        still, own = (t, np.zeros(m), np.zeros(m)), np.arange(n, dtype=np.uint64)
+        reach = (form.reach, SKIN * form.reach)
+        system = System(*form.functions, form.numbers, still, form.moving, reach, own, *room)
+        kicks = sum((one._kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
+        y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
+        if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, out):
+            return None
+        held, past = np.full((1, len(self._wrappers), n, m), np.nan), np.empty((1, 0, 4, n, m))
+        return out[0], out[1], out[2], {"step": np.array([float(first + steps)]), "held": held, "past": past}
 
     def _ask(self, now: Step, t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         return input_of(self.law, now, View(t, q, p))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flockana.base.checks import FloatArray
 from flockana.laws.scheme import Scheme
 
 
@@ -18,15 +16,8 @@ class TaylorStep(Scheme):
 
     Parameters
     ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is no continuous one, or the step not positive.
+    law, dt : Law, float
+        As of every `Scheme`: the continuous law, and the step.
 
     Examples
     --------
@@ -43,9 +34,3 @@ class TaylorStep(Scheme):
     """
 
     position_factor = 0.5
-
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        u, h = self.law.flow(t, q, p)[0], self.dt
-        return q + h * p + (0.5 * h * h) * u, p + h * u, u, memory

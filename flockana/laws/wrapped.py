@@ -100,20 +100,74 @@ class Step:
         block, row = divmod(self.number, _BLOCK)
         found = self._drawn.get((seed, channel))
         if found is None or found[0] != block:
-            generator = np.random.Generator(np.random.Philox(key=seed * _CHANNELS + channel, counter=[0, 0, 0, block]))
-            found = self._drawn[(seed, channel)] = block, generator.standard_normal((_BLOCK, *shape))
+            found = self._drawn[(seed, channel)] = block, _normal_block(seed, channel, block, shape)
         numbers: FloatArray = found[1][row]
         return numbers
 
 
-class Wrapper(Law):
+def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -> FloatArray:
+    generator = np.random.Generator(np.random.Philox(key=seed * _CHANNELS + channel, counter=[0, 0, 0, block]))
+    return generator.standard_normal((_BLOCK, *shape))
+
+
+def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, count: int) -> FloatArray:
+    """Return what `Step.normal` gives of the steps from `first` on, stacked."""
+    blocks = range(first // _BLOCK, (first + count - 1) // _BLOCK + 1)
+    numbers = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
+    return numbers[first % _BLOCK :][:count]
+
+
+class Around(Law):
+    """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
+
+    law: Law
+
+    @property
+    def target(self) -> Target | None:  # type: ignore[override]
+        """The γ-agent of the inner law."""
+        return self.law.target
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
+        """Obstacles of the inner law."""
+        return self.law.obstacles
+
+    @property
+    def obstacle_field(self) -> ObstacleField | None:
+        """β-interaction of the inner law with its obstacles."""
+        return self.law.obstacle_field
+
+    @property
+    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
+        """Keys of the inner law's bibliography."""
+        return self.law.references
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return self.law.scales
+
+    @property
+    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
+        return self.law.surfaces
+
+    def check_dimension(self, m: int) -> None:  # noqa: D102
+        self.law.check_dimension(m)
+
+    def check_agents(self, n: int) -> None:  # noqa: D102
+        self.law.check_agents(n)
+
+    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
+        super().check_start(q, p)
+        self.law.check_start(q, p)
+
+
+class Wrapper(Around):
     """A law with one imperfection of the loop around it; wraps any law, another wrapper too.
 
     A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says
     whether it can be integrated by fixed steps only, because it has a past, a clock or chance.
     """
 
-    law: Law
     stepped: ClassVar[bool] = True
 
     @abstractmethod
@@ -146,6 +200,11 @@ class Wrapper(Law):
         return hasattr(self, "seed") and self.stepped
 
     @property
+    def moving(self) -> bool:
+        """Whether the law's energy is that in the frame of the centre of mass."""
+        return bool(getattr(self.law, "moving", False))
+
+    @property
     def memory(self) -> float:
         """Longest time that it looks back."""
         return 0.0
@@ -155,16 +214,7 @@ class Wrapper(Law):
         """Times that a step must divide."""
         return ()
 
-    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Refused: what the agents do depends on more than their state.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities.
-        """
+    def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         raise ArgumentError(
             f"{type(self).__name__} has no input at an instant: expected a run in fixed steps, simulate(law, ..., "
             "dt=0.01), or the law that it wraps"
@@ -182,46 +232,8 @@ class Wrapper(Law):
         """The law within all wrappers."""
         return self.law.core if isinstance(self.law, Wrapper) else self.law
 
-    @property
-    def target(self) -> Target | None:  # type: ignore[override]
-        """The γ-agent of the law."""
-        return self.law.target
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
-        """What the law's agents keep off."""
-        return self.law.obstacles
-
-    @property
-    def obstacle_field(self) -> ObstacleField | None:
-        """How they do."""
-        return self.law.obstacle_field
-
-    @property
-    def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
-        """Keys of the law's bibliography."""
-        return self.law.references
-
-    @property
-    def scales(self) -> Scales | None:  # noqa: D102
-        return self.law.scales
-
-    @property
-    def surfaces(self) -> tuple[float | tuple[float, ...], ...]:  # noqa: D102
-        return self.law.surfaces
-
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         return self.law.hamiltonian(t, q, p)  # of the law; its balance is not kept
-
-    def check_dimension(self, m: int) -> None:  # noqa: D102
-        self.law.check_dimension(m)
-
-    def check_agents(self, n: int) -> None:  # noqa: D102
-        self.law.check_agents(n)
-
-    def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
-        super().check_start(q, p)
-        self.law.check_start(q, p)
 
     def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Any) -> Any:  # noqa: D102
         return self.law.measures(t, q, p, extra)
@@ -272,17 +284,7 @@ def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
 
 
 def input_of(law: Law, step: Step, view: View) -> FloatArray:
-    """Return the accelerations of a law, wrapped or not, from what the agents know.
-
-    Parameters
-    ----------
-    law : Law
-        The law.
-    step : Step
-        In which it is asked.
-    view : View
-        What agents know.
-    """
+    """Return the accelerations of a law, wrapped or not, in a step from what the agents know."""
     if isinstance(law, Wrapper):
         return law.input(step, view)
     if view.heard is None and view.linked is None:

@@ -1,5 +1,6 @@
 from .animation import animate as animate
 from .animation import animation as animation
+from .bars import bars as bars
 from .basin import sampled_basin as sampled_basin
 from .comparison import side_by_side as side_by_side
 from .comparison import velocity_diameters as velocity_diameters

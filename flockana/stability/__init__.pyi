@@ -36,7 +36,6 @@ from .slowest import SlowModes as SlowModes
 from .slowest import slowest_modes as slowest_modes
 from .specifications import Specifications as Specifications
 from .specifications import SpecifiedGains as SpecifiedGains
-from .specifications import specified_gains as specified_gains
 from .sweeps import centre_locus as centre_locus
 from .sweeps import gain_sweep as gain_sweep
 from .sweeps import margin_sweep as margin_sweep

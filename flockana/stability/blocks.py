@@ -53,8 +53,8 @@ class Blocks:
 
     def matrix(self) -> FloatArray:
         """A of (x, x')' = A (x, x'), shape (2 n m, 2 n m)."""
-        zero, one = np.zeros_like(self.stiffness), np.eye(len(self.stiffness))
-        return np.block([[zero, one], [-self.stiffness, -self.damping]])
+        one = np.eye(len(self.stiffness))
+        return reduced(self.stiffness, self.damping, one, one)
 
     def quotient(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """A and B without the rigid motions that nothing holds, and the bases N of positions, V of velocities.
@@ -64,14 +64,22 @@ class Blocks:
         centre of mass. Disturbances turn the flock by a random walk; that is no fault of its shape.
         """
         positions, velocities = complement(self.neutral), complement(self.drifting)
-        a = np.block(
-            [
-                [np.zeros((positions.shape[1],) * 2), positions.T @ velocities],
-                [-velocities.T @ self.stiffness @ positions, -velocities.T @ self.damping @ velocities],
-            ]
-        )
+        a = reduced(self.stiffness, self.damping, positions, velocities)
         b = np.vstack([np.zeros((positions.shape[1], len(self.stiffness))), velocities.T])
         return a, b, positions, velocities
+
+
+def reduced(stiffness: FloatArray, damping: FloatArray, positions: FloatArray, velocities: FloatArray) -> FloatArray:
+    """Return A of x'' = −K x − D x' in bases N of the positions and V of the velocities that are kept.
+
+    Examples
+    --------
+    >>> one = np.eye(1)
+    >>> reduced(2.0 * one, 3.0 * one, one, one).tolist()
+    [[0.0, 1.0], [-2.0, -3.0]]
+    """
+    top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
+    return np.vstack([top, -velocities.T @ np.hstack([stiffness @ positions, damping @ velocities])])
 
 
 def complement(basis: FloatArray) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Target
-from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
+from flockana.environment.targets import RescaledVelocity
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import ensure_one_gain
 from flockana.stability.translational import CentreOfMass
@@ -27,6 +26,7 @@ def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
 
     Examples
     --------
+    >>> from flockana.environment.targets import LinearTarget
     >>> path_and_factor(RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5))[1]
     0.5
     """
@@ -54,28 +54,15 @@ def motion(target: Target) -> Motion:
 
     Examples
     --------
+    >>> from flockana.environment.targets import CircleTarget
     >>> motion(CircleTarget((1.0, 2.0), 3.0, 0.5)).swing.tolist()
     [(3+0j), -3j]
     """
-    path, factor = path_and_factor(target)
-    if isinstance(path, StaticTarget):
-        start, still = np.array(path.q), np.zeros(len(path.q))
-        told = path.state(0.0)[1] if path is target else still
-        return Motion(start, still, told, still.astype(np.complex128), 0.0, factor)
-    if isinstance(path, LinearTarget):
-        velocity = np.array(path.p)
-        return Motion(np.array(path.q), velocity, factor * velocity, velocity.astype(np.complex128) * 0.0, 0.0, factor)
-    if isinstance(path, SineTarget):
-        velocity, swing = np.array(path.velocity), np.zeros(len(path.start), dtype=np.complex128)
-        swing[path.axis] = -1j * path.amplitude * np.exp(1j * path.phase)
-        omega = 2.0 * pi * path.frequency
-        return Motion(np.array(path.start), velocity, factor * velocity, swing, omega, factor)
-    if isinstance(path, CircleTarget):
-        swing = np.zeros(len(path.centre), dtype=np.complex128)
-        swing[:2] = path.radius * np.exp(1j * path.phase) * np.array([1.0, -1j])
-        still, omega = np.zeros(len(path.centre)), 2.0 * pi * path.frequency
-        return Motion(np.array(path.centre), still, still, swing, omega, factor)
-    raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
+    told = target.harmonic if isinstance(target, Target) else None
+    if told is None:
+        raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
+    start, velocity, cosine, sine, own = told.terms
+    return Motion(start, velocity, told.factor * velocity + own, cosine - 1j * sine, told.omega, told.factor)
 
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
@@ -112,6 +99,7 @@ def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
 
     Examples
     --------
+    >>> from flockana.environment.targets import LinearTarget
     >>> hidden = RescaledVelocity(LinearTarget((0.0, 0.0), (3.0, 0.0)), 0.0)
     >>> steady_error(Gains(c1_gamma=2.0, c2_gamma=4.0), hidden)
     (6.0, 0.0)
@@ -131,8 +119,9 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     --------
     Without damping it swings through a target at rest and as far beyond:
 
+    >>> from flockana.environment.targets import StaticTarget
     >>> swing = Gains(c1_gamma=1.0, c2_gamma=0.0)
-    >>> centre_path(swing, StaticTarget((5.0,)), [0.0, pi], [1.0], [0.0]).round(9).ravel().tolist()
+    >>> centre_path(swing, StaticTarget((5.0,)), [0.0, np.pi], [1.0], [0.0]).round(9).ravel().tolist()
     [1.0, 9.0]
     """
     moving, times = motion(target), np.atleast_1d(np.asarray(t, dtype=np.float64))

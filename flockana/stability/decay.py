@@ -199,11 +199,10 @@ class LinearRange:
         small = self.deviations < _SMALL
         if small.sum() < 2:
             return float("nan"), inf
-        x, y = np.log(self.amplitudes[small]), np.log(self.amplitudes[small] * self.deviations[small])
-        slope, level = (float(c) for c in np.polyfit(x, y, 1))
-        spread = float(np.sum((x - x.mean()) ** 2))
-        left = float(np.sum((y - level - slope * x) ** 2))
-        return slope, float(np.sqrt(left / (x.size - 2) / spread)) if x.size > 2 else inf
+        from scipy.stats import linregress
+
+        fit: Any = linregress(np.log(self.amplitudes[small]), np.log(self.amplitudes[small] * self.deviations[small]))
+        return float(fit.slope), float(fit.stderr) if small.sum() > 2 else inf
 
     def limit(self, deviation: float) -> float:
         """Return the largest amplitude, in units of d, whose deviation stays below a share; interpolated.

@@ -59,6 +59,12 @@ class DelaySystem:
         matrix: ComplexArray = s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
         return matrix
 
+    def slope(self, s: complex, delay: float) -> ComplexArray:
+        """Return the derivative of `characteristic` by s."""
+        (_, d0), (k1, d1) = self.prompt, self.late
+        matrix: ComplexArray = 2.0 * s * np.eye(len(d0)) + d0 + (d1 - delay * (k1 + s * d1)) * np.exp(-s * delay)
+        return matrix
+
 
 @dataclass(frozen=True)
 class DelayMargin:
@@ -310,9 +316,7 @@ def root_error(system: DelaySystem, s: complex, delay: float) -> float:
     """
     (k0, d0), (k1, d1) = system.prompt, system.late
     u, sizes, vh = np.linalg.svd(system.characteristic(s, delay))
-    late = np.exp(-s * delay)
-    slope = 2.0 * s * np.eye(len(k0)) + d0 + (d1 - delay * (k1 + s * d1)) * late
-    turn = abs(complex(u[:, -1].conj() @ slope @ vh[-1].conj()))
+    late, turn = np.exp(-s * delay), abs(complex(u[:, -1].conj() @ system.slope(s, delay) @ vh[-1].conj()))
     size = float(np.linalg.norm(k0) + abs(s) * np.linalg.norm(d0))
     size += abs(late) * float(np.linalg.norm(k1) + abs(s) * np.linalg.norm(d1)) + abs(s) ** 2
     push = float(sizes[-1]) + _ROUNDINGS * EPS * size
@@ -331,14 +335,11 @@ def _chebyshev(nodes: int) -> FloatArray:
 
 def _refine(system: DelaySystem, s: complex, delay: float) -> complex:
     """Newton's method for (v, s) with M(s) v = 0, started from the singular vector at s."""
-    (k0, d0), (k1, d1) = system.prompt, system.late
-    start, size = s, len(k0)
+    start = s
     v = np.linalg.svd(system.characteristic(s, delay))[2][-1].conj()
     fixed = v.conj()
     for _ in range(8):
-        late = np.exp(-s * delay)
-        matrix = system.characteristic(s, delay)
-        slope = (2.0 * s * np.eye(size) + d0 + (d1 - delay * (k1 + s * d1)) * late) @ v
+        matrix, slope = system.characteristic(s, delay), system.slope(s, delay) @ v
         bordered = np.block([[matrix, slope[:, None]], [fixed[None, :], np.zeros((1, 1))]])
         try:
             step = np.linalg.solve(bordered, np.append(-matrix @ v, 1.0 - fixed @ v))

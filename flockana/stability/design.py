@@ -12,30 +12,37 @@ printed; rotation="neutral" divides the angle of the rotation about the centre o
 so that the speed of turning is still to die out, as it is in a flock at rest; and rotation="apart" projects out angle
 and speed alike: what is rated is the flock's shape and its centre, and nothing of how it turns.
 
-Found for the hexagonal spiral of 30 agents, c1α = 30, c2α = 2√30, gains within [0, 5], as decay rates per time unit:
-1.740 alike and 2.061 per agent with the rotation counted (18 % faster); 2.236 = √5 and 2.247 with it neutral (0.5 %);
-2.236 and 2.251 with it apart (0.7 %);
-0.2962 and 0.3067 in the simplified form (3.5 %). At the equilibria that these gains have, where rotation is neutral,
-critical damping alike, (5, 2√5), keeps 2.236, and the two per-agent designs decay at 2.064 and 2.147; designed with
-that equilibrium's own stiffness, c1γ = 5 for all and c2γ per agent reach 2.249 (0.6 %).
+What was found for thirty agents is in docs/gain-design.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from math import sqrt
-from typing import Any
+from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_known, ensure_nonnegative, ensure_points
+from flockana.base.checks import (
+    FloatArray,
+    ensure_count,
+    ensure_kind,
+    ensure_known,
+    ensure_nonnegative,
+    ensure_points,
+    ensure_positive,
+)
 from flockana.base.errors import ArgumentError
+from flockana.environment.targets import StaticTarget
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
-from flockana.stability.blocks import complement
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.stability.blocks import complement, reduced
+from flockana.stability.specifications import Specifications, SpecifiedGains, evaluated
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -66,6 +73,8 @@ class GainProblem:
     apart: FloatArray  # shape (N, k): orthonormal motions that are projected out
     agents: int  # n; each has N/n coordinates
     speeds: bool = True  # whether their velocities are projected out too, or their positions alone
+    law: Algorithm2 | None = None  # law and configuration (n, m) that the matrices are of
+    q: FloatArray | None = None
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
@@ -77,10 +86,7 @@ class GainProblem:
         """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
         each = len(self.stiffness) // self.agents
         pull, drag = np.repeat(gains, each).reshape(2, -1)
-        positions, velocities = self._kept
-        top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
-        forces = (self.stiffness + np.diag(pull)) @ positions, (self.damping + np.diag(drag)) @ velocities
-        return np.vstack([top, -velocities.T @ np.hstack(forces)])
+        return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
         """Return the eigenvalues of `matrix`, largest real part first."""
@@ -197,57 +203,96 @@ def gain_problem(
     for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
         ensure_known(name, value, known)
     damping = gains.c2_alpha * alpha.laplacian(q).toarray()
+    of = {"law": Algorithm2(alpha, gains, StaticTarget(q.mean(axis=0))), "q": q}
     if form == "simplified":
-        return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n)
+        return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n, **of)
     rigid = rigid_motions(q)
     translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
     inside = rigid - translations @ (translations.T @ rigid)
     basis, sizes, _ = np.linalg.svd(inside, full_matrices=False)
     turns = basis[:, sizes > 0.5] if rotation != "counted" else np.zeros((q.size, 0))
-    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n, rotation == "apart")
+    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n, rotation == "apart", **of)
 
 
+class _Search(TypedDict, total=False):
+    """Keyword arguments of `design_gains`."""
+
+    bounds: tuple[float, float] | None
+    starts: int
+    polish: int
+    seed: int
+
+
+@overload
+def design_gains(problem: GainProblem, asked: Specifications, **how: Unpack[_Search]) -> SpecifiedGains: ...
+@overload
+def design_gains(problem: GainProblem, asked: None = ..., **how: Unpack[_Search]) -> GainDesign: ...
 def design_gains(
-    problem: GainProblem, *, bounds: tuple[float, float] = (0.0, 5.0), starts: int = 6, polish: int = 0, seed: int = 0
-) -> GainDesign:
-    """Minimise the spectral abscissa over gains within bounds, alike for all agents and one per agent.
+    problem: GainProblem,
+    asked: Specifications | None = None,
+    *,
+    bounds: tuple[float, float] | None = None,
+    starts: int = 6,
+    polish: int = 0,
+    seed: int = 0,
+) -> GainDesign | SpecifiedGains:
+    """Choose c1γ and c2γ within bounds: for the fastest decay, or to meet specifications.
 
-    Alike, the two gains are searched on a grid and by Nelder and Mead's method. Per agent, sequential linear programs
-    minimise the largest of the linearised real parts within a trust region, from the homogeneous optimum, near it and
-    from random starts; the abscissa is not smooth where eigenvalues coalesce, which `polish` generations of CMA-ES may
-    get over. What is found is a local minimum, the best of its starts.
+    Without specifications the spectral abscissa is minimised, alike for all agents and one per agent. Alike, the two
+    gains are searched on a grid and by Nelder and Mead's method. Per agent, sequential linear programs minimise the
+    largest of the linearised real parts within a trust region, from the homogeneous optimum, near it and from random
+    starts; the abscissa is not smooth where eigenvalues coalesce, which `polish` generations of CMA-ES may get over.
+
+    With specifications the gains are alike for all agents, and the specification with the least room gets the most: it
+    is the one that binds. The equilibrium is found anew for each choice. The grid is geometric.
+
+    Either search is local: what it does not find or meet may be found elsewhere.
 
     Parameters
     ----------
     problem : GainProblem
-        From `gain_problem`.
-    bounds : (float, float)
-        Least and greatest gain, for c1γ and c2γ alike.
+        From `gain_problem`; with specifications, its form and rotation do not matter.
+    asked : Specifications, optional
+        What the flock must do.
+    bounds : (float, float), optional
+        Least and greatest gain, for c1γ and c2γ alike; (0, 5) by default, with specifications (0.1, 20).
     starts : int
-        Random starts, half of them near the homogeneous optimum.
+        Random starts of gains per agent, half of them near the homogeneous optimum.
     polish : int
-        Generations of CMA-ES.
+        Generations of CMA-ES, of gains per agent.
     seed : int
         Of the starts and of CMA-ES.
+
+    Returns
+    -------
+    GainDesign, or with specifications SpecifiedGains
 
     Raises
     ------
     ArgumentError
-        On bounds that are no interval of gains >= 0.
+        On bounds that are no interval of gains >= 0 (with specifications > 0), or a problem without its law.
 
     Examples
     --------
     A lone agent is best damped critically: √5 with c1γ <= 5.
 
-    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+    >>> alone = gain_problem([[0.0]], alpha=AlphaInteraction(), gains=Gains())
     >>> designs = design_gains(alone, starts=1)
     >>> round(designs.rate_homogeneous**2, 3), designs.homogeneous.round(2).tolist()
     (5.0, [5.0, 4.47])
+
+    It must decay fast and yet bear a long sampling period; both bind:
+
+    >>> found = design_gains(alone, Specifications(decay=1.0, period=0.1))
+    >>> found.met, found.binding in ("decay", "period")
+    (True, True)
     """
     ensure_kind("problem", problem, GainProblem, "what gain_problem(...) gives")
-    low, high = _bounds(bounds)
+    if asked is not None:
+        return _specified(problem, asked, bounds or (0.1, 20.0))
+    low, high = _bounds(bounds or (0.0, 5.0), ensure_nonnegative)
     n, rng = problem.agents, np.random.default_rng(seed)
-    alike = _homogeneous(problem, low, high)
+    alike = np.repeat(_alike(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
     trials = [alike]
     for k in range(ensure_count("starts", starts)):
         near = alike + 0.1 * (high - low) * rng.standard_normal(2 * n)
@@ -261,9 +306,25 @@ def design_gains(
     return GainDesign(problem, alike, best, rates[0], rates[1], spectra[0], spectra[1], starts)
 
 
-def _bounds(bounds: Any) -> tuple[float, float]:
+def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> SpecifiedGains:
+    """Search gains, by their logarithms, that leave the most room."""
+    if not isinstance(asked, Specifications):
+        raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
+    law, q = problem.law, problem.q
+    if law is None or q is None:
+        raise ArgumentError("problem.law = None: expected what gain_problem(...) gives, which knows law and places")
+    low, high = np.log(_bounds(bounds, ensure_positive)).tolist()
+
+    def found(logs: FloatArray) -> SpecifiedGains:
+        return evaluated(law, q, asked, *np.exp(logs).tolist())
+
+    best = _alike(lambda logs: -min(found(logs).room.values()), low, high, count=6, tries=1, most=60, finest=2e-4)
+    return found(best)
+
+
+def _bounds(bounds: Any, ensure: Callable[[str, Any], float]) -> tuple[float, float]:
     try:
-        low, high = (ensure_nonnegative("bounds", x) for x in bounds)
+        low, high = (ensure("bounds", x) for x in bounds)
     except TypeError:
         raise ArgumentError(f"bounds = {bounds!r}: expected (least, greatest) gain") from None
     if not low < high:
@@ -271,30 +332,30 @@ def _bounds(bounds: Any) -> tuple[float, float]:
     return low, high
 
 
-def _homogeneous(problem: GainProblem, low: float, high: float) -> FloatArray:
-    """Return the best pair of gains, by a grid and a simplex search."""
+def _alike(
+    worth: Callable[[FloatArray], float],
+    low: float,
+    high: float,
+    *,
+    count: int = _GRID,
+    tries: int = 2,
+    most: int = 200,
+    finest: float = _SMALLEST,
+) -> FloatArray:
+    """Return the pair of numbers between bounds whose worth is least, by a grid and a simplex search."""
     from scipy.optimize import minimize
 
-    def spread(pair: Any) -> FloatArray:
-        return np.repeat(np.clip(pair, low, high), problem.agents)
-
-    axis = np.linspace(low, high, _GRID)
-    grid = sorted((problem.abscissa(spread((a, b))), a, b) for a in axis.tolist() for b in axis.tolist())[:2]
-    best = spread(grid[0][1:])
-    for _, a, b in grid:
-        simplex = np.array([[a, b], [a - 0.2 * (high - low) / _GRID, b], [a, b + 0.4 * (high - low) / _GRID]])
-        fine = {"xatol": _SMALLEST * (high - low), "fatol": _GAINED * abs(problem.abscissa(spread((a, b))))}
-        options: Any = {"initial_simplex": np.clip(simplex, low, high), "maxfev": 200, **fine}
+    axis, wide = np.linspace(low, high, count), (high - low) / count
+    grid = sorted((worth(np.array(pair)), *pair) for pair in product(axis.tolist(), axis.tolist()))[:tries]
+    best = grid[0]
+    for value, a, b in grid:
+        simplex = np.clip([[a, b], [a - 0.2 * wide, b], [a, b + 0.4 * wide]], low, high)
+        fine: Any = {"xatol": finest * (high - low), "fatol": _GAINED * abs(value)}
+        options: Any = {"initial_simplex": simplex, "maxfev": most, **fine}
         box = [(low, high)] * 2
-        polished = minimize(
-            _folded(problem, spread), np.array([a, b]), method="Nelder-Mead", bounds=box, options=options
-        )
-        best = min(best, spread(polished.x), key=problem.abscissa)
-    return best
-
-
-def _folded(problem: GainProblem, spread: Callable[[Any], FloatArray]) -> Callable[[Any], float]:
-    return lambda pair: problem.abscissa(spread(pair))
+        polished = minimize(worth, np.array([a, b]), method="Nelder-Mead", bounds=box, options=options)
+        best = min(best, (float(polished.fun), *np.clip(polished.x, low, high).tolist()))
+    return np.array(best[1:])
 
 
 def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
 from flockana.measures.nets import links as links_within
 from flockana.stability.linearisation import Linearisation
-from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map
+from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
 from flockana.stability.modes import ZERO
 
 if TYPE_CHECKING:
@@ -35,30 +35,20 @@ _LATER = 0.7310585786  # of the flock's own time: after it a steady motion must 
 _STEADY = 1e-9  # relative
 
 
+class _Options(TypedDict, total=False):
+    """Keyword arguments of `linearise`."""
+
+    t: float
+    links: Any
+    force_tolerance: float
+    allow_residual: bool
+    zero: float | None
+
+
 @overload
-def linearise(
-    law: DiscreteLaw,
-    equilibrium: Any,
-    p: Any = None,
-    *,
-    t: float = ...,
-    links: Any = ...,
-    force_tolerance: float = ...,
-    allow_residual: bool = ...,
-    zero: float | None = ...,
-) -> MapLinearisation: ...
+def linearise(law: DiscreteLaw, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> MapLinearisation: ...
 @overload
-def linearise(
-    law: Any,
-    equilibrium: Any,
-    p: Any = None,
-    *,
-    t: float = ...,
-    links: Any = ...,
-    force_tolerance: float = ...,
-    allow_residual: bool = ...,
-    zero: float | None = ...,
-) -> Linearisation: ...
+def linearise(law: Any, equilibrium: Any, p: Any = ..., **how: Unpack[_Options]) -> Linearisation: ...
 def linearise(
     law: Any,
     equilibrium: Any,
@@ -76,13 +66,14 @@ def linearise(
     motion of the γ-agent, for the Jacobian depends on differences of positions alone, and the centre obeys the same
     linear equation wherever it is. Then only the shape must be at equilibrium. Under any other law all agents must keep
     one constant velocity with no force on them, along which the Jacobian must not change. A map that steps such a law
-    rests where the law does; a map of headings is linearised about parallel motion, `p`.
+    rests where the law does; a map of headings is linearised about parallel motion, `p`, and any other map where it is
+    smooth about a motion that it keeps, by differences of its steps.
 
     Parameters
     ----------
     law : Law or DiscreteLaw
         A continuous law with `jacobian`, or a map: a scheme such as `TaylorStep`, the MSN project's, the minimal
-        model's, `HeadingAveraging`.
+        model's, `HeadingAveraging`, `ZoneFlocking`.
     equilibrium : Equilibrium or array_like, shape (n, m)
         From `find_equilibrium`, or positions.
     p : array_like, shape (n, m), optional
@@ -163,7 +154,10 @@ def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, A
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
-    return linearise_headings(law, q, p, ensure_finite_scalar("t", how["t"]))
+    law.check_start(q, p)
+    by_headings = q.shape[1] == 2 and law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is not None
+    ways = linearise_headings if by_headings else linearise_steps
+    return ways(law, q, p, ensure_finite_scalar("t", how["t"]))
 
 
 def _softest(equilibrium: Any, matrix: csr_array) -> float:

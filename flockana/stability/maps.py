@@ -9,6 +9,7 @@ K_L and D_L the entries that act on agents moved before, the equation is
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
+from flockana.equilibria.curvature import EPS
 from flockana.laws.discrete import DiscreteLaw
 from flockana.stability.mode_names import translations
 from flockana.stability.modes import Mode, SecondOrder
@@ -31,7 +33,8 @@ if TYPE_CHECKING:
 
 ComplexArray = npt.NDArray[np.complex128]
 
-_PARALLEL = 1e-9  # radians: headings that differ by no more are one
+_PARALLEL = 1e-9  # radians, or units of the law: headings that differ by no more are one, states that move less rest
+_WIDTH, _KINK = 1e-6, 1e-4  # of a difference, in units of the law; of two slopes, of the size of A
 
 
 @dataclass(frozen=True)
@@ -102,9 +105,11 @@ class MapLinearisation:
     A, B : ndarray, shapes (N, N) and (N, F)
         Step of the state, and effect of a force on each agent that lasts the step (of a turn of each heading).
     states, inputs : tuple of str
-        Their names: q0_x, …, p0_x, …, or heading0, ….
+        Their names: q0_x, …, p0_x, …, or heading0, …; what the map remembers beside by its own names.
     second_order : SecondOrder or None
-        The equation of w = (z − 1)/dt, None for a map of headings.
+        The equation of w = (z − 1)/dt; None of a map of headings, and of one whose steps are differentiated.
+    off : float
+        Share of its size by which A may be off: of one whose steps are differentiated.
 
     Examples
     --------
@@ -128,6 +133,7 @@ class MapLinearisation:
     states: tuple[str, ...] = field(repr=False)
     inputs: tuple[str, ...] = field(repr=False)
     second_order: SecondOrder | None = field(repr=False, default=None)
+    off: float = 0.0
 
     @property
     def dt(self) -> float:
@@ -135,28 +141,28 @@ class MapLinearisation:
         return self.law.dt
 
     @cached_property
-    def _headings(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """Multipliers, vectors and errors of a map of headings; what rounding parts from 1 is 1."""
-        values, vectors, errors = eigen(self.A)
+    def _dense(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+        """Multipliers, vectors and errors of A; what errors part from 1 is 1."""
+        values, vectors, errors = eigen(self.A, self.off)
         return np.where(np.abs(values - 1.0) <= errors, 1.0, values), vectors, errors
 
     @property
     def multipliers(self) -> ComplexArray:
         """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
-        values = self._headings[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
+        values = self._dense[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
         ordered: ComplexArray = values[np.lexsort((values.imag, -np.abs(values)))]
         return ordered
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:
-        """Motions whose multiplier is 1: translations, rotations, soft modes; of headings none is listed."""
+        """Motions whose multiplier is 1: translations, rotations, soft modes; none without a `second_order`."""
         return () if self.second_order is None else self.second_order.invariant.zero
 
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
         """All other modes, slowest first; one for each real multiplier or conjugate pair."""
         if self.second_order is None:
-            values, vectors, errors = self._headings
+            values, vectors, errors = self._dense
             kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
             found = [MapMode(complex(values[k]), vectors[:, k], "", self.dt, float(errors[k])) for k in kept]
         else:
@@ -267,14 +273,6 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
     """Linearisation of a map of headings about parallel motion: its net then stays as it is."""
-    if not p.any():
-        raise ArgumentError(f"{type(law).__name__} is a map of its own: expected the velocities p of a parallel motion")
-    law.check_start(q, p)
-    if law.averaging_matrix(q, np.arctan2(p[:, 1], p[:, 0])) is None:
-        raise ArgumentError(
-            f"{type(law).__name__} gives no derivatives: expected a map that steps a law, such as TaylorStep(...), or "
-            "one of headings"
-        )
     heading = np.arctan2(p[:, 1], p[:, 0])
     off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
     if off > _PARALLEL:
@@ -285,3 +283,69 @@ def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapL
     n = len(q)
     names = tuple(f"heading{i}" for i in range(n)), tuple(f"turn{i}" for i in range(n))
     return MapLinearisation(law, q, p, t, off, matrix, np.eye(n), *names)
+
+
+def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
+    """Linearisation of any map about a steady motion by differences of its steps, memory and all; refused at a kink."""
+    (n, m), name, memory = q.shape, type(law).__name__, {k: np.array(v) for k, v in law.start(q, p).items()}
+    shapes = {"q": q.shape, "p": p.shape} | {key: value.shape for key, value in memory.items()}
+    own, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
+    unit, time = (length, law.dt) if own is None else (own.length, own.time)
+    powers = {"q": (1, 0), "p": (1, -1)} | dict(law.extra_units)
+    sizes = {key: unit ** powers.get(key, (0, 0))[0] * time ** powers.get(key, (0, 0))[1] for key in shapes}
+    ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes.values())])
+
+    def packed(parts: Mapping[str, FloatArray]) -> FloatArray:
+        return np.concatenate([np.ravel(parts[key]) / sizes[key] for key in shapes])
+
+    def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
+        """Next state in the frame of the motion, after `steps` steps."""
+        values = {
+            key: (state[a:b] * sizes[key]).reshape(shape)
+            for (key, shape), a, b in zip(shapes.items(), ends, ends[1:], strict=False)
+        }
+        gone = steps * law.dt * p
+        inner = {key: values[key] for key in memory}
+        after = law.step(t + steps * law.dt, values["q"] + gone, values["p"], inner)
+        return packed({"q": after[0] - gone - law.dt * p, "p": after[1]} | dict(after[3]))
+
+    start = packed({"q": q, "p": p} | memory)
+    moved = np.abs(stepped(start) - start)
+    worst = int(np.argmax(moved))
+    if not moved[worst] <= _PARALLEL:
+        where = list(shapes)[int(np.searchsorted(ends, worst, side="right")) - 1]
+        raise ArgumentError(
+            f"the state is no steady motion of {name}: {where} changes by {moved[worst]:.3g} of its unit in a step, "
+            f"expected at most {_PARALLEL:g}; start from positions and velocities that the map keeps"
+        )
+    matrix, kink = _differences(stepped, start, _WIDTH)
+    wide, later = (
+        _differences(stepped, start, 2.0 * _WIDTH)[0],
+        _differences(lambda x: stepped(x, 97), start, _WIDTH)[0],
+    )
+    size, kink = float(np.linalg.norm(matrix)), max(kink, float(np.abs(wide - matrix).max()))
+    if kink > _KINK * size:
+        raise ArgumentError(
+            f"{name} has a kink or a jump at this state (slopes to either side differ by {kink:.2g}): expected a "
+            "state within its zones and bounds, not at the edge of one"
+        )
+    if np.abs(later - matrix).max() > _KINK * size:
+        raise ArgumentError(f"{name} is another map further along this motion: expected none that meets an obstacle")
+    units = np.repeat(list(sizes.values()), np.diff(ends))
+    off = (float(np.linalg.norm(wide - matrix)) + len(start) * 4.0 * EPS / _WIDTH) / size
+    beside = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]
+    names = (*labels("q", n, m), *labels("p", n, m), *beside)
+    a = matrix * units[:, None] / units
+    return MapLinearisation(
+        law, q, p, t, float(moved[worst]), a, np.eye(len(a)), names, tuple(f"d{name}" for name in names), None, off
+    )
+
+
+def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray, width: float) -> tuple[FloatArray, float]:
+    """Derivative by central differences, and the largest difference between the slopes to either side."""
+    matrix, kink, here = np.empty((x.size, x.size)), 0.0, function(x)
+    for k, nudge in enumerate(width * np.eye(x.size)):
+        ahead, behind = function(x + nudge), function(x - nudge)
+        matrix[:, k] = (ahead - behind) / (2.0 * width)
+        kink = max(kink, float(np.abs(ahead - 2.0 * here + behind).max()) / width)
+    return matrix, kink

@@ -101,14 +101,18 @@ def h2_norm(system: StateSpace) -> float:
     0.25
     """
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
-    from scipy.linalg import solve_continuous_lyapunov
-
     if system.nstates == 0 or system.noutputs == 0:
         return 0.0
     if not _stable(system.A):
         return inf
-    gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
-    return sqrt(max(0.0, float(np.trace(system.C @ gramian @ system.C.T))))
+    return sqrt(max(0.0, float(np.trace(_covariance(system)))))
+
+
+def _covariance(system: StateSpace) -> FloatArray:
+    """Covariance of the outputs of a stable system under white noise of unit intensity in every input."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    return np.asarray(system.C @ solve_continuous_lyapunov(system.A, -system.B @ system.B.T) @ system.C.T)
 
 
 def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
@@ -137,13 +141,10 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
     >>> (stationary_covariance(swing, 2.0).round(12) + 0.0).tolist()
     [[0.25, 0.0], [0.0, 2.0]]
     """
-    from scipy.linalg import solve_continuous_lyapunov
-
     intensity = ensure_nonnegative("intensity", intensity)
     if not _stable(system.A):
         raise ArgumentError("the system is not stable: expected one whose modes all decay, such as disturbance_system")
-    gramian = solve_continuous_lyapunov(system.A, -system.B @ system.B.T)
-    covariance: FloatArray = intensity**2 * (system.C @ gramian @ system.C.T)
+    covariance: FloatArray = intensity**2 * _covariance(system)
     return 0.5 * (covariance + covariance.T)
 
 

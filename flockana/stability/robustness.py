@@ -86,6 +86,20 @@ class RobustnessMargins:
         return max(one.sensitivity for one in self.loops)
 
     @property
+    def table(self) -> dict[str, dict[str, float]]:
+        """All margins by loop and kind, as `flockana.plots.bars` takes them."""
+        return {
+            f"agent {one.agent}, {'xyz'[one.axis]}": {
+                "least gain": one.gain[0],
+                "greatest gain": one.gain[1],
+                "phase (degrees)": one.phase,
+                "disk margin": one.disk,
+                "sensitivity peak": one.sensitivity,
+            }
+            for one in self.loops
+        }
+
+    @property
     def weakest(self) -> LoopMargins:
         """Loop with the least disk margin."""
         return min(self.loops, key=lambda one: one.disk)

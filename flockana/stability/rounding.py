@@ -24,8 +24,13 @@ ComplexArray = npt.NDArray[np.complex128]
 _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 
 
-def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's rounding error.
+def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Return eigenvalues, right eigenvectors, and a bound of each eigenvalue's error, of rounding and of the matrix.
+
+    Parameters
+    ----------
+    off : float
+        By what share of its size the matrix itself may be off.
 
     Examples
     --------
@@ -44,21 +49,21 @@ def eigen(matrix: FloatArray) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     balanced, _, _, units, _ = dgebal(matrix, scale=1)  # by powers of 2: no rounding
     solved: Any = eig(balanced, left=True, right=True)
     values, left, right = (np.asarray(part, dtype=np.complex128) for part in solved)
-    size = float(np.linalg.norm(balanced))
+    size, tight = float(np.linalg.norm(balanced)), _ROUNDINGS * EPS + off
     with np.errstate(divide="ignore"):
-        alone = _ROUNDINGS * EPS * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    elsner = (2.0 * size) ** (1.0 - 1.0 / len(values)) * (_ROUNDINGS * EPS * size) ** (1.0 / len(values))
-    return values, units[:, None] * right, np.minimum(np.minimum(alone, elsner), _together(values, size))
+        alone = tight * size / np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    elsner = (2.0 * size) ** (1.0 - 1.0 / len(values)) * (tight * size) ** (1.0 / len(values))
+    return values, units[:, None] * right, np.minimum(np.minimum(alone, elsner), _together(values, size, tight))
 
 
-def _together(values: ComplexArray, size: float) -> FloatArray:
+def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
     """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one.
 
     Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     """
     from scipy.spatial import cKDTree
 
-    tight, plane = _ROUNDINGS * EPS, np.column_stack([values.real, values.imag])
+    plane = np.column_stack([values.real, values.imag])
     same = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
     bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
     return bound

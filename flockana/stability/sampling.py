@@ -36,7 +36,6 @@ CLOSE = 1e-6  # relative: a certified bound lies that close to the margin
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
 _TRIALS = 24  # steps at which a search looks
 _NEAR, _FAR = 0.02, 4.0  # times the first guess: where a search begins and ends
-_MANY = 80  # coordinates: of more, only the mode that flips first is found
 _UNDAMPED = 1e-10  # of the largest damping rate
 
 
@@ -267,15 +266,10 @@ def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
 
 
 def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
-    """Periods at which M is singular: 4 − 2hD + (1 − 2f)h²K, by the eigenvalues 1/h of a linear problem.
-
-    For f >= ½ the first of many coordinates alone is found, where the least eigenvalue of M, which falls, is 0.
-    """
+    """Periods at which M is singular: 4 − 2hD + (1 − 2f)h²K, by the eigenvalues 1/h of a linear problem."""
     size, a = len(k), (1.0 - 2.0 * factor)
     if a == 0.0:
         values, vectors = np.linalg.eigh(0.5 * d)
-    elif size > _MANY and a < 0.0:
-        return [_first_flip(k, d, factor)]
     else:
         companion = np.block([[np.zeros_like(k), np.eye(size)], [-0.25 * a * k, 0.5 * d]])
         values, vectors = np.linalg.eig(companion)
@@ -284,20 +278,6 @@ def _flips(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
     kept = values > _UNDAMPED * float(np.abs(values).max(initial=0.0))
     found = zip(1.0 / values[kept], (vectors / np.linalg.norm(vectors, axis=0)).T[kept], strict=True)
     return [ModePeriod(float(h), -1.0 + 0.0j, v) for h, v in found]
-
-
-def _first_flip(k: FloatArray, d: FloatArray, factor: float) -> ModePeriod:
-    from scipy.optimize import brentq
-
-    def matrix(h: float) -> FloatArray:
-        return np.eye(len(k)) - 0.5 * h * d + 0.25 * (1.0 - 2.0 * factor) * h * h * k
-
-    low = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), factor)  # no mode flips before
-    high = low
-    while np.linalg.eigvalsh(matrix(high))[0] > 0.0:
-        high *= 2.0
-    h = float(brentq(lambda h: float(np.linalg.eigvalsh(matrix(h))[0]), 0.5 * low, high, xtol=1e-15 * high, rtol=1e-14))
-    return ModePeriod(h, -1.0 + 0.0j, np.linalg.eigh(matrix(h))[1][:, 0])
 
 
 def _least_damped(k: FloatArray, d: FloatArray) -> float:

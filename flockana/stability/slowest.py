@@ -15,16 +15,7 @@ from flockana.stability.rounding import mode_errors
 
 _SHIFT = 1e-3  # of the fastest rate: beside zero, where A itself is singular
 _ROUNDS = 3
-_TRIES = (
-    1.4,
-    2.0,
-    1.0,
-    2.8,
-    4.0,
-    0.7,
-    0.5,
-    0.25,
-)  # of the ratio of the scales of K and D: what serves best comes first
+_TRIES = (1.4, 2.0, 1.0, 2.8, 4.0, 0.7, 0.5, 0.25)  # of the ratio of the scales of K and D: the best ones first
 _FIRST = 8  # eigenvalues asked for at first, for each mode that is wanted
 
 

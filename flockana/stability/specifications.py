@@ -1,15 +1,13 @@
-"""Gains of the γ-agent that meet specifications: decay, delay, sampling period, noise, overshoot; which one binds."""
+"""Specifications of a flock: decay, delay, sampling period, noise, overshoot; how far each is met, which one binds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from math import exp, inf, pi, sqrt
 from typing import Any
 
-import numpy as np
-
-from flockana.base.checks import ensure_count, ensure_points, ensure_positive
+from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
@@ -97,72 +95,8 @@ class SpecifiedGains:
         return min(self.room, key=lambda name: self.room[name])
 
 
-def specified_gains(
-    law: Algorithm2, q: Any, asked: Specifications, *, bounds: tuple[float, float] = (0.1, 20.0), grid: int = 6
-) -> SpecifiedGains:
-    """Choose c1γ and c2γ, alike for all agents, so that the specification with the least room has the most.
-
-    On a grid of gains, geometric between the bounds, and from its best point by Nelder and Mead's method; the
-    equilibrium is found anew for each choice. A local search: what it does not meet may be met elsewhere.
-
-    Parameters
-    ----------
-    law : Algorithm2
-        With one gain for all; its other gains stay.
-    q : array_like, shape (n, m)
-        Where the search for equilibria begins.
-    asked : Specifications
-        What is asked.
-    bounds : (float, float)
-        Least and greatest gain, above 0.
-    grid : int
-        Values of each gain on the grid.
-
-    Raises
-    ------
-    ArgumentError
-        On another law, or bounds that are none.
-
-    Examples
-    --------
-    One agent: of the gains up to 20 the least overshoot with a decay rate of 1 is none at all.
-
-    >>> from flockana.environment.targets import StaticTarget
-    >>> one = Algorithm2(target=StaticTarget((0.0,)))
-    >>> found = specified_gains(one, [[0.0]], Specifications(decay=1.0, period=0.1))
-    >>> found.met, found.binding in ("decay", "period")
-    (True, True)
-    """
-    from scipy.optimize import minimize
-
-    if not isinstance(law, Algorithm2):
-        raise ArgumentError(f"law = {law!r}: expected Algorithm2(...)")
-    if not isinstance(asked, Specifications):
-        raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
-    q, count = ensure_points("q", q), ensure_count("grid", grid)
-    low, high = (ensure_positive("bounds", x) for x in bounds)
-    if not low < high:
-        raise ArgumentError(f"bounds = ({low:g}, {high:g}): expected least < greatest")
-
-    def room(logs: Any) -> float:
-        c1, c2 = np.exp(np.clip(logs, np.log(low), np.log(high))).tolist()
-        return min(_tried(law, q, asked, c1, c2).room.values())
-
-    axis = np.linspace(np.log(low), np.log(high), count)
-    best = max(((a, b) for a in axis for b in axis), key=room)
-    limits: Any = {"maxfev": 60, "xatol": 1e-3}
-    found: Any = minimize(_less(room), np.array(best, dtype=np.float64), method="Nelder-Mead", options=limits)
-    chosen = max((np.array(best), found.x), key=room)
-    c1, c2 = np.exp(np.clip(chosen, np.log(low), np.log(high))).tolist()
-    return _tried(law, q, asked, c1, c2)
-
-
-def _less(room: Callable[[Any], float]) -> Callable[[Any], float]:
-    """Return the negative of a function, to be minimised."""
-    return lambda x: -room(x)
-
-
-def _tried(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float) -> SpecifiedGains:
+def evaluated(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float) -> SpecifiedGains:
+    """Return what a flock does with these c1γ and c2γ at the equilibrium that it then has, near q."""
     gains = replace(law.gains, c1_gamma=c1, c2_gamma=c2)
     trial = replace(law, gains=gains)
     rest = find_equilibrium(trial, q).q if len(q) > 1 else q

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -71,14 +72,10 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     >>> [round(float(x), 6) for x in (sweep.eigenvalues[1] * sweep.eigenvalues[1].conj()).real]
     [2.0, 2.0]
     """
-    _ensure_gain(law, name)
-    q, levels = ensure_points("q", q), _rising(values)
     rows: list[ComplexArray] = []
-    neutral = 0
-    for level in levels.tolist():
-        here = replace(law, gains=replace(law.gains, **{name: level}))
-        q = np.array(find_equilibrium(here, q).q) if follow else q
-        flock = law_blocks(here, q, strict=follow)
+    neutral, levels = 0, _rising(values)
+    for here, place in _followed(law, q, name, levels, follow=follow):
+        flock = law_blocks(here, place, strict=follow)
         roots = np.linalg.eigvals(flock.matrix()).astype(np.complex128)
         roots = roots[np.argsort(np.abs(roots), kind="stable")]
         count = flock.neutral.shape[1] + flock.drifting.shape[1]
@@ -158,19 +155,10 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
 
     Parameters
     ----------
-    law : Algorithm1 or Algorithm2
-        The law; its other gains stay.
-    q : array_like, shape (n, m)
-        Equilibrium at the first value, or near it.
-    values : array_like, shape (L,)
-        Its values, rising.
+    law, q, name, values
+        As of `gain_sweep`.
     delayed : {"all", "pairs", "neighbours"}
         As in `delay_system`.
-
-    Raises
-    ------
-    ArgumentError
-        On a gain that the law does not use, or values that do not rise.
 
     Examples
     --------
@@ -181,18 +169,21 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
     >>> bool(margins.margins[1] < margins.margins[0] and margins.margins[2] < margins.margins[1])
     True
     """
-    _ensure_gain(law, name)
-    q, levels, delays = ensure_points("q", q), _rising(values), []
-    for level in levels.tolist():
-        here = replace(law, gains=replace(law.gains, **{name: level}))
-        q = np.array(find_equilibrium(here, q).q)
-        delays.append(delay_margin(delay_system(here, q, delayed=delayed)))
+    levels = _rising(values)
+    delays = [delay_margin(delay_system(*each, delayed=delayed)) for each in _followed(law, q, name, levels)]
     margins, frequencies = (np.array([getattr(x, kind) for x in delays]) for kind in ("delay", "frequency"))
     return MarginSweep(name, levels, margins, frequencies, delayed)
 
 
-def _ensure_gain(law: Any, name: str) -> None:
+def _followed(
+    law: Any, q: Any, name: str, levels: FloatArray, *, follow: bool = True
+) -> Iterator[tuple[Algorithm1 | Algorithm2, FloatArray]]:
+    """Laws with the values of one gain, and the equilibrium of each, found from the last."""
     if not isinstance(law, Algorithm1 | Algorithm2):
         raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1(...) or Algorithm2(...)")
-    known = GAINS[:2] if law.target is None else GAINS
-    ensure_known("gain", name, known)
+    ensure_known("gain", name, GAINS[:2] if law.target is None else GAINS)
+    q = ensure_points("q", q)
+    for level in levels.tolist():
+        here = replace(law, gains=replace(law.gains, **{name: level}))
+        q = np.array(find_equilibrium(here, q).q) if follow else q
+        yield here, q

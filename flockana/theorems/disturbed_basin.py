@@ -38,6 +38,8 @@ def _law(seen: Observed) -> Hypothesis:
     law = seen.law
     core: Any = law.law if type(law) is Disturbed else None
     name = "Algorithm 1 or 2 is disturbed by a bounded force, the same gains for all"
+    if type(core) in (Algorithm1, Algorithm2) and callable(law.force):
+        return Hypothesis(name, "unmet", detail="no bound is known of a force that is a function: expected a table")
     if type(core) not in (Algorithm1, Algorithm2) or law.intensity or core.gains.per_agent:
         return Hypothesis(name, "unmet", detail=f"the law is {type(law).__name__}, expected Disturbed(Algorithm2(...))")
     return Hypothesis(name, "met")
@@ -51,8 +53,10 @@ def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
     >>> round(largest_push(Disturbed(Algorithm1(), force=[[0.3], [-0.3]]), (2, 1)), 12)
     0.424264068712
     """
-    parts = (np.broadcast_to(np.asarray(part), shape) for part in (law.force, law.swing) if part is not None)
-    return float(sum(np.linalg.norm(moving_frame(part)) for part in parts)) * (1.0 + _SLACK)
+    parts = [(part,) for part in (law.force, law.swing) if part is not None]  # each at the times when it is largest
+    parts += [] if law.table is None else [law.table]  # linear between its rows
+    sizes = (max(np.linalg.norm(moving_frame(np.broadcast_to(row, shape))) for row in part) for part in parts)
+    return float(sum(sizes)) * (1.0 + _SLACK)
 
 
 def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:

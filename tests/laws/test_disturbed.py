@@ -41,6 +41,31 @@ def test_a_swing_is_answered_as_the_bode_plot_says(method):
     np.testing.assert_allclose(run.q[:, 0, 0], exact, atol=1e-7)
 
 
+def forces(t):
+    return np.array([1.2 * np.sin(2.0 * t)])
+
+
+TABLE = {"times": np.linspace(0.0, 40.0, 4001), "table": forces(np.linspace(0.0, 40.0, 4001)).T}
+
+
+@pytest.mark.parametrize("push", [{"force": forces}, TABLE], ids=["function", "table"])
+@pytest.mark.parametrize("noise", [0.0, 1e-12])
+def test_a_force_of_time_acts_as_the_swing_that_it_is(push, noise):
+    """In the adaptive solver and in fixed steps; a table is linear between times 0.01 apart: off by 1e-4/8 · 4.8."""
+    law = Disturbed(lone(4.0, 3.0), **push, intensity=noise)
+    run = simulate(law, [[0.0]], [[0.0]], (0.0, 40.0), t_eval=np.arange(30.0, 40.0, 0.1), dt=0.01 if noise else None)
+    np.testing.assert_allclose(run.q[:, 0, 0], 0.2 * np.sin(2.0 * run.t - 0.5 * pi), atol=1e-4 if noise else 2e-5)
+    assert np.ptp(run.q[:, 0, 0]) > 0.39
+
+
+def test_a_table_is_linear_between_its_times_and_constant_beyond():
+    law = Disturbed(LAW, times=(1.0, 3.0), table=np.arange(28.0).reshape(2, 7, 2))
+    for t, share in ((-5.0, 0.0), (1.0, 0.0), (2.5, 0.75), (3.0, 1.0), (9.0, 1.0)):
+        np.testing.assert_allclose(law.push(t), (1.0 - share) * np.array(law.table[0]) + share * np.array(law.table[1]))
+    one = Disturbed(LAW, times=[1.0], table=[[2.0, 3.0]], force=(1.0, 0.0))
+    assert (one.push(0.0).tolist(), one.push(2.0).tolist()) == ([3.0, 3.0], [3.0, 3.0])
+
+
 def test_compiled_and_not_are_the_same_and_so_is_the_work():
     push = np.random.default_rng(0).standard_normal((7, 2))
     law = Disturbed(LAW, force=push, swing=-push, frequency=0.3, phase=0.7)
@@ -105,7 +130,8 @@ def test_a_seed_is_a_run_and_another_seed_another():
 
 
 def test_it_is_saved_and_its_theorems_are_vacuous(tmp_path):
-    run = simulate(Disturbed(LAW, force=(0.1, 0.0), intensity=0.1, seed=5), Q, 0.0 * Q, (0.0, 1.0), dt=0.01)
+    gusts = {"times": (0.0, 1.0), "table": ((0.0, 0.0), (1.0, 2.0))}
+    run = simulate(Disturbed(LAW, force=(0.1, 0.0), **gusts, intensity=0.1, seed=5), Q, 0.0 * Q, (0.0, 1.0), dt=0.01)
     again = Trajectory.load(run.save(tmp_path / "run.nc"))
     assert again.law == run.law
     np.testing.assert_array_equal(simulate(again.law, run.q[0], run.p[0], (0.0, 1.0)).q, run.q)
@@ -121,6 +147,9 @@ def test_units():
     )
     assert law.force == pytest.approx((3.0 / 16.0, 0.0))
     assert (law.intensity, law.frequency) == (pytest.approx(6.0 / 8.0), 0.25)
+    for push in ({"force": lambda t: (t, 1.0)}, {"times": (0.0, 8.0), "table": ((0.0, 1.0), (8.0, 1.0))}):
+        there = rescale(Disturbed(LAW, **push), length=3.0, time=4.0)
+        assert there.push(20.0) == pytest.approx(3.0 / 16.0 * np.array([5.0, 1.0]))
 
 
 @pytest.mark.parametrize(
@@ -128,6 +157,14 @@ def test_units():
     [
         (lambda: Disturbed(LAW, intensity=-1.0), "intensity = -1"),
         (lambda: Disturbed(LAW, force="wind"), "force = 'wind': expected finite components"),
+        (
+            lambda: Disturbed(LAW, force=lambda t: "wind").push(1.5),
+            r"force\(1.5\) = 'wind': expected finite components",
+        ),
+        (lambda: simulate(Disturbed(LAW, force=lambda t: (t,)), Q, Q, (0, 1)), "force has 1 components, the agents 2"),
+        (lambda: Disturbed(LAW, times=(0.0, 1.0)), "times has 2 numbers and table 0 rows: expected as many"),
+        (lambda: Disturbed(LAW, times=(1.0, 0.0), table=((0.0, 0.0), (1.0, 1.0))), "expected rising times"),
+        (lambda: Disturbed(LAW, times=(1.0,), table=(1.0,)), r"table = .*: expected finite components, \(K, m\)"),
         (lambda: Disturbed(LAW, frequency=-1.0), "frequency = -1"),
         (lambda: Disturbed(LAW, intensity=1.0, seed=-1), "seed = -1"),
         (lambda: Disturbed(3), "law = 3: expected a continuous law"),

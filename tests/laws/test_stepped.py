@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
+from flockana.ensemble import ensemble
+from flockana.environment.targets import LinearTarget, StaticTarget
+from flockana.explore.parameters import changed, numbers, tree_of
 from flockana.lattice import hexagonal_patch
 from flockana.laws.delayed import Delayed
 from flockana.laws.disturbed import Disturbed
@@ -47,6 +51,30 @@ def test_steps_are_the_same_in_any_pieces():
     np.testing.assert_array_equal(q, whole[0][-1])
 
 
+class Interpreted(Stepped):
+    """Steps one by one, as those of a law that is not compiled."""
+
+    def _marched(self, *_):
+        return None
+
+
+@pytest.mark.parametrize("target", [StaticTarget((0.0, 0.0)), LinearTarget((3.0, 0.0), (1.0, 2.0))])
+def test_compiled_steps_of_noise_are_those_made_one_by_one(target):
+    """Across blocks of random numbers, at some steps only, with two noises and a swing; and from the middle on."""
+    noisy = Disturbed(Algorithm2(target=target), intensity=0.1, seed=3)
+    law = Disturbed(noisy, force=(0.1, 0.2), swing=(0.3, 0.1), frequency=0.2, intensity=0.2)
+    p, wanted = 0.1 * Q[::-1], np.array([1, 255, 256, 257, 600])
+    found, one_by_one = (
+        each.visit(2.0, Q, p, each.start(Q, p), wanted) for each in (Stepped(law, 0.01, 1), Interpreted(law, 0.01, 1))
+    )
+    for fast, slow, size in zip(found[:3], one_by_one[:3], (1.0, 1.0, 100.0), strict=True):
+        np.testing.assert_allclose(fast, slow, rtol=0.0, atol=1e-11 * size)
+    assert Stepped(law, 0.01, 1)._marched(2.0, Q, p, 0, wanted) is not None
+    memory = {name: values[-1] for name, values in found[3].items()}
+    later = [each(law, 0.01, 1).iterate(8.0, Q, p, memory, 30)[1] for each in (Stepped, Interpreted)]
+    np.testing.assert_allclose(later[0], later[1], rtol=0.0, atol=1e-11)
+
+
 def test_a_step_of_order_1_holds_the_input():
     """q + h p + ½ h² u and p + h u, with u at the beginning of the step."""
     law, h, p = Disturbed(LAW, force=(0.3, -0.2)), 0.1, 0.1 * Q[::-1]
@@ -55,6 +83,24 @@ def test_a_step_of_order_1_holds_the_input():
     np.testing.assert_allclose(q_1, Q + h * p + 0.5 * h**2 * u, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(p_1, p + h * u, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(held, u, rtol=0.0, atol=1e-12)
+
+
+def test_runs_are_the_same_at_any_number_of_workers():
+    """All wrappers, and compiled noise: in this process, and in two others."""
+    for law in (Stepped(ALL, 0.01), Stepped(Disturbed(LAW, intensity=0.1), 0.01, 1)):
+        starts = partial(hexagonal_patch, 1)  # by the seed, which is the distance
+        flock = {"law": law, "q0": starts, "p0": 0.0 * Q, "t_span": (0.0, 0.3), "theorems": []}
+        alone, both = (ensemble(seeds=(7, 8), metrics=["cohesion_radius"], jobs=n, **flock) for n in (1, 2))
+        assert alone.drop_vars("seconds").identical(both.drop_vars("seconds"))
+        assert alone["cohesion_radius"].values[0] != alone["cohesion_radius"].values[1]
+
+
+def test_knobs_of_an_explorer_are_those_of_every_wrapper():
+    found = {number.path for number in numbers(Stepped(ALL, 0.01))}
+    assert {"dt", "law.intensity", "law.law.limit", "law.law.law.period", "law.law.law.law.delay"} <= found
+    changes = tree_of(Stepped(ALL, 0.01), {"law.intensity": 0.3, "law.law.law.law.delay": 0.01})
+    law = changed(Stepped(ALL, 0.01), changes).law
+    assert (law.intensity, law.law.law.law.delay, law.law.law.period) == (0.3, 0.01, 0.02)
 
 
 def test_what_wraps_shows_through():

@@ -1,6 +1,7 @@
-"""The design of gains: optima that are known, derivatives, and what heterogeneity buys, linear and nonlinear."""
+"""The design of gains: optima that are known, derivatives, what heterogeneity buys, and what specifications bind."""
 
-from math import sqrt
+from dataclasses import replace
+from math import exp, pi, sqrt
 
 import numpy as np
 import pytest
@@ -14,11 +15,16 @@ from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.blocks import law_blocks
+from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.design import GainProblem, design_gains, gain_problem
 from flockana.stability.linearise import linearise
+from flockana.stability.norms import disturbance_system, h2_norm
+from flockana.stability.specifications import Specifications
 
 ALPHA, GAINS, ORIGIN = AlphaInteraction(), Gains(), StaticTarget((0.0, 0.0))
 Q = hexagonal_spiral(7, 7.0)
+ALONE = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+ONE = gain_problem([[0.0]], alpha=ALPHA, gains=GAINS)
 
 
 def problem(n=7, **options):
@@ -74,11 +80,10 @@ def test_slopes_against_differences(options):
 
 def test_one_agent_is_damped_critically():
     """The best of s² + c2 s + c1 with c1 <= 5: −√5 at c2 = 2√5; with c2 <= 2 only −1."""
-    alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
-    found = design_gains(alone, starts=2)
+    found = design_gains(ALONE, starts=2)
     assert found.rate_homogeneous == pytest.approx(sqrt(5.0), abs=1e-3)  # a square-root cusp: √eps is what is reached
     assert found.homogeneous == pytest.approx([5.0, 2.0 * sqrt(5.0)], abs=1e-3)
-    assert design_gains(alone, bounds=(0.0, 2.0), starts=1).rate_homogeneous == pytest.approx(1.0, abs=1e-6)
+    assert design_gains(ALONE, bounds=(0.0, 2.0), starts=1).rate_homogeneous == pytest.approx(1.0, abs=1e-6)
 
 
 def test_two_independent_groups_find_their_own_gains():
@@ -215,6 +220,17 @@ def test_critical_gains_decay_as_the_double_root_of_the_centre():
         (lambda: design_gains(problem(), bounds=3.0), ArgumentError, "expected .least, greatest. gain"),
         (lambda: design_gains(problem(), bounds=(-1.0, 2.0)), ArgumentError, "bounds = -1: expected a number >= 0"),
         (lambda: design_gains(problem(), starts=0), ArgumentError, "starts = 0"),
+        (lambda: design_gains("law"), ArgumentError, "problem = 'law'"),
+        (Specifications, ArgumentError, "no specification is given"),
+        (lambda: Specifications(decay=0.0), ArgumentError, "decay = 0"),
+        (lambda: design_gains(ONE, {"decay": 1.0}), ArgumentError, "expected Specifications"),
+        (lambda: design_gains(ONE, Specifications(decay=1.0), bounds=(2.0, 1.0)), ArgumentError, "expected least < gr"),
+        (lambda: design_gains(ONE, Specifications(decay=1.0), bounds=(0.0, 1.0)), ArgumentError, "bounds = 0"),
+        (
+            lambda: design_gains(ALONE, Specifications(decay=1.0)),
+            ArgumentError,
+            "problem.law = None: expected what gain",
+        ),
     ],
 )
 def test_refusals(call, error, message):
@@ -222,7 +238,38 @@ def test_refusals(call, error, message):
         call()
 
 
+def test_decay_alone_wants_critical_damping_at_the_largest_gain():
+    """Within c2γ <= 4 and c1γ <= 4 the rate is at most 2."""
+    found = design_gains(ONE, Specifications(decay=1.0), bounds=(0.1, 4.0))
+    assert found.reached["decay"] == pytest.approx(2.0, rel=0.02)
+    assert (found.met, found.binding) == (True, "decay")
+
+
+def test_decay_and_period_pull_apart_and_both_bind():
+    """A hold bears 2/c2γ or 2 c2γ/c1γ, the rate is c2γ/2 at most: their product is at most 1."""
+    found = design_gains(ONE, Specifications(decay=2.0, period=0.5))
+    assert found.room["decay"] == pytest.approx(found.room["period"], abs=0.05)
+    assert found.reached["decay"] * found.reached["period"] == pytest.approx(1.0, rel=0.05)
+
+
+def test_overshoot_is_that_of_the_damping_ratio():
+    found = design_gains(ONE, Specifications(overshoot=0.1, decay=0.5))
+    ratio = found.gains.c2_gamma / (2.0 * sqrt(found.gains.c1_gamma))
+    exact = exp(-pi * ratio / sqrt(1.0 - ratio**2)) if ratio < 1.0 else 0.0
+    assert found.reached["overshoot"] == pytest.approx(exact)
+    assert found.met
+
+
+def test_a_flock_does_what_is_said_of_it():
+    pair = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=ALPHA, gains=GAINS)
+    found = design_gains(pair, Specifications(delay=0.01, h2=1.0), bounds=(0.5, 4.0))
+    chosen = replace(pair.law, gains=found.gains)
+    rest = find_equilibrium(chosen, pair.q).q
+    assert found.reached["delay"] == pytest.approx(delay_margin(delay_system(chosen, rest)).delay, rel=1e-6)
+    assert found.reached["h2"] == pytest.approx(h2_norm(disturbance_system(law_blocks(chosen, rest))), rel=1e-6)
+    assert found.binding == min(found.room, key=found.room.get)
+
+
 def test_a_design_shows_itself_in_one_line():
-    alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
-    found = repr(design_gains(alone, starts=1))
+    found = repr(design_gains(ALONE, starts=1))
     assert found == "<GainDesign of 1 agents: decay rates 2.2361 alike, 2.2361 per agent, ratio 1.000>"

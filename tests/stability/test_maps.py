@@ -9,7 +9,7 @@ import pytest
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
+from flockana.interactions import Gains, ZoneNoise, ZoneWeights
 from flockana.lattice import hexagonal_patch
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.explicit_euler import ExplicitEuler
@@ -118,13 +118,45 @@ def test_headings_average_their_neighbours(average):
     assert flock.state_space.output_labels == ["heading0", "heading1", "heading2"]
 
 
+SIDE_BY_SIDE = [[0.0, 0.0], [0.0, 15.0 / 5.25]], [[3.0, 0.0], [3.0, 0.0]]  # 5 (3 − d) = ¼ d
+
+
+@pytest.mark.parametrize("form", ["position", "bearing"])
+@pytest.mark.parametrize(("dt", "gain"), [(0.1, 8.0), (0.05, 8.0), (0.1, 1.0)])
+def test_zones_are_linearised_where_they_are_smooth(form, dt, gain):
+    """Two agents side by side: springs 5 and ¼, alignment ¼ · gain of four, speed 5; v + h u, then q + h v.
+
+    With the paper's dt = 0.1 and a gain of 8 their difference in speed turns over: 1 − 0.1 (5 + 2 · 8) = −1.1.
+    """
+    law = ZoneFlocking(form=form, dt=dt, weights=ZoneWeights(alignment_gain=gain, cohesion_gain=0.25))
+    flock, heed = linearise(law, *SIDE_BY_SIDE), 2.0 * alignment_slope(law)
+    across = 1.0 + dt * np.roots([1.0, heed + dt * 10.5, 10.5])
+    exact = [1.0, 1.0, 1.0, 1.0, 1.0 - 5.0 * dt, 1.0 - dt * (5.0 + heed), *across]
+    for z in exact:
+        assert np.abs(flock.multipliers - z).min() < 1e-7
+    assert sum(abs(z) > 1e-6 for z in flock.multipliers) == len(exact)  # what is remembered is forgotten at once
+    assert sum(flock.multipliers == 1.0) == 4  # two places, one heading with its drift
+    assert flock.stable == (max(abs(z) for z in exact[4:]) < 1.0)
+    assert flock.stable == ((dt, gain) != (0.1, 8.0))
+
+
+def alignment_slope(law):
+    """How strongly one agent heeds the other's velocity, by the law's own behaviours."""
+    q, p = (np.array(x) for x in SIDE_BY_SIDE)
+    p[1] += 1e-3, 0.0
+    return law.behaviours(q, p)["alignment"][0, 0] / 1e-3
+
+
 @pytest.mark.parametrize(
     ("law", "q", "p", "message"),
     [
+        (ZoneFlocking(), [[0.0, 0.0], [0.0, 20.0]], None, "ZoneFlocking has a kink or a jump at this state"),
+        (ZoneFlocking(v_max=3.0), *SIDE_BY_SIDE, "ZoneFlocking has a kink or a jump at this state"),
+        (ZoneFlocking(noise=ZoneNoise(weights=0.1)), *SIDE_BY_SIDE, "no steady motion of ZoneFlocking: step changes"),
         (HeadingAveraging(speed=1.0), [[0.0, 0.0], [2.0, 0.0]], [[1.0, 0.0], [0.0, 1.0]], "headings differ by up to 1"),
         (HeadingAveraging(speed=1.0), [[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [1.0, 0.0]], "at the edge of each other"),
-        (HeadingAveraging(speed=1.0), [[0.0, 0.0]], None, "expected the velocities p of a parallel motion"),
-        (ZoneFlocking(), [[0.0, 0.0], [2.0, 0.0]], [[3.0, 0.0], [3.0, 0.0]], "ZoneFlocking gives no derivatives"),
+        (HeadingAveraging(speed=1.0), [[0.0, 0.0]], None, "agent 0 has the speed 0: expected speed = 1 of all"),
+        (ZoneFlocking(), [[0.0, 0.0], [2.0, 0.0]], SIDE_BY_SIDE[1], "no steady motion of ZoneFlocking: p changes by"),
         (TaylorStep(Algorithm1(), 0.1), [[0.0, 0.0], [8.0, 0.0]], None, "the state is no equilibrium of Algorithm1"),
     ],
 )

@@ -103,11 +103,9 @@ def test_runs_decay_below_the_margin_and_grow_above(share):
     assert grown < 0.3 if share < 1.0 else grown > 3.0
 
 
-def test_many_agents_flip_first_as_few_would():
-    """Beyond eighty coordinates only the first flip is found, by another way."""
+def test_many_agents_flip_where_the_least_eigenvalue_of_m_vanishes():
     many = find_equilibrium(LAW, hexagonal_spiral(45, 7.0)).q
     found = sampling_margin(LAW, many, scheme="msn")
-    assert len(found.modes) == 1
     assert found.certified
     flow = linearise(LAW, many)
     k, d, h = flow.stiffness.toarray(), flow.damping.toarray(), found.period

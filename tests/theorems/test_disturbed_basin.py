@@ -48,6 +48,12 @@ def test_a_wind_on_all_alike_moves_no_shape():
     ("law", "how", "reason"),
     [
         (Disturbed(Algorithm1(), force=[[1.0], [-1.0]]), {}, "could leave"),
+        (Disturbed(Algorithm1(), times=(0.0, 5.0), table=[[[0.0], [0.0]], [[1.0], [-1.0]]]), {}, "could leave"),
+        (
+            Disturbed(Algorithm1(), force=lambda t: ((0.0,), (0.0,))),
+            {},
+            "no bound is known of a force that is a function",
+        ),
         (Disturbed(Algorithm1(), intensity=0.1), {"dt": 0.01}, "the run is of the law within Disturbed"),
         (Disturbed(Delayed(Algorithm1(), 0.01)), {"dt": 0.01}, "within Disturbed, Delayed"),
         (Algorithm1(), {}, "the law is Algorithm1"),
@@ -64,3 +70,5 @@ def test_what_is_taken_off_is_the_mean():
 
     law = Disturbed(Algorithm1(), force=(3.0,), swing=[[1.0], [3.0]])
     assert largest_push(law, (2, 1)) == pytest.approx(np.sqrt(2.0))
+    gusts = Disturbed(Algorithm1(), times=(0.0, 1.0), table=[[[2.0], [0.0]], [[1.0], [4.0]]], force=(3.0,))
+    assert largest_push(gusts, (2, 1)) == pytest.approx(np.sqrt(4.5))

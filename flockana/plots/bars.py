@@ -1,0 +1,80 @@
+"""Tables of numbers as bars: margins of loops, standard deviations in noise, predicted and measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flockana.base.checks import ensure_finite_scalar
+from flockana.base.errors import ArgumentError
+from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, finish, subplots
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Cell = float | tuple[float, float]
+_HEIGHT = 0.6  # of a bar
+
+
+def bars(
+    table: Mapping[str, Mapping[str, Cell]], *, limits: Mapping[str, float] | None = None, ax: Any = None
+) -> npt.NDArray[Any]:
+    """Draw a table of numbers as horizontal bars, a panel for each column.
+
+    Parameters
+    ----------
+    table : mapping of str to mapping of str to float or (float, float)
+        Values by row and column, such as `RobustnessMargins.table`; a pair is a value and half the width of its
+        interval. An infinite value has a bar across the panel and the sign ∞.
+    limits : mapping of str to float, optional
+        By column, what is asked or predicted: a line.
+    ax : sequence of Axes, optional
+        One for each column; by default a new figure.
+
+    Returns
+    -------
+    ndarray of matplotlib.axes.Axes
+
+    Raises
+    ------
+    ArgumentError
+        On an empty table, rows with other columns, or values that are no numbers.
+
+    Examples
+    --------
+    >>> panels = bars({"agent 0": {"phase (degrees)": 34.0}, "agent 1": {"phase (degrees)": (51.0, 2.0)}})
+    >>> [label.get_text() for label in panels[0].get_yticklabels()]
+    ['agent 0', 'agent 1']
+    """
+    if not table:
+        raise ArgumentError("table is empty: expected numbers by row and column")
+    columns = list(next(iter(table.values())))
+    for row, cells in table.items():
+        if not columns or list(cells) != columns:
+            raise ArgumentError(f"row {row!r} has the columns {list(cells)}: expected {columns}, as the first has")
+    height = 1.0 + 0.3 * len(table)
+    panels = np.ravel(subplots(1, len(columns), size=(2.6 * len(columns), height))[1] if ax is None else ax)
+    places = -np.arange(len(table))
+    for column, panel in zip(columns, panels, strict=True):
+        pairs = [_cell(f"{row}, {column}", cells[column]) for row, cells in table.items()]
+        values, widths = (np.array(series) for series in zip(*pairs, strict=True))
+        known = np.isfinite(values)
+        lengths = np.where(known, values, 1.2 * max(values[known], default=1.0))
+        panel.barh(places, lengths, _HEIGHT, color=[BLUE if one else MUTED for one in known])
+        panel.errorbar(values, places, xerr=widths, fmt="none", ecolor=INK, capsize=2.0)
+        for place in places[~known]:
+            panel.annotate("∞", (0.0, place), xytext=(4.0, 0.0), textcoords="offset points", va="center")
+        if column in (limits or {}):
+            panel.axvline((limits or {})[column], color=VERMILLION, linestyle="--", linewidth=1.2)
+        panel.set_yticks(places, list(table) if panel is panels[0] else [""] * len(table))
+        finish(panel, column)
+    return panels
+
+
+def _cell(name: str, cell: Any) -> tuple[float, float]:
+    value, width = cell if isinstance(cell, tuple) else (cell, 0.0)
+    if value == np.inf:
+        return np.inf, 0.0
+    return ensure_finite_scalar(name, value), ensure_finite_scalar(f"half width of {name}", width)
