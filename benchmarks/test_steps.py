@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.dynamics import compiled
 from flockana.dynamics.encounters import Encounters
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.stepping import Balance
+from flockana.kernels.checks import Rules
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios import scenario
 
@@ -30,8 +29,7 @@ def test_checks_of_every_step(benchmark, ratio, monkeypatch, name):
     with monkeypatch.context() as patch:
         patch.setattr(Encounters, "of", blind)
         without_meetings = best(case.run, repeat=3)
-        patch.setattr(Balance, "share", lambda *_: 1.0)
-        patch.setattr(compiled, "BALANCED", 0.0)
+        patch.setattr(Encounters, "rules", lambda *_, fixed: Rules(False, False, False, (0.0, 0.0), fixed))
         without_both = best(case.run, repeat=3)
     ratio(f"{name}: encounters", with_both / without_meetings, "time over that without the check of encounters")
     ratio(f"{name}: encounters and balance", with_both / without_both, "time over that without any check")

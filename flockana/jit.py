@@ -146,6 +146,8 @@ def register_jitable(function: Callable[..., Any]) -> Inlined:
 
 def callback(kernel: Kernel, signature: Any) -> Any:
     """Return a kernel as a function that compiled code may be handed, compiled for one signature."""
+    if load_numba().config.DISABLE_JIT:
+        return kernel.function
     with compiling(_mark(kernel.function, signature)):
         options = {"error_model": "numpy", "nogil": True}
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))

@@ -110,13 +110,7 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
 
 
 class Recorder:
-    """Takes in samples and the steps between them, and keeps the steps in bounded memory.
-
-    Parameters
-    ----------
-    most : int
-        Numbers to keep of steps.
-    """
+    """Takes in samples and the steps between them, and keeps at most so many numbers of the steps."""
 
     def __init__(self, most: int = MOST) -> None:
         self.most, self._held, self._thinned = most, 0, False

@@ -17,21 +17,29 @@ shortens no step.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
+from flockana.dynamics.frame import Frame, Plan
 from flockana.environment.beta import ObstacleField
-from flockana.kernels.encounters import share_of_all, share_of_pairs
-from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.paths import bernstein, centred
-from flockana.kernels.poles import crossing
+from flockana.jit import thawed
+from flockana.kernels.alpha import BETA_AREA
+from flockana.kernels.bodies import body_numbers
+from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger, share_of_step
+from flockana.kernels.encounters import Around, Ends
+from flockana.kernels.laws import guard_of
+from flockana.kernels.march import Block
+from flockana.kernels.verlet import Pairs, no_pairs
 from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
-DENSE = 400  # agents up to which all pairs are looked at rather than searched
+BALANCED = 0.05  # of the relative tolerance: residual of the energy's balance that a step may leave, over |H|
+ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")  # without a past: what they do next hangs on the state alone
+_TOWARD = 0.5  # of the way to a pole that a step of fixed length may go: no error estimate says that it is resolved
 
 
 class State(NamedTuple):
@@ -44,35 +52,19 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Encounters:
-    """What the agents of a law may run into.
+    """What the agents of a law may run into."""
 
-    Parameters
-    ----------
-    radii : ndarray, shape (n, K)
-        Distances at which each agent begins or ceases to feel another, rising.
-    far : float
-        How far two agents may go within them in one step.
-    bodies : ObstacleField or None
-        The law's obstacles.
-    shell, skirt : float
-        Distance from an obstacle's surface at which its force begins, and how far an agent may go within it.
-    poles : ndarray
-        Distances between agents that none crosses: their potential is infinite there, or their force undefined.
-    among : ndarray, shape (L, 2), optional
-        The pairs that poles concern; None: all.
-    """
-
-    radii: FloatArray
-    far: float
+    radii: FloatArray  # (n, K): distances at which each agent begins or ceases to feel another, rising
+    far: float  # how far two agents may go within them in one step
     bodies: ObstacleField | None = None
-    shell: float = 0.0
-    skirt: float = 0.0
-    poles: FloatArray = field(default_factory=lambda: np.empty(0))
-    among: npt.NDArray[np.int32] | None = None
+    shell: float = 0.0  # distance from an obstacle's surface at which its force begins
+    skirt: float = 0.0  # how far an agent may go within it
+    poles: FloatArray = field(default_factory=lambda: np.empty(0))  # distances between agents that none crosses
+    among: npt.NDArray[np.int32] | None = None  # (L, 2): the pairs that poles concern; None: all
 
     @classmethod
     def of(cls, law: Law, n: int) -> Encounters:
-        """Those of a law.
+        """Return the encounters of a law for n agents.
 
         Examples
         --------
@@ -109,36 +101,67 @@ class Encounters:
         >>> 200.0 - 8.4 < 30.0 * h < 200.0 - 4.8
         True
         """
-        points, _, allowance = bernstein(h, *before, *after)
-        share = 1.0 if self.bodies is None else self._share_of_bodies(self.bodies, points, allowance)
-        if len(points) == 1 or not (self.radii.size or self.poles.size):
-            return share
-        reach = centred(points, allowance)
-        if self.poles.size and self._crosses(points, reach, before.q):
-            return -0.5
-        if not self.radii.size:
-            return share
-        if len(reach) <= DENSE:
-            return float(min(share, share_of_all(points, reach, allowance, self.radii, self.far)))
-        search = (float(self.radii.max()) + 2.0 * float(reach.max() + allowance.max())) * (1.0 + 1e-9)
-        for i, j in pair_blocks(before.q, search):
-            share = share_of_pairs(points, reach, allowance, self.radii, self.far, i, j, share)
-        return share
+        n, m = before.q.shape
+        ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
+        rules, none = self.rules(False, (0.0, 0.0), fixed=False), no_pairs(0, m)
+        still = 0.0, np.zeros(m), np.zeros(m)
+        return float(share_of_step(0.0, ends, self.around(np.arange(n), 1.0), rules, still, none, none)[0])
 
-    def _crosses(self, points: FloatArray, reach: FloatArray, q: FloatArray) -> bool:
-        """Whether a pair crosses a pole."""
-        if self.among is not None:
-            first, second = (np.ascontiguousarray(ends) for ends in self.among.T)
-            return bool(crossing(points, reach, self.poles, first, second))
-        around = (float(self.poles.max()) + 2.0 * float(reach.max())) * (1.0 + 1e-9)
-        return any(crossing(points, reach, self.poles, i, j) for i, j in pair_blocks(q, around))
+    def rules(self, energetic: bool, balance: tuple[float, float], *, fixed: bool) -> Rules:
+        """Return how steps are judged, as compiled code reads it."""
+        pairs = self.radii.size > 0 or self.poles.size > 0
+        return Rules(self.bodies is not None, bool(pairs), energetic, balance, fixed)
 
-    def _share_of_bodies(self, field: ObstacleField, points: FloatArray, allowance: FloatArray) -> float:
-        """The share of the step that the obstacles allow."""
-        share = 1.0
-        for kernels, _, pars, starts, balls in field.kinds:
-            share = kernels.share(points, allowance, pars, starts, balls, self.shell, self.skirt, share)
-        return share
+    def around(self, order: npt.NDArray[Any], toward: float) -> Around:
+        """Return what compiled code reads, of agents in an order of its own."""
+        radii, few, place = self.radii[order], self.among is not None, np.argsort(order).astype(np.uint32)
+        among = np.empty((0, 2), np.int32) if self.among is None else self.among
+        edges = [*self.radii.ravel(), *(() if few else self.poles)] or [0.0]
+        first, second = (place[each] for each in among.T)
+        return Around(
+            radii, float(self.far), (float(min(edges)), float(max(edges))), thawed(self.poles), toward, first, second,
+            few, *self._guard, (float(self.shell), float(self.skirt)),
+        )  # fmt: skip
+
+    @cached_property
+    def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
+        """The guard of the obstacles, the numbers that it reads, and where those of each kind begin."""
+        kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
+        numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind[2:]) for kind in kinds]
+        starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
+        return guard_of(tuple(kind.kernels.guard for kind in kinds)), np.concatenate([[], *numbers]), starts
+
+
+class StepChecks:
+    """What the steps of a run must stand up to, whatever makes them (`flockana.kernels.checks`)."""
+
+    def __init__(self, law: Law, frame: Frame, plan: Plan) -> None:
+        self._encounters, self._view, fixed = Encounters.of(law, frame.shape[0]), frame.view, plan.dt > 0.0
+        balance, poles = (0.0, np.inf), self._encounters.poles.size > 0
+        if plan.method.rpartition("-")[2] in ONE_STEP:
+            balance = (BALANCED * plan.control.rtol, BALANCED * plan.control.floor.work)
+        energetic = frame.energetic and (poles or not fixed)  # of fixed steps: whether the energy stays finite
+        self._rules = self._encounters.rules(energetic, balance, fixed=fixed)
+        self._toward, self._shape = _TOWARD if fixed else 1.0, frame.shape
+        self._ledger, self._order = empty_ledger(), np.empty(0)
+
+    @property
+    def energetic(self) -> bool:
+        """Whether energies of the steps are still looked at."""
+        return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
+
+    def judged(self, order: npt.NDArray[Any]) -> Judged:
+        """Return what steps are held against, of agents in an order of its own."""
+        if order is not self._order:
+            self._order, self.near = order, no_pairs(*self._shape)
+            around = self._encounters.around(order, self._toward)
+            self._judged = Judged(around, self._rules, self._ledger)
+        return self._judged
+
+    def look(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
+        """(length of the step if it is to be made again, 0 if it stands; whether it is lost at a pole)."""
+        shorter, singular, self.near = checked(block, 0, self.judged(order), self._view, kept, self.near)
+        return shorter, singular
 
 
 def at_a_pole(t: float) -> str:

@@ -54,23 +54,13 @@ class Samples(NamedTuple):
 
 @dataclass
 class Tally:
-    """What a run did, filled in as it goes, so that an interrupted run can tell.
+    """What a run did, filled in as it goes, so that an interrupted run can tell."""
 
-    Parameters
-    ----------
-    evaluations, steps : int
-        Counts of right-hand sides and of steps.
-    status, message : str
-        As in `Trajectory`.
-    notes : dict
-        What else an integrator has to tell, for `Trajectory.stats`.
-    """
-
-    evaluations: int = 0
+    evaluations: int = 0  # of the law
     steps: int = 0
-    status: str = "complete"
+    status: str = "complete"  # as in `Trajectory`
     message: str = "reached the end of the time span"
-    notes: dict[str, Any] = field(default_factory=dict)
+    notes: dict[str, Any] = field(default_factory=dict)  # what else there is to tell, for `Trajectory.stats`
 
     def fail(self, message: str) -> None:
         """Note that the run ended early, and why."""

@@ -25,13 +25,14 @@ from flockana.base.errors import ArgumentError
 from flockana.base.interrupts import restore_interrupts
 from flockana.base.progress import progress_bar
 from flockana.base.seals import sealed
-from flockana.dynamics.adaptive import SCIPY, adaptive
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.delayed import followed
+from flockana.dynamics.driver import integrated
 from flockana.dynamics.first_call import check_first_call
+from flockana.dynamics.frame import Plan
 from flockana.dynamics.iterate import count_steps, discrete
-from flockana.dynamics.rk4 import rk4
 from flockana.dynamics.sample import Sample, Samples, Tally, copied, start_sample
+from flockana.dynamics.solvers import SCIPY
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
@@ -138,12 +139,16 @@ def simulate(
     elif _ensure_method(method, dt, max_step) == "RK4":
         how = {"dt": _ensure_step("dt", dt, t_span)}
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
-        samples = rk4(law, q0, p0, t_span, how["dt"], keep, tally)
+        stops = np.array(list(_stops(t_span, how["dt"], keep)))
+        plan = Plan("RK4", stops, np.empty(0), dt=how["dt"])
+        samples = integrated(law, q0, p0, t_span[0], plan, stops if keep is None else keep, tally)
     else:
         how = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
         floor = error_floor(law, q0, p0, t_span, **how)
         longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
-        samples = adaptive(law, q0, p0, t_span, method, Control(how["rtol"], floor, longest), keep, tally)
+        control, due = Control(how["rtol"], floor, longest), np.empty(0) if keep is None else keep
+        plan = Plan(method, np.array([t_span[1]]), due, control)
+        samples = integrated(law, q0, p0, t_span[0], plan, keep, tally)
         how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
@@ -199,6 +204,21 @@ def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, 
     if keep is None:
         samples = count_steps(*t_span, dt) + 1
         ensure_fits(f"a sample at each step of {dt:g}", (samples, 3, *q0.shape), "take longer steps, or give t_eval")
+
+
+def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> Iterator[float]:
+    """Times at which steps of at most dt end.
+
+    The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
+    """
+    if keep is None:
+        yield from (t_span[0] + k * dt for k in range(count_steps(*t_span, dt)))
+        yield t_span[1]
+        return
+    t = t_span[0]
+    for stop in keep.tolist():
+        yield from np.linspace(t, stop, max(1, count_steps(t, stop, dt)) + 1)[1:].tolist()
+        t = stop
 
 
 def _ensure_method(method: str, dt: float | None, max_step: float | None) -> str:

@@ -1,14 +1,17 @@
-"""Where a law with jumps switches: the first time, within a step, at which a pair leaves its smooth piece."""
+"""Laws with jumps from switch to switch: the first time, within a step, at which a pair leaves its smooth piece."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
+from flockana.dynamics.sample import Sample, Tally
+from flockana.dynamics.solvers import Solver
 from flockana.laws.switched import Pieces, SwitchedLaw
 
 Way = Callable[[float], FloatArray]
@@ -41,6 +44,65 @@ class Switches:
         before = self.pieces
         self.pieces, self.count = self.law.crossed(before, self.law.margins(before, q)), self.count + 1
         return self.law.sliding(before, self.pieces, t, q, p)
+
+
+def switched(
+    solver: Solver, switches: Switches, q0: FloatArray, p0: FloatArray, keep: FloatArray | None, tally: Tally
+) -> Iterator[Sample]:
+    """Steps from switch to switch, and samples at times to keep; a sliding mode ends the run."""
+    frame, flow, t = solver.frame, switches.flow, solver.frame.t0
+    due, beside = deque([] if keep is None else keep.tolist()), None
+
+    def sample(t: float, y: FloatArray) -> Sample:
+        q, p = frame.state(t, y)
+        return Sample(t, q, p, flow(t, q, p)[0], {"work": np.array(y[-1])} if frame.energetic else {})
+
+    if keep is None or due[0] == t:
+        work = {"work": np.array(0.0)} if frame.energetic else {}
+        yield Sample(t, q0, p0, flow(t, q0, p0)[0], work)  # not a rounding beside it, as in the frame
+        _drop(due, t)
+    tally.notes["switches"] = 0
+    while solver.stops.size:
+        stepped = solver.step()
+        tally.evaluations = solver.evaluations
+        if not stepped:
+            tally.fail(solver.failure)
+            return
+        tally.steps += 1
+        end, y = float(solver.block.t[1]), solver.block.y[1].copy()
+        switch = switches.first(lambda s: frame.state(s, solver.course(s))[0], t, end)
+        if switch is not None:
+            end, y = switch, solver.course(switch)
+        reached, t = sample(end, y), end
+        if beside is not None and beside.t < (min(t, due[0]) if due else t):
+            yield beside
+        beside = None
+        while due and due[0] < t:
+            yield sample(due[0], solver.course(due[0]))
+            due.popleft()
+        yield reached._replace(wanted=_drop(due, t) or keep is None)
+        if switch is None:
+            solver.go_on(1)
+            continue
+        sliding = switches.cross(t, reached.q, reached.p)
+        tally.notes["switches"] = switches.count
+        if sliding is not None:
+            tally.notes["sliding"] = sliding
+            tally.fail(f"sliding at t = {t:.6g}: {sliding}")
+            return
+        solver.begin(flow, t, y)
+        beside = _beside(sample(t, y))
+
+
+def _drop(due: deque[float], t: float) -> bool:
+    """Whether a sample was due at this time; it no longer is."""
+    return bool(due) and due[0] == t and due.popleft() == t
+
+
+def _beside(switch: Sample) -> Sample:
+    """The path goes on from a switch with the other side's input: a knot next to it, apart in any unit of time."""
+    gap = 4.0 * float(np.spacing(abs(switch.t)))
+    return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)
 
 
 def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:

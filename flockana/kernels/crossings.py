@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import njit, thawed
 from flockana.kernels.segments import between, cross, foot
 
 FloatArray = npt.NDArray[np.float64]
@@ -25,35 +25,17 @@ _LONGEST = 4.0  # a piece's length at most, in mean lengths: at most M/4 pieces 
 
 
 class Grid(NamedTuple):
-    """Pieces of links and the cells that they reach; entries are sorted by bucket.
+    """Pieces of links and the cells that they reach; entries are sorted by bucket."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (n, 3)
-        Positions, padded with zeros.
-    pairs : int32 array, shape (M, 2)
-        Links.
-    owner : int32 array, shape (P,)
-        The link of each piece.
-    low, high : ndarray, shape (P, 3)
-        Box of each piece.
-    home : int64 array, shape (P, 3)
-        Lowest cell of each piece.
-    piece, stop : int64 arrays, shape (E,)
-        Piece of each entry, and the end of its bucket.
-    cell : int64 array, shape (E, 3)
-        Cell of each entry.
-    """
-
-    x: FloatArray
-    pairs: IndexArray
-    owner: IndexArray
-    low: FloatArray
+    x: FloatArray  # (n, 3): positions, padded with zeros
+    pairs: IndexArray  # (M, 2): links
+    owner: IndexArray  # (P,): the link of each piece
+    low: FloatArray  # (P, 3): box of each piece
     high: FloatArray
-    home: npt.NDArray[np.int64]
-    piece: npt.NDArray[np.int64]
-    stop: npt.NDArray[np.int64]
-    cell: npt.NDArray[np.int64]
+    home: npt.NDArray[np.int64]  # (P, 3): lowest cell of each piece
+    piece: npt.NDArray[np.int64]  # (E,): piece of each entry
+    stop: npt.NDArray[np.int64]  # (E,): end of its bucket
+    cell: npt.NDArray[np.int64]  # (E, 3): its cell
 
 
 @njit(cache=True)
@@ -103,8 +85,9 @@ def _compared(owner, low, high, home, piece, cell, s, t):
 
 
 @njit(cache=True)
-def _fill(x, pairs, owner, low, high, home, piece, stop, cell, planes, row, first, second, sure):
+def _fill(links, planes, row, first, second, sure):
     """Fill the block from entry `row` on; a row that does not fit whole is left for the next block."""
+    x, pairs, owner, low, high, home, piece, stop, cell = links
     count, capacity = 0, first.size
     for s in range(row, piece.size):
         mark = count
@@ -123,7 +106,8 @@ def _fill(x, pairs, owner, low, high, home, piece, stop, cell, planes, row, firs
 
 
 @njit(cache=True)
-def _nearest(x, pairs, owner, low, high, home, piece, stop, cell, planar, reach):
+def _nearest(links, planar, reach):
+    x, pairs, owner, low, high, home, piece, stop, cell = links
     best, first, second = reach, -1, -1
     for s in range(piece.size):
         for t in range(s + 1, stop[s]):
@@ -171,7 +155,8 @@ def grid(q: FloatArray, pairs: IndexArray, *, reach: float = 0.0) -> Grid:
     low, high = np.minimum(begin, end) - slack[:, None], np.maximum(begin, end) + slack[:, None]
     home, last = (np.floor(np.clip(v / side, -_CLAMP, _CLAMP)).astype(np.int64) for v in (low, high))
     piece, stop, cell = _enter(home, last, 1 << int(2 * len(owner)).bit_length())
-    return Grid(x, np.ascontiguousarray(pairs, dtype=np.int32), owner, low, high, home, piece, stop, cell)
+    links = thawed(np.ascontiguousarray(pairs, dtype=np.int32))
+    return Grid(x, links, owner, low, high, home, piece, stop, cell)
 
 
 def crossing_blocks(q: FloatArray, pairs: IndexArray) -> Iterator[tuple[IndexArray, IndexArray, BoolArray]]:
@@ -192,7 +177,7 @@ def crossing_blocks(q: FloatArray, pairs: IndexArray) -> Iterator[tuple[IndexArr
     first, second, sure = np.empty(capacity, np.int32), np.empty(capacity, np.int32), np.empty(capacity, np.bool_)
     row = 0
     while row < entries:
-        row, count = _fill(*parts, planes, row, first, second, sure)
+        row, count = _fill(parts, planes, row, first, second, sure)
         yield first[:count], second[:count], sure[:count]
 
 
@@ -205,5 +190,5 @@ def nearest_links(q: FloatArray, pairs: IndexArray, reach: float) -> tuple[float
     >>> nearest_links(q, np.array([[0, 1], [2, 3]], np.int32), 1.0)
     (0.5, 0, 1)
     """
-    best, first, second = _nearest(*grid(q, pairs, reach=reach), q.shape[1] < 3, reach)
+    best, first, second = _nearest(grid(q, pairs, reach=reach), q.shape[1] < 3, reach)
     return float(best), int(first), int(second)

@@ -1,11 +1,12 @@
 """Whether a step leapt over an encounter: two agents in and out of each other's reach between two evaluations.
 
-The paths of a step are the quintics through its ends (`flockana.kernels.paths`). All arrays of paths, reaches and
-allowances are those of `control_points`; those of many agents are not kept, but made again for the few pairs that may
-matter.
+The paths of a step are the quintics through its ends (`flockana.kernels.paths`). Paths of many agents are not kept, but
+made again for the few pairs that may matter.
 """
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,21 +19,74 @@ _STEEP = 0.5  # a slope from which on the common way says too little of how near
 SLACK = 1.1  # a step that is too long by less than this is not worth another
 
 
+class Ends(NamedTuple):
+    """Length of a step, and positions, velocities and accelerations, each of shape (n, m), at both of its ends."""
+
+    h: Any
+    q0: Any
+    p0: Any
+    u0: Any
+    q1: Any
+    p1: Any
+    u1: Any
+
+
+class Around(NamedTuple):
+    """What no step may leap over (`flockana.dynamics.encounters.Encounters`)."""
+
+    radii: Any  # (n, K): distances at which each agent begins or ceases to feel another
+    far: Any  # how far two may go within them
+    edges: Any  # the least and the largest distance between agents that matters
+    poles: Any  # distances between agents that no step crosses
+    toward: Any  # share of the way to a pole that a step may go
+    first: Any  # the pairs that poles concern, if not all: uint32
+    second: Any
+    few: Any  # whether there are such pairs
+    guard: Any  # what share of a step obstacles allow (`flockana.kernels.laws.guard_of`)
+    numbers: Any  # what it reads
+    starts: Any
+    shell: Any  # distance at which the force of obstacles begins, and how far an agent may go within it
+
+
+class PairRoom(NamedTuple):
+    """Room for one pair: halved curves and their spans; control points, reaches, allowances and radii of the two."""
+
+    stack: Any
+    spans: Any
+    points: Any
+    reach: Any
+    allowance: Any
+    radii: Any
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def pair_room(radii):
+    """Return room for a pair of agents with so many radii each."""
+    return PairRoom(
+        np.empty((_DEPTH + 2, 6, 3)),
+        np.empty((_DEPTH + 2, 2)),
+        np.zeros((2, 6, 3)),
+        np.empty(2),
+        np.empty(2),
+        np.empty((2, radii)),
+    )
+
+
 @njit(cache=True)
-def _load(points, i, j, curve):
+def relative_curve(points, curve):
     """The pair's relative control points into `curve`; the largest distance from the first of them."""
     way = 0.0
     for k in range(6):
         s2 = 0.0
         for x in range(3):
-            curve[k, x] = points[j, k, x] - points[i, k, x]
+            curve[k, x] = points[1, k, x] - points[0, k, x]
             s2 += (curve[k, x] - curve[0, x]) ** 2
         way = max(way, s2)
     return np.sqrt(way)
 
 
 @njit(cache=True)
-def _ahead(points, i, j, s, far, room):
+def _ahead(points, s, far, room):
     """How much of the step lies between s and the pair's next closest approach, or a way of `far`; -1 if it parts.
 
     `room` is for six control points.
@@ -41,7 +95,7 @@ def _ahead(points, i, j, s, far, room):
     for x in range(3):
         b = room[:, x]
         for k in range(6):
-            b[k] = points[j, k, x] - points[i, k, x]
+            b[k] = points[1, k, x] - points[0, k, x]
         for level in range(4):
             for k in range(5 - level):
                 b[k] += s * (b[k + 1] - b[k])
@@ -54,87 +108,51 @@ def _ahead(points, i, j, s, far, room):
 
 
 @njit(cache=True)
-def _visit(points, i, j, edge, far, stack, spans):
+def _visit(points, edge, far, stack, spans):
     """Share of the step at which a pair that starts beyond `edge` is first well within it; 1 if it ends so.
 
     Well within is at its closest approach, or as soon as it has gone `far` there.
     """
-    _load(points, i, j, stack[0])
+    relative_curve(points, stack[0])
     if _hull_bound(stack[0]) >= edge:
         return 1.0
     s = _first_touch(stack, spans, edge)
     if s < 0.0:
         return 1.0
-    ahead = _ahead(points, i, j, s, far, stack[1])
+    ahead = _ahead(points, s, far, stack[1])
     return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
 @njit(cache=True)
-def _apart2(points, i, j, k):
+def _apart2(points, k):
     """Squared distance of the pair's control points k."""
-    x, y, z = points[j, k, 0] - points[i, k, 0], points[j, k, 1] - points[i, k, 1], points[j, k, 2] - points[i, k, 2]
+    x, y, z = points[1, k, 0] - points[0, k, 0], points[1, k, 1] - points[0, k, 1], points[1, k, 2] - points[0, k, 2]
     return x * x + y * y + z * z
 
 
 @njit(cache=True)
-def _share(points, reach, allowance, radii, far, i, j, share, stack, spans):
-    """The share of the step that one pair allows, if less than `share`."""
-    s2, travel, slack = _apart2(points, i, j, 0), reach[i] + reach[j], allowance[i] + allowance[j]
-    last = radii.shape[1] - 1
-    outer = max(radii[i, last], radii[j, last]) + slack
+def share_of_pair(room, far, share):
+    """The share of the step that the pair in `room` allows, if less than `share`."""
+    points, radii = room.points, room.radii
+    s2, travel = _apart2(points, 0), room.reach[0] + room.reach[1]
+    slack, last = room.allowance[0] + room.allowance[1], radii.shape[1] - 1
+    outer = max(radii[0, last], radii[1, last]) + slack
     if s2 >= (outer + travel) ** 2:
         return share
     if travel > far and s2 < outer * outer:
-        way = _load(points, i, j, stack[0])
+        way = relative_curve(points, room.stack[0])
         if way > SLACK * far:
             share = min(share, far / way)
     for k in range(last + 1):
         for whose in range(2):
-            radius = radii[i, k] if whose == 0 else radii[j, k]
-            if whose == 1 and radius == radii[i, k]:
+            if whose == 1 and radii[1, k] == radii[0, k]:
                 continue
-            edge = radius + slack
+            edge = radii[whose, k] + slack
             if s2 < edge * edge or s2 >= (edge + travel) ** 2:
                 continue
-            if travel <= far and _apart2(points, i, j, 5) < edge * edge:
+            if travel <= far and _apart2(points, 5) < edge * edge:
                 continue  # the evaluation at the end of the step meets it
-            share = min(share, _visit(points, i, j, edge, far, stack, spans))
-    return share
-
-
-@njit(cache=True)
-def _band(reach, allowance, radii, far):
-    """Squared distances between which a pair may cut the step short: nearly all are let pass by theirs alone."""
-    travel = 2.0 * reach.max()
-    low = radii[:, 0].min() if travel <= far else 0.0
-    high = radii[:, -1].max() + 2.0 * allowance.max() + travel
-    return low * low, high * high
-
-
-@njit(cache=True)
-def share_of_all(points, reach, allowance, radii, far):
-    """The largest share of the step, at most 1, within which no pair of the flock leaps over an encounter."""
-    stack, spans, share = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), 1.0
-    n, (low2, high2) = radii.shape[0], _band(reach, allowance, radii, far)
-    x, y, z = points[:, 0, 0].copy(), points[:, 0, 1].copy(), points[:, 0, 2].copy()
-    for i in range(n):
-        for j in range(i + 1, n):
-            a, b, c = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-            s2 = a * a + b * b + c * c
-            if low2 <= s2 < high2:
-                share = _share(points, reach, allowance, radii, far, i, j, share, stack, spans)
-    return share
-
-
-@njit(cache=True)
-def share_of_pairs(points, reach, allowance, radii, far, first, second, share):
-    """As `share_of_all`, of the pairs given, if less than `share`."""
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
-    low2, high2 = _band(reach, allowance, radii, far)
-    for k in range(first.size):
-        i, j = np.int64(first[k]), np.int64(second[k])
-        if low2 <= _apart2(points, i, j, 0) < high2:
-            share = _share(points, reach, allowance, radii, far, i, j, share, stack, spans)
+            share = min(share, _visit(points, edge, far, room.stack, room.spans))
     return share
 
 
@@ -149,12 +167,13 @@ def steepest(slope):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def common_way(h, q0, p0, u0, q1, p1, u1):
+def common_way(ends):
     """(mean, slope, centre) of how far all agents' control points are from the first of them: 6 × 3, twice, and 3.
 
     The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
     steep.
     """
+    h, q0, p0, u0, q1, p1, u1 = ends
     mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros(3), h / 5.0, h * h / 20.0
     for c in range(q0.shape[1]):
         centre[c] = column_mean(q0, c)
@@ -171,9 +190,10 @@ def common_way(h, q0, p0, u0, q1, p1, u1):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
+def farthest_ways(ends, common):
     """(the longest way of an agent beside the common one, the largest allowance): of `control_points`, to rounding."""
-    (n, m), (mean, slope, centre) = q0.shape, common
+    (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
+    n, m = q0.shape
     far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
     for i in range(n):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
@@ -194,9 +214,25 @@ def farthest_ways(h, q0, p0, u0, q1, p1, u1, common):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share, room):
-    """The share that the pairs allow whose squared distance is in a band where the step begins."""
-    (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own) = ends, room
+def band(common, farthest, edges, far):
+    """(low, high): between which distances, where a step begins, a pair may cut it short.
+
+    Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
+    way and twice the longest way beside it.
+    """
+    (way, blur), steep, (low, high) = farthest, steepest(common[1]), edges
+    high = (high + 2.0 * (blur + way)) / (1.0 - steep) * _WIDER
+    return low if (steep * high + 2.0 * way) * _WIDER <= far else 0.0, high
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def share_of_listed(ends, mean, between, around, first, second, share):
+    """The largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
+
+    Only pairs are looked at whose distance is within a band where the step begins.
+    """
+    (h, q0, p0, u0, q1, p1, u1), radii = ends, around.radii
+    room, low2, high2 = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2
     m = q0.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
@@ -205,37 +241,12 @@ def _share_of_band(h, ends, mean, low2, high2, radii, far, first, second, share,
             s2 += (q0[j, c] - q0[i, c]) ** 2
         if low2 <= s2 < high2:
             for a in range(2):
-                one = i if a == 0 else j
-                put(radii[one], own[a])
-                allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], points[a])
+                one, curve = i if a == 0 else j, room.points[a]
+                put(radii[one], room.radii[a])
+                room.allowance[a] = quintic(h, q0[one], p0[one], u0[one], q1[one], p1[one], u1[one], curve)
                 for node in range(6):  # by its indices: compiled code does not check that shapes agree
                     for c in range(m):
-                        points[a, node, c] -= mean[node, c]
-                reach[a] = reach_of(points[a]) + allowance[a]
-            share = _share(points, reach, allowance, own, far, 0, 1, share, stack, spans)
+                        curve[node, c] -= mean[node, c]
+                room.reach[a] = reach_of(curve) + room.allowance[a]
+            share = share_of_pair(room, around.far, share)
     return share
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def band(common, farthest, radii, far):
-    """(low, high): between which distances, where a step begins, a pair may cut it short.
-
-    Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
-    way and twice the longest way beside it.
-    """
-    (way, blur), steep = farthest, steepest(common[1])
-    low, high = radii[0, 0], radii[0, -1]
-    for agent in range(1, len(radii)):
-        low, high = min(low, radii[agent, 0]), max(high, radii[agent, -1])
-    high = (high + 2.0 * (blur + way)) / (1.0 - steep) * _WIDER
-    return low if (steep * high + 2.0 * way) * _WIDER <= far else 0.0, high
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def share_of_listed(h, q0, p0, u0, q1, p1, u1, mean, between, radii, far, first, second, share):
-    """As `share_of_pairs` of the paths between two states, looking only at pairs of that band where they begin."""
-    stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
-    points, reach, allowance = np.zeros((2, 6, 3)), np.empty(2), np.empty(2)
-    own, (low, high) = np.empty((2, radii.shape[1])), between
-    ends, room = (q0, p0, u0, q1, p1, u1), (stack, spans, points, reach, allowance, own)
-    return _share_of_band(h, ends, mean, low * low, high * high, radii, far, first, second, share, room)

@@ -1,8 +1,8 @@
-"""A law as compiled integrators take it: one generated module that sums its terms, as three callbacks.
+"""A law as compiled integrators take it: one generated module that sums its terms, as two callbacks.
 
 A term is two kernels: ``act(t, x, v, u, numbers, panels, listed)`` adds to u and returns the power, ``energy(t, x, v,
-numbers, panels, listed)`` returns the potential energy (`flockana.kernels.listed`). A term that no step may leap over
-has a third, ``guard(points, allowance, numbers, shell, far, share)``, which returns the share given, or less.
+numbers, panels, listed)`` returns the potential energy (`flockana.kernels.listed`). Obstacles of a kind are guarded by
+a kernel ``guard(points, allowance, numbers, shell, far, share)``, which returns the share given, or less.
 """
 
 from __future__ import annotations
@@ -24,15 +24,14 @@ _ACT = f"def force(t, x, v, u, {_SEEN}):\n    seen, total = Listed(frame, first,
 _ENERGY = (
     f"def energy(t, x, v, {_SEEN}):\n    seen, total = Listed(frame, first, second, count, order, near, room), 0.0"
 )
-_GUARD = "def guard(points, allowance, numbers, starts, shell, far, share):\n    total = share"
+_GUARD = "def guard(points, allowance, numbers, starts, shell, far, share):\n"
 
 
 class LawFunctions(NamedTuple):
-    """Force and power, potential energy, and guard of a law, for compiled code to be handed."""
+    """Force and power, and potential energy of a law, for compiled code to be handed."""
 
     force: Any
     energy: Any
-    guard: Any
 
 
 class LawNumbers(NamedTuple):
@@ -54,34 +53,45 @@ def law_numbers(terms: Any) -> LawNumbers:
 
 
 @cache
-def law_functions(terms: tuple[tuple[Kernel, Kernel, Kernel | None], ...]) -> LawFunctions:
+def law_functions(terms: tuple[tuple[Kernel, Kernel], ...]) -> LawFunctions:
     """Return the functions of a law with such terms, compiled."""
     functions: dict[str, Kernel] = {}
-    lines: dict[str, list[str]] = {_ACT: [], _ENERGY: [], _GUARD: []}
-    for k, (act, energy, guard) in enumerate(terms):
+    lines: dict[str, list[str]] = {_ACT: [], _ENERGY: []}
+    for k, (act, energy) in enumerate(terms):
         own = f"numbers[starts[{k}, 0] : starts[{k + 1}, 0]]"
         both = f"{own}, panels[starts[{k}, 1] : starts[{k + 1}, 1]]"
         functions |= {f"act_{k}": act, f"energy_{k}": energy}
         lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {both}, seen)")
         lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {both}, seen)")
-        if guard is not None:
-            functions[f"guard_{k}"] = guard
-            lines[_GUARD].append(f"    total = guard_{k}(points, allowance, {own}, shell, far, total)")
     bodies = ("\n".join([head, *body, "    return total"]) for head, body in lines.items())
     module = made(_HEAD + "\n".join(f"\n@njit(cache=True)\n{body}\n" for body in bodies), "law", **functions)
     return LawFunctions(*(callback(getattr(module, k), sign) for k, sign in signatures()._asdict().items()))
 
 
 @cache
+def guard_of(kinds: tuple[Kernel, ...]) -> Any:
+    """Return one guard of obstacles of several kinds, compiled; its numbers are those of all kinds in one vector."""
+    numba = load_numba()
+    vector, real = numba.float64[::1], numba.float64
+    lines = [
+        f"    share = guard_{k}(points, allowance, numbers[starts[{k}] : starts[{k + 1}]], shell, far, share)\n"
+        for k in range(len(kinds))
+    ]
+    text = "from flockana.jit import njit\n\n\n@njit(cache=True)\n" + _GUARD + "".join(lines) + "    return share\n"
+    module = made(text, "guard", **{f"guard_{k}": kind for k, kind in enumerate(kinds)})
+    return callback(module.guard, real(real[:, :, ::1], vector, vector, numba.int64[::1], real, real, real))
+
+
+@cache
 def signatures() -> LawFunctions:
-    """Return numba's signatures of the three functions."""
+    """Return numba's signatures of the two functions."""
     numba = load_numba()
     float64, int64 = numba.float64, numba.int64
     matrix, vector, indices = float64[:, ::1], float64[::1], numba.uint32[::1]
-    law = (vector, matrix, int64[:, ::1])
-    seen = (matrix, *law, indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix)
+    seen = (
+        matrix, vector, matrix, int64[:, ::1], indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix,
+    )  # fmt: skip
     return LawFunctions(
         float64(float64, matrix, matrix, matrix, *seen),
         float64(float64, matrix, matrix, *seen),
-        float64(float64[:, :, ::1], vector, vector, int64[:, ::1], float64, float64, float64),
     )

@@ -22,20 +22,12 @@ _ROOM = "flockana.kernels."
 
 @dataclass(frozen=True, eq=False)
 class PairKernels:
-    """Compiled sums over all pairs within range, or over a block of pairs (i, j).
+    """Compiled sums over all pairs within range, or over a block of pairs (i, j)."""
 
-    Attributes
-    ----------
-    pair, slope_of_pair, energy_of_pair : Kernel
-        The law's scalar functions.
-    slope_of_adjacency, norm : Kernel, optional
-        Two more, if it gives them.
-    """
-
-    pair: Kernel
+    pair: Kernel  # the law's scalar functions
     slope_of_pair: Kernel
     energy_of_pair: Kernel
-    slope_of_adjacency: Kernel | None
+    slope_of_adjacency: Kernel | None  # two more, if it gives them
     norm: Kernel | None
 
     @property

@@ -10,29 +10,15 @@ from flockana.jit import njit
 
 
 class Listed(NamedTuple):
-    """The frame that x and v are seen from, the listed pairs, and room for a block of them.
+    """The frame that x and v are seen from, the listed pairs, and room for a block of them."""
 
-    Attributes
-    ----------
-    frame : ndarray, shape (2, m)
-        Its place and velocity.
-    first, second : ndarray of uint32
-        The pairs.
-    count : int
-        How many there are.
-    order : ndarray of uint64, shape (n,)
-        Every agent's own number.
-    near, room : ndarray, shapes (2, BLOCK), (3, BLOCK)
-        Any term's to write to.
-    """
-
-    frame: Any
-    first: Any
+    frame: Any  # (2, m): its place and velocity
+    first: Any  # the pairs: uint32
     second: Any
-    count: Any
-    order: Any
-    near: Any
-    room: Any
+    count: Any  # how many there are
+    order: Any  # (n,), uint64: every agent's own number
+    near: Any  # (2, BLOCK), any term's to write to
+    room: Any  # (3, BLOCK), too
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

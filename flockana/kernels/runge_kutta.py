@@ -2,7 +2,7 @@
 
 A tableau is (A, C, E, P): row s of A has the weights of the step itself, so that stage s is the rate at its end; rows
 beyond it are stages of the interpolant alone. E has one row, the error estimate, or two, those of DOP853; P the
-interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in row rows[s] of `rates`.
+interpolant, y(θ) = y + h Σ_jk P_jk θᵏ⁺¹ K_j. The rate K_s is kept in row rows[s] of the step's rates.
 """
 
 from __future__ import annotations
@@ -14,39 +14,46 @@ import numpy as np
 
 from flockana.jit import njit
 from flockana.kernels.sums import column_squares, squared_deviations
-from flockana.kernels.verlet import listed_anew, outdated
+from flockana.kernels.verlet import covers, listed_anew
+
+
+class Method(NamedTuple):
+    """A method (`flockana.kernels.tableaus.Tableau`), and the tolerances of a run."""
+
+    a: Any
+    c: Any
+    estimates: Any
+    interpolant: Any
+    rows: Any
+    stages: Any
+    exponent: Any
+    rtol: Any  # relative tolerance
+    floor: Any  # absolute ones: of positions, velocities and work
+    longest: Any  # longest step
+
+
+class Step(NamedTuple):
+    """A step: its start and length, the vectors at both ends, the rates of its stages, and room for a vector."""
+
+    t: Any
+    h: Any
+    y: Any
+    reached: Any
+    rates: Any
+    trial: Any
 
 
 class System(NamedTuple):
-    """A law as steps take it: its functions and numbers, how the state is seen, and room.
+    """A law as steps take it: its functions and numbers, how the state is seen, and room."""
 
-    Attributes
-    ----------
-    force, energy, guard : callable
-        `flockana.kernels.laws.LawFunctions`.
-    law : LawNumbers
-        What they read.
-    seen_from : (float, ndarray, ndarray)
-        Start, origin and drift of the frame that vectors are seen from.
-    moving : bool
-        Whether the energy is that in the moving frame.
-    reach : (float, float)
-        Within which all pairs are needed, and the skin of a list.
-    order : ndarray of uint64, shape (n,)
-        Every agent's own number.
-    frame, near, room : ndarray
-        Room (`flockana.kernels.listed.Listed`).
-    """
-
-    force: Any
+    force: Any  # `flockana.kernels.laws.LawFunctions`
     energy: Any
-    guard: Any
-    law: Any
-    seen_from: Any
-    moving: Any
-    reach: Any
-    order: Any
-    frame: Any
+    law: Any  # what they read
+    seen_from: Any  # start, origin and drift of the frame that vectors are seen from
+    moving: Any  # whether the energy is that in the moving frame
+    reach: Any  # within which all pairs are needed, and the skin of a list
+    order: Any  # (n,), uint64: every agent's own number
+    frame: Any  # room (`flockana.kernels.listed.Listed`)
     near: Any
     room: Any
 
@@ -90,38 +97,31 @@ def rate_of(t, y, f, system, pairs):
 @njit(cache=True, error_model="numpy", nogil=True)
 def _kept_up(y, system, pairs):
     """The list itself while it holds every pair within reach, or else a new one."""
-    (reach, skin), m = system.reach, system.frame.shape[1]
-    n = system.order.size
+    (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
     q = y[: n * m].reshape(n, m)
-    return listed_anew(q, reach + skin, pairs) if reach > 0.0 and outdated(q, reach, skin, pairs) else pairs
+    return listed_anew(q, reach + skin, pairs) if reach > 0.0 and not covers(pairs, q, reach) else pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _act(t, y, f, system, pairs):
     """The rate of y into f, its pairs being listed."""
-    (first, second, count, _), n, m = pairs, system.order.size, system.frame.shape[1]
-    size, law, frame = n * m, system.law, system.frame
+    n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
+    size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
     frame_at(t, system.seen_from, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
     f[2 * size] = system.force(
-        t, x, v, u, frame, law.numbers, law.panels, law.starts, first, second, count, system.order, system.near,
-        system.room,
+        t, x, v, u, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.count, system.order,
+        system.near, system.room,
     )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
-    (first, second, count, _), n, m = pairs, system.order.size, system.frame.shape[1]
-    x, v, law, frame, total = (
-        y[: n * m].reshape(n, m),
-        y[n * m : 2 * n * m].reshape(n, m),
-        system.law,
-        system.frame,
-        0.0,
-    )
+    n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
+    x, v, total = y[: n * m].reshape(n, m), y[n * m : 2 * n * m].reshape(n, m), 0.0
     frame_at(t, system.seen_from, frame)
     if system.moving:
         total = 0.5 * squared_deviations(v)
@@ -129,45 +129,46 @@ def energy_of(t, y, system, pairs):
         for c in range(m):
             total += 0.5 * column_squares(v, c, -frame[1, c])
     return total + system.energy(
-        t, x, v, frame, law.numbers, law.panels, law.starts, first, second, count, system.order, system.near,
-        system.room,
+        t, x, v, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.count, system.order,
+        system.near, system.room,
     )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+def _stages(step, method, begin, end, system, pairs):
     """Stages up to `end`, or to one for which the list is outdated; returns which, combined but not evaluated."""
-    a, c, rows, stages = method
-    (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
+    reach, n, m = system.reach[0], system.order.size, system.frame.shape[1]
+    rows, rates = method.rows, step.rates
     for s in range(begin, end):
-        into = reached if s == stages else trial
-        combine(y, h, a[s], rates, rows, s, into)
-        if reach > 0.0 and outdated(into[: n * m].reshape(n, m), reach, skin, pairs):
+        into = step.reached if s == method.stages else step.trial
+        combine(step.y, step.h, method.a[s], rates, rows, s, into)
+        if reach > 0.0 and not covers(pairs, into[: n * m].reshape(n, m), reach):
             return s
-        _act(t + c[s] * h, into, rates[rows[s]], system, pairs)
+        _act(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
     return end
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def stages_of(t, h, y, rates, reached, trial, method, begin, end, system, pairs):
+def stages_of(step, method, begin, end, system, pairs):
     """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
-    _, c, rows, stages = method
-    s = _stages(t, h, y, rates, reached, trial, method, begin, end, system, pairs)
+    s = _stages(step, method, begin, end, system, pairs)
     while s < end:
-        pairs = rate_of(t + c[s] * h, reached if s == stages else trial, rates[rows[s]], system, pairs)
-        s = _stages(t, h, y, rates, reached, trial, method, s + 1, end, system, pairs)
+        into, rate = step.reached if s == method.stages else step.trial, step.rates[method.rows[s]]
+        pairs = rate_of(step.t + method.c[s] * step.h, into, rate, system, pairs)
+        s = _stages(step, method, s + 1, end, system, pairs)
     return pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def interpolated(theta, h, y, rates, rows, interpolant, trial):
-    """The vector at a share θ of the step."""
+def interpolated(theta, step, method):
+    """Write the vector at a share θ of the step into its room."""
+    interpolant = method.interpolant
     count, powers = interpolant.shape
     weights = np.zeros(count)
     for j in range(count):
         for k in range(powers - 1, -1, -1):
             weights[j] = (weights[j] + interpolant[j, k]) * theta
-    combine(y, h, weights, rates, rows, count, trial)
+    combine(step.y, step.h, weights, step.rates, method.rows, count, step.trial)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -177,54 +178,56 @@ def allowed(k, size, floor):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _estimate(weights, y, reached, rates, rows, size, rtol, floor, strip):
-    """The sum of squares of one estimate of a step's error over what is allowed; `strip` is room."""
-    total = 0.0
+def _estimate(weights, step, method):
+    """The sum of squares of one estimate of a step's error over what is allowed; the step's room is written to."""
+    total, y, reached, strip = 0.0, step.y, step.reached, step.trial
     for begin in range(0, y.size, _STRIP):
         end = min(begin + _STRIP, y.size)
         for k in range(end - begin):
             strip[k] = 0.0
         for j in range(weights.size):
             if weights[j] != 0.0:
-                rate, weight = rates[rows[j], begin:end], weights[j]
+                rate, weight = step.rates[method.rows[j], begin:end], weights[j]
                 for k in range(end - begin):
                     strip[k] += weight * rate[k]
         for k in range(begin, end):
-            scale = allowed(k, size, floor) + max(abs(y[k]), abs(reached[k])) * rtol
+            scale = allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(reached[k])) * method.rtol
             total += (strip[k - begin] / scale) ** 2
     return total
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def error_of(y, reached, h, estimates, rates, rows, size, rtol, floor, strip):
+def error_of(step, method):
     """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
-    square = _estimate(estimates[0], y, reached, rates, rows, size, rtol, floor, strip)
-    if estimates.shape[0] == 1:
-        return abs(h) * sqrt(square / y.size)
-    other = _estimate(estimates[1], y, reached, rates, rows, size, rtol, floor, strip)
+    h, size = abs(step.h), step.y.size
+    square = _estimate(method.estimates[0], step, method)
+    if method.estimates.shape[0] == 1:
+        return h * sqrt(square / size)
+    other = _estimate(method.estimates[1], step, method)
     if square == 0.0 and other == 0.0:
         return 0.0
-    return abs(h) * square / sqrt((square + 0.01 * other) * y.size)
+    return h * square / sqrt((square + 0.01 * other) * size)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _weighed(a, b, y, size, rtol, floor):
+def _weighed(a, b, y, method):
     """The root mean square of a − b over what is allowed."""
     total = 0.0
     for k in range(y.size):
-        total += ((a[k] - b[k]) / (allowed(k, size, floor) + abs(y[k]) * rtol)) ** 2
+        total += ((a[k] - b[k]) / (allowed(k, y.size // 2, method.floor) + abs(y[k]) * method.rtol)) ** 2
     return sqrt(total / y.size)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def first_step(t, span, y, rates, exponent, rtol, floor, trial, system, pairs):
+def first_step(span, step, method, system, pairs):
     """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
-    size, rest = y.size // 2, np.zeros(y.size)
-    d0, d1 = _weighed(y, rest, y, size, rtol, floor), _weighed(rates[0], rest, y, size, rtol, floor)
+    y, rates, trial = step.y, step.rates, step.trial
+    rest = np.zeros(y.size)
+    d0, d1 = _weighed(y, rest, y, method), _weighed(rates[0], rest, y, method)
     ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
         trial[k] = y[k] + ahead * rates[0, k]
-    pairs = rate_of(t + ahead, trial, rates[1], system, pairs)
-    d2 = _weighed(rates[1], rates[0], y, size, rtol, floor) / ahead
-    h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -exponent
+    pairs = rate_of(step.t + ahead, trial, rates[1], system, pairs)
+    d2 = _weighed(rates[1], rates[0], y, method) / ahead
+    h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
     return min(100.0 * ahead, h, span), pairs

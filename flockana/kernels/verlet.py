@@ -6,12 +6,29 @@ memory.
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from flockana.jit import njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
 from flockana.kernels.sums import put, slope_along
+
+
+class Pairs(NamedTuple):
+    """A list of pairs: the first `count` of two arrays, made at some places with some reach, after others.
+
+    A count of −1 says that there are too many for memory.
+    """
+
+    first: Any
+    second: Any
+    count: Any
+    places: Any
+    reach: Any
+    made: Any
+
 
 _ROOM = 8  # pairs an agent, to begin with
 SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some steps
@@ -146,20 +163,19 @@ def holds(q, within, made, reference):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def empty_list(n):
-    """(first, second, count, places) of a list that is yet to be made."""
-    first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
-    return first, second, np.int64(0), np.empty((0, 0))
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def outdated(q, reach, skin, pairs):
-    """Whether a list may lack a pair that is within reach now."""
-    return not (pairs[3].size and holds(q, reach, reach + skin, pairs[3]))
+def covers(pairs, q, within):
+    """Whether a list holds every pair that is closer than `within` now."""
+    return pairs.places.size > 0 and holds(q, within, pairs.reach, pairs.places)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def listed_anew(q, reach, pairs):
     """A new list in the room of an old one."""
-    first, second, count = list_pairs(q, reach, pairs[0], pairs[1])
-    return first, second, count, q.copy()
+    first, second, count = list_pairs(q, reach, pairs.first, pairs.second)
+    return Pairs(first, second, count, q.copy(), reach, pairs.made + 1)
+
+
+def no_pairs(n: int, m: int) -> Pairs:
+    """Return a list that is yet to be made."""
+    first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
+    return Pairs(first, second, 0, np.empty((0, m)), 0.0, 0)

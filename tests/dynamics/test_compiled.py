@@ -7,6 +7,8 @@ import pytest
 
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
+from flockana.dynamics.encounters import StepChecks
+from flockana.dynamics.frame import Plan
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import Control, Floors
 from flockana.environment.capsule import Capsule
@@ -105,18 +107,20 @@ def laws():
 @pytest.mark.parametrize(("m", "law"), list(laws()))
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
-    engine = engine_of(law, q0, p0, 0.5, "DOP853", Control(1e-10, Floors(1e-10, 1e-10, 1e-10)))
-    ledger = np.array([np.nan, 0.0, 0.0, 0.0])
-    _, t, y, f, *_ = engine.run(engine.start(q0, p0)[1], np.array([0.7]), np.empty(0), ledger)
-    q, p = engine.frame.state(t, y)
+    control = Control(1e-10, Floors(1e-10, 1e-10, 1e-10))
+    engine = engine_of(law, q0, p0, 0.5, Plan("DOP853", np.array([0.7]), np.empty(0), control))
+    made = engine.advance(StepChecks(law, engine.frame, engine.plan))
+    t, f = float(engine.block.t[made]), engine.block.f[made]
+    states, work = engine.states(made)
+    q, p, found = states[-1]
     (u, power), energy = law.flow(t, q, p), law.hamiltonian(t, q, p)
     stiff = np.abs(law.jacobian(t, q, p)).sum(axis=1).max()  # times a rounding of the places: what the frame may change
     rounding = max(1e-13 * np.abs(u).max(), np.finfo(float).eps * np.abs(q).max() * stiff)
-    np.testing.assert_allclose(engine.frame.input(f), u, rtol=1e-12, atol=rounding)
+    np.testing.assert_allclose(found, u, rtol=1e-12, atol=rounding)
     assert f[-1] == pytest.approx(power, rel=1e-12, abs=1e-13 * float(np.abs(u * p).sum()))
-    assert ledger[0] == t > 0.5
-    assert ledger[1] == pytest.approx(energy, rel=1e-12)
-    assert y[-1] == pytest.approx(energy - law.hamiltonian(0.5, q0, p0), abs=1e-9 * abs(energy))
+    assert t > 0.5
+    assert engine.block.energy[made] == pytest.approx(energy, rel=1e-12)
+    assert work[-1] == pytest.approx(energy - law.hamiltonian(0.5, q0, p0), abs=1e-9 * abs(energy))
 
 
 @pytest.mark.parametrize("method", ["DOP853", "RK45", "RK23"])
@@ -181,7 +185,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
     ours, plain = (simulate(one, q, p, (0.0, 3.0), rtol=1e-7) for one in (law, stepped))
     np.testing.assert_allclose(ours.q[-1], plain.q[-1], atol=1e-5)
     assert body.clearance(ours.path.q.reshape(-1, 2)).min() < law.beta.d
-    assert engine_of(law, q, p, 0.0, "RK4") is not None
+    assert engine_of(law, q, p, 0.0, Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
 
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
@@ -190,26 +194,6 @@ def test_rk4_grows_back_after_an_encounter_as_step_by_step():
     ours, plain = (simulate(kind(**still), q, p, (0.0, 20.0), method="RK4", dt=20.0) for kind in (Algorithm2, Plain))
     assert (ours.stats["steps"], ours.stats["redone"]) == (plain.stats["steps"], plain.stats["redone"])
     np.testing.assert_allclose(ours.path.t, plain.path.t, rtol=1e-9)
-
-
-def test_a_balance_that_no_halving_mends_is_left_alone():
-    """An interaction whose potential is not that of its force: halved a few times, then no more."""
-
-    @register_jitable
-    def doubled(s2, par, panels):
-        return 2.0 * alpha.pair_alpha_potential(s2, par, panels)
-
-    class Doubled(AlphaInteraction):
-        """With twice the energy."""
-
-        kernels = lift(alpha.pair_alpha, alpha.pair_alpha_slope, doubled)
-
-    ours, theirs = (
-        simulate(Algorithm1(Doubled()), *calm(3), (0.0, 2.0), method=name, rtol=1e-6)
-        for name in ("DOP853", "scipy-DOP853")
-    )
-    assert 0 < ours.stats["redone"] < 40
-    assert (ours.stats["steps"], ours.stats["redone"]) == (theirs.stats["steps"], theirs.stats["redone"])
 
 
 def test_calls_of_one_step_make_the_same_run(monkeypatch):
@@ -267,12 +251,16 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
         Algorithm2(target=RescaledVelocity(CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))), 0.5)),
         Strong(),
         Algorithm1(Weighed()),
-        Fenced(target=TARGETS[1]),
-        Doubled(target=TARGETS[1], obstacles=[Sphere((50.0, 50.0), 1.0)]),
     ]
+    dop853, lsoda = (Plan(method, np.array([0.5]), np.empty(0)) for method in ("DOP853", "LSODA"))
     for law in plain:
-        assert engine_of(law, q, p, 0.0, "DOP853", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None, law
-    assert engine_of(Algorithm1(), q, p, 0.0, "LSODA", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None
+        assert engine_of(law, q, p, 0.0, dop853) is None, law
+    assert engine_of(Algorithm1(), q, p, 0.0, lsoda) is None
+    around = Sphere((-2.0, 12.0), 3.0)
+    for law in (Fenced(target=TARGETS[1]), Doubled(target=TARGETS[1], obstacles=[around])):
+        assert engine_of(law, q, p, 0.0, dop853) is not None  # its obstacles are guarded, whatever its terms are
+        ours, theirs = (simulate(law, q, p, (0.0, 0.5), method=name, rtol=1e-10) for name in ("DOP853", "scipy-DOP853"))
+        np.testing.assert_allclose(ours.q[-1], theirs.q[-1], atol=1e-7)
     lied = simulate(plain[1], q, p, (0.0, 0.5), rtol=1e-9)
     np.testing.assert_allclose(lied.u[-1], plain[1].acceleration(0.5, lied.q[-1], lied.p[-1]), rtol=1e-9, atol=1e-9)
 
@@ -280,10 +268,10 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
     monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
-    assert engine_of(Algorithm1(), q, p, 0.0, "DOP853", Control(1e-8, Floors(1e-8, 1e-8, 1e-8))) is None
+    assert engine_of(Algorithm1(), q, p, 0.0, Plan("DOP853", np.array([0.01]), np.empty(0))) is None
     monkeypatch.undo()
-    run = compiled.Engine.run
-    monkeypatch.setattr(compiled.Engine, "run", lambda *arguments: (compiled.CROWDED, *run(*arguments)[1:]))
+    advance = compiled.advance
+    monkeypatch.setattr(compiled, "advance", lambda *given: advance(*given)._replace(status=compiled.CROWDED))
     told = simulate(Algorithm1(), q, p, (0.0, 0.01))
     assert told.status == "failed"
     assert "than a list has room for: try method='scipy-DOP853'" in told.message

@@ -240,7 +240,7 @@ def test_a_worker_with_other_mathematics_is_refused():
 def test_the_mathematics_change_with_what_computes_and_with_nothing_else(monkeypatch):
     root = digests.Path(digests.__file__).resolve().parent.parent
     names = {path.relative_to(root).as_posix() for path in digests.source_files(root)}
-    assert {"kernels/alpha.py", "dynamics/adaptive.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
+    assert {"kernels/alpha.py", "dynamics/driver.py", "theorems/olfati_saber/os_1.py", "base/errors.py"} <= names
     assert {"scenarios/msn.py", "measures/standard.py", "equilibria/strained13.json"} <= names
     assert not any(name.startswith(("plots/", "report/", "cli/", "falsify/")) for name in names)
     assert not {"ensemble/store.py", "base/references.py", "_version.py", "__init__.py"} & names

@@ -3,12 +3,22 @@
 import numpy as np
 import pytest
 
-from flockana.kernels import advance
-from flockana.kernels.advance import Around, _met
-from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, share_of_pairs, steepest
+from flockana.kernels import checks
+from flockana.kernels.checks import Rules, share_of_step
+from flockana.kernels.encounters import (
+    Around,
+    Ends,
+    band,
+    common_way,
+    farthest_ways,
+    pair_room,
+    share_of_listed,
+    share_of_pair,
+    steepest,
+)
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.paths import bernstein, centred
-from flockana.kernels.runge_kutta import System
+from flockana.kernels.verlet import Pairs, no_pairs
 
 H, R, FAR = 0.7, 8.4, 3.5
 
@@ -19,15 +29,32 @@ def ends(n, m, speed, seed=0):
     q0, p0 = rng.uniform(0.0, 3.0 * n ** (1.0 / m), (n, m)), rng.normal(3.0, speed, (n, m))
     p1 = p0 + rng.normal(0.0, 0.2 * speed, (n, m))
     q1 = q0 + 0.5 * H * (p0 + p1) + rng.normal(0.0, 0.02 * speed, (n, m))
-    return q0, p0, rng.normal(0.0, speed, (n, m)), q1, p1, rng.normal(0.0, speed, (n, m))
+    return Ends(H, q0, p0, rng.normal(0.0, speed, (n, m)), q1, p1, rng.normal(0.0, speed, (n, m)))
+
+
+def share_of_pairs(states, radii):
+    """The share that pairs allow, one after the other, with the control points of all agents."""
+    points, _, allowance = bernstein(*states)
+    ways, share, room = centred(points, allowance), 1.0, pair_room(radii.shape[1])
+    for pair in zip(*pair_list(states.q0, 1e6), strict=True):
+        room.points[:], room.reach[:] = points[list(pair)], ways[list(pair)]
+        room.allowance[:], room.radii[:] = allowance[list(pair)], radii[list(pair)]
+        share = share_of_pair(room, FAR, share)
+    return share
+
+
+def around(radii):
+    """No poles and no obstacles."""
+    none, edges = np.empty(0, np.uint32), (float(radii.min()), float(radii.max()))
+    return Around(radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0))
 
 
 def drawn(states, factor):
     """The same, drawn together to a place of its own within the step, as by a target: seen from there all slow down."""
-    q0, p0, u0, q1, p1, u1 = states
+    _, q0, p0, u0, q1, p1, u1 = states
     along = q0 - 2.0
     pull = 2.0 * (1.0 - factor) / H**2 * along
-    return q0, p0, u0 - pull, q1 - 0.5 * H**2 * pull, p1 - H * pull, u1 - pull
+    return Ends(H, q0, p0, u0 - pull, q1 - 0.5 * H**2 * pull, p1 - H * pull, u1 - pull)
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.8])
@@ -35,16 +62,16 @@ def drawn(states, factor):
 @pytest.mark.parametrize("n", [3, 250])
 def test_the_longest_way_and_the_largest_allowance_are_those_of_the_control_points(n, m, factor):
     states = drawn(ends(n, m, 1.5), factor)
-    points, _, allowance = bernstein(H, *states)
-    ways, (mean, slope, centre) = points - points[:, :1], common_way(H, *states)
+    points, _, allowance = bernstein(*states)
+    ways, (mean, slope, centre) = points - points[:, :1], common_way(states)
     assert mean[:, :m] == pytest.approx(ways.mean(axis=0)[:, :m], abs=1e-12)
-    assert centre[:m] == pytest.approx(states[0].mean(axis=0))
+    assert centre[:m] == pytest.approx(states.q0.mean(axis=0))
     assert not mean[:, m:].any()
     along = points[:, 0] - centre
     least = np.einsum("nc,nkc->kc", along, ways)[:, :m] / np.square(along).sum(axis=0)[:m]
     assert slope[:, :m] == pytest.approx(least if np.abs(least).max() < 0.5 else 0.0 * least, abs=1e-12)
     beside = np.linalg.norm(ways - mean - slope * along[:, None], axis=2).max(axis=1) + allowance
-    found = farthest_ways(H, *states, (mean, slope, centre))
+    found = farthest_ways(states, (mean, slope, centre))
     assert found == pytest.approx((beside.max(), allowance.max()), rel=1e-12)
 
 
@@ -59,10 +86,10 @@ def test_each_control_point_may_be_the_farthest(node):
     q1[7, 0] += gone
     p0[7, 0], p1[7, 0] = 5.0 * out / H, 5.0 * back / H
     u0[7, 0], u1[7, 0] = 20.0 * (ways[2] - 2.0 * out) / H**2, 20.0 * (ways[3] - gone + 2.0 * back) / H**2
-    states = q0, p0, u0, q1, p1, u1
-    points, _, allowance = bernstein(H, *states)
+    states = Ends(H, q0, p0, u0, q1, p1, u1)
+    points, _, allowance = bernstein(*states)
     assert points[7, :, 0] - q0[7, 0] == pytest.approx(ways, abs=1e-12)
-    farthest, blur = farthest_ways(H, *states, common_way(H, *states))
+    farthest, blur = farthest_ways(states, common_way(states))
     assert blur == pytest.approx(allowance[7])
     assert 0.9 < (farthest - blur) / 40.0 <= 1.0  # beside what it adds to the mean itself
 
@@ -71,19 +98,20 @@ def test_only_what_is_drawn_together_by_less_than_half_has_slopes():
     still = np.zeros((90, 2))
     q0 = np.random.default_rng(0).uniform(0.0, 900.0, (90, 2))
     for factor, expected in ((0.9, 0.1), (0.51, 0.49), (0.49, 0.0), (1.4, 0.4), (-1.0, 0.0)):
-        common = common_way(H, q0, still, still, factor * q0, still, still)
+        states = Ends(H, q0, still, still, factor * q0, still, still)
+        common = common_way(states)
         assert steepest(common[1]) == pytest.approx(expected, abs=1e-12)
-        farthest, blur = farthest_ways(H, q0, still, still, factor * q0, still, still, common)
+        farthest, blur = farthest_ways(states, common)
         assert (farthest == pytest.approx(blur)) == (expected > 0.0)  # beside it nobody moves
 
 
 def test_the_band_is_where_a_pair_may_come_within_reach_or_be_within_it():
     """From 11 a pair comes nearer by a fifth and two ways of 0.3, off by two allowances of 0.1: it stays at 8."""
-    slope, radii = np.zeros((6, 3)), np.array([[5.0, 7.0], [6.0, 8.0]])
+    slope, edges = np.zeros((6, 3)), (5.0, 8.0)
     slope[4, 1] = -0.2
     common = np.zeros((6, 3)), slope, np.zeros(3)
-    assert band(common, (0.3, 0.1), radii, 2.81) == pytest.approx((5.0, 11.0))  # the longest relative way is 2.8
-    assert band(common, (0.3, 0.1), radii, 2.79) == pytest.approx((0.0, 11.0))
+    assert band(common, (0.3, 0.1), edges, 2.81) == pytest.approx((5.0, 11.0))  # the longest relative way is 2.8
+    assert band(common, (0.3, 0.1), edges, 2.79) == pytest.approx((0.0, 11.0))
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.8, 0.3, 1.3])
@@ -93,44 +121,37 @@ def test_pairs_of_a_list_cut_a_step_as_they_do_with_all_control_points(m, speed,
     cut = 0
     for seed in range(20):
         states = drawn(ends(40, m, speed, seed), factor)
-        points, _, allowance = bernstein(H, *states)
-        ways, common = centred(points, allowance), common_way(H, *states)
         radii = np.sort(np.random.default_rng(seed).uniform(0.5, R, (40, 2)), axis=1)
-        i, j = pair_list(states[0], 1e6)
-        whole = share_of_pairs(points, ways, allowance, radii, FAR, i, j, 1.0)
-        listed = i.astype(np.uint32), j.astype(np.uint32)
-        between = band(common, farthest_ways(H, *states, common), radii, FAR)
-        found = share_of_listed(H, *states, common[0], between, radii, FAR, *listed, 1.0)
+        whole, common, given = share_of_pairs(states, radii), common_way(states), around(radii)
+        listed = (each.astype(np.uint32) for each in pair_list(states.q0, 1e6))
+        between = band(common, farthest_ways(states, common), given.edges, FAR)
+        found = share_of_listed(states, common[0], between, given, *listed, 1.0)
         assert found == pytest.approx(whole, rel=1e-9)
         cut += whole < 1.0
     assert cut > 0 or speed < 1.0
 
 
-@pytest.mark.parametrize("listed", ["all", "none yet", "too few"])
+@pytest.mark.parametrize("listed", ["all", "none yet", "too few", "too many for memory"])
 @pytest.mark.parametrize("m", [1, 2, 3])
-def test_a_step_of_the_integrator_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch):
-    """Pairs are searched for unless the list holds all that may meet."""
-    q0, p0, u0, q1, p1, u1 = ends(40, m, 12.0)
-    y0, f0, y1, f1 = (
-        np.append(np.concatenate([a.ravel(), b.ravel()]), 0.0) for a, b in ((q0, p0), (p0, u0), (q1, p1), (p1, u1))
-    )
-    points, _, allowance = bernstein(H, q0, p0, u0, q1, p1, u1)
-    ways, radii = centred(points, allowance), np.full((40, 2), [R / 2, R])
-    i, j = (each.astype(np.uint32) for each in pair_list(q0, 1e6))
-    whole = share_of_pairs(points, ways, allowance, radii, FAR, i.astype(int), j.astype(int), 1.0)
-    searched = []
+def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch):
+    """Pairs are searched for unless the list holds all that may meet; of too many to list, some at a time."""
+    states, radii, view = ends(40, m, 12.0), np.full((40, 2), [R / 2, R]), (0.0, np.zeros(m), np.zeros(m))
+    i, j = (each.astype(np.uint32) for each in pair_list(states.q0, 1e6))
+    searched, search = [], checks.listed_anew.py_func
 
-    def search(q, within, first, second):
+    def found(q, within, near):
         searched.append(within)
-        return i, j, i.size
+        return search(q, within, near)._replace(**({"count": -1} if listed == "too many for memory" else {}))
 
-    pairs = (i, j, i.size if listed == "all" else 0, np.empty((0, m)) if listed == "none yet" else q0)
-    reach, order, frame = (R, 1e6 if listed == "all" else 0.15 * R), np.arange(40), np.zeros((2, m))
-    system = System(None, None, None, None, None, False, reach, order, frame, None, None)
-    monkeypatch.setattr(advance, "list_pairs", search)
-    share, _ = _met.py_func(
-        0.0, H, y0, f0, y1, f1, Around(radii, FAR, False, (0.0, 0.0), np.empty(0)), system, pairs, (i, j)
-    )
-    assert share == pytest.approx(whole, rel=1e-9)
+    monkeypatch.setattr(checks, "listed_anew", found)
+    monkeypatch.setattr(checks, "_BLOCK", 50)
+    kept = no_pairs(40, m)
+    if listed in ("all", "too few"):
+        kept = Pairs(i, j, i.size if listed == "all" else 0, states.q0, 1e6 if listed == "all" else R, 1)
+    rules = Rules(False, True, False, (0.0, 0.0), False)
+    share, near = share_of_step.py_func(0.0, states, around(radii), rules, view, kept, no_pairs(40, m))
+    assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")
+    again, _ = share_of_step.py_func(0.0, states, around(radii), rules, view, kept, near)
+    assert (again, len(searched)) == (share, listed != "all")  # a list that was made is kept

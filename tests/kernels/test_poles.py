@@ -7,7 +7,8 @@ import pytest
 
 import flockana as fl
 from flockana.dynamics.encounters import Encounters, State
-from flockana.kernels.poles import crossing, crossing_listed
+from flockana.kernels.encounters import Ends
+from flockana.kernels.poles import crossing_listed
 from flockana.laws.link_keeping import LinkKeeping
 
 METHODS = [
@@ -32,16 +33,29 @@ def test_no_link_leaps_over_its_pole(how, gap):
     assert run.status == "complete" or any(reason in run.message for reason in reasons)
 
 
-@pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853", "LSODA"])
-def test_agents_that_no_potential_keeps_apart_meet_at_a_pole_and_the_run_fails(method):
+@pytest.mark.parametrize(
+    "how",
+    [{}, {"method": "scipy-DOP853"}, {"method": "LSODA"}, *({"method": "RK4", "dt": dt} for dt in (0.1, 0.01))],
+    ids=lambda how: f"{how.get('method', 'DOP853')}-{how.get('dt', 0)}",
+)
+@pytest.mark.parametrize("compiled", [True, False])
+def test_agents_that_no_potential_keeps_apart_meet_at_a_pole_and_the_run_fails(how, compiled):
     """An attraction −1/s²: two at rest fall into each other in a finite time, π/√2 for s = 2."""
     pair = fl.pair_law("-1/s", range=8.0, length=2.0, adjacency="1 - s/r")
-    law = fl.Algorithm1(pair, gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.0))
-    run = fl.simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 10.0), method=method)
+    law = (fl.Algorithm1 if compiled else Plain)(pair, gains=fl.Gains(c1_alpha=1.0, c2_alpha=0.0))
+    run = fl.simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 10.0), **how)
     assert run.status == "failed"
     # relative motion s'' = −2/s² from s = 2: T = π/2 · √(2³/(2 · 2)) = π/√2
     assert run.t[-1] == pytest.approx(np.pi / np.sqrt(2.0), rel=1e-2)
     assert (run.q[:, 1] > run.q[:, 0]).all()
+
+
+class Plain(fl.Algorithm1):
+    """Algorithm 1, which the library must take for another law."""
+
+    def flow(self, t, q, p):
+        """As it was."""
+        return super().flow(t, q, p)
 
 
 def moved(q0, q1, h=1.0):
@@ -68,8 +82,7 @@ def test_what_crosses(ends, pole, crosses):
     found = Encounters(np.empty((2, 0)), np.inf, poles=np.array([pole])).share(1.0, before, after)
     assert found == (-0.5 if crosses else 1.0)
     pairs = np.array([0], np.uint32), np.array([1], np.uint32)
-    listed = crossing_listed(1.0, (*before, *after), (0.0, 10.0), np.array([pole]), *pairs)
-    assert listed == crosses
+    assert crossing_listed(Ends(1.0, *before, *after), (0.0, 10.0), np.array([pole]), 1.0, *pairs) == crosses
 
 
 def test_pairs_that_no_pole_concerns_cross_as_they_like():
@@ -79,10 +92,19 @@ def test_pairs_that_no_pole_concerns_cross_as_they_like():
         assert (found < 0.0) == crosses
 
 
+@pytest.mark.parametrize(("last", "half"), [(0.6, False), (0.4, True), (-0.1, True)])
+def test_a_step_of_fixed_length_goes_half_of_the_way_to_a_pole_at_most(last, half):
+    """From 1 towards a pole at 0; and as much from 1 towards one at 2."""
+    pairs = np.array([0], np.uint32), np.array([1], np.uint32)
+    for pole, end in ((0.0, last), (2.0, 2.0 - last)):
+        before, after = moved(np.array([[0.0], [1.0]]), np.array([[0.0], [end]]))
+        assert crossing_listed(Ends(1.0, *before, *after), (0.0, 1.0), np.array([pole]), 0.5, *pairs) == half
+
+
 def test_no_pair_near_a_pole_crosses_none():
-    points, reach = np.zeros((2, 6, 3)), np.full(2, 0.1)
-    points[1, :, 0] = 3.0
-    assert not crossing(points, reach, np.array([0.0, 1.0]), np.array([0]), np.array([1]))
+    before, after = moved(np.array([[0.0], [3.0]]), np.array([[0.1], [3.1]]))
+    pairs = np.array([0], np.uint32), np.array([1], np.uint32)
+    assert not crossing_listed(Ends(1.0, *before, *after), (0.0, 0.1), np.array([0.0, 1.0]), 1.0, *pairs)
 
 
 def test_laws_say_where_their_poles_are():

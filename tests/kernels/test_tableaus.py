@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853, RK23, RK45
 
+from flockana.jit import thawed
 from flockana.kernels import dop853
-from flockana.kernels.runge_kutta import combine, error_of, interpolated
+from flockana.kernels.runge_kutta import Method, Step, combine, error_of, interpolated
 from flockana.kernels.tableaus import tableau
+
+
+def as_numba_takes_it(value):
+    """A number, or an array that may be written to."""
+    return thawed(value) if isinstance(value, np.ndarray) else value
+
 
 ORDERS = {"DOP853": 8, "RK45": 5, "RK23": 3, "RK4": 4}
 
@@ -28,22 +35,24 @@ def test_steps_errors_and_interpolants_are_those_of_scipy(solver):
     matrix, y0 = rng.normal(size=(4, 4)), rng.normal(size=4)
     theirs = solver(lambda t, y: matrix @ y + np.sin(t), 0.3, y0, 9.0, first_step=0.2, rtol=1e-1, atol=1e-1)
     theirs.step()
-    a, c, estimates, interpolant, rows, stages, _ = tableau(solver.__name__)
+    method = Method(*map(as_numba_takes_it, tableau(solver.__name__)), 1e-1, (1e-1, 1e-1, 1e-1), np.inf)
+    a, c, rows, stages = method.a, method.c, method.rows, method.stages
     h, rates, out = theirs.t - 0.3, np.full((rows.max() + 1, 4), np.nan), np.empty(4)
+    step = Step(0.3, h, y0, np.empty(4), rates, out)
     for s in range(len(a)):
         combine(y0, h, a[s], rates, rows, s, out)
         rates[rows[s]] = matrix @ out + np.sin(0.3 + c[s] * h)
         if s == stages:
             np.testing.assert_allclose(out, theirs.y, rtol=1e-14)
-            floor = (1e-1, 1e-1, 1e-1)
-            error = error_of(y0, out, h, estimates, rates, rows, 2, 1e-1, floor, np.empty_like(y0))
+            step.reached[:] = out
+            error = error_of(step, method)
             scale = 0.1 + np.maximum(abs(y0), abs(theirs.y)) * 0.1
             own = theirs.K_extended if solver is DOP853 else theirs.K
             expected = theirs._estimate_error_norm(own[: stages + 1], h, scale)
             assert error == pytest.approx(expected, rel=1e-9)
     dense = theirs.dense_output()
     for theta in (0.1, 0.5, 0.93, 1.0):
-        interpolated(theta, h, y0, rates, rows, interpolant, out)
+        interpolated(theta, step, method)
         np.testing.assert_allclose(out, dense(0.3 + theta * h), rtol=1e-13, atol=1e-14)
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.kernels.neighbours import pair_list
-from flockana.kernels.verlet import empty_list, holds, list_pairs, listed_anew, outdated, spatial_order
+from flockana.kernels.verlet import covers, holds, list_pairs, listed_anew, no_pairs, spatial_order
 
 
 def listed(q, reach, room=1):
@@ -31,7 +31,12 @@ def test_agents_in_one_place_and_one_agent_alone():
 
 
 def kept(q, made):
-    return listed_anew(q, made, empty_list(len(q)))
+    return listed_anew(q, made, no_pairs(*q.shape))
+
+
+def outdated(q, reach, pairs):
+    """Whether a list may lack a pair that is within reach now."""
+    return not covers(pairs, q, reach)
 
 
 @given(
@@ -59,19 +64,19 @@ def test_a_list_that_holds_lacks_no_pair(seed, n, m, factor, noise, turned):
 
 def test_a_list_is_kept_until_ways_differ_by_the_skin_beside_the_moving_flock():
     q = np.array([[0.0, 0.0], [9.0, 0.0], [30.0, 0.0], [39.5, 0.0]])
-    assert outdated(q, 9.0, 1.0, empty_list(4))
+    assert outdated(q, 9.0, no_pairs(4, 2))
     pairs = kept(q, 10.0)
-    assert pairs[2] == 2  # both within range and skin
+    assert pairs.count == 2  # both within range and skin
 
     moved = q + np.array([100.0, -50.0])
-    assert not outdated(moved, 9.0, 1.0, pairs)  # a common motion is none
+    assert not outdated(moved, 9.0, pairs)  # a common motion is none
     moved[2] -= [0.98, 0.0]
-    assert not outdated(moved, 9.0, 1.0, pairs)
+    assert not outdated(moved, 9.0, pairs)
     moved[2] -= [0.04, 0.0]
-    assert outdated(moved, 9.0, 1.0, pairs)
+    assert outdated(moved, 9.0, pairs)
     pairs = listed_anew(moved, 10.0, pairs)
-    assert pairs[2] == 1
-    assert not outdated(moved, 9.0, 1.0, pairs)
+    assert pairs.count == 1
+    assert not outdated(moved, 9.0, pairs)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
@@ -81,25 +86,25 @@ def test_a_list_of_a_flock_drawn_together_is_kept_until_that_has_used_up_the_ski
     pairs = kept(q, 11.0)
     for factors in np.ones(m) - np.eye(m):  # along one coordinate only, the others as they were
         drawn = q * np.where(factors == 0.0, 10.0 / 11.0 + 1e-9, 1.0) + 1000.0
-        assert not outdated(drawn, 10.0, 1.0, pairs)
-        assert outdated(q * np.where(factors == 0.0, 10.0 / 11.0 - 1e-9, 1.0) + 1000.0, 10.0, 1.0, pairs)
+        assert not outdated(drawn, 10.0, pairs)
+        assert outdated(q * np.where(factors == 0.0, 10.0 / 11.0 - 1e-9, 1.0) + 1000.0, 10.0, pairs)
     nudged = q * 0.95 + 1000.0  # leaves 11 · 0.95 − 10 for all other ways
     nudged[7] += 0.44 / np.sqrt(m)
-    assert not outdated(nudged, 10.0, 1.0, pairs)
+    assert not outdated(nudged, 10.0, pairs)
     nudged[7] += 0.1 / np.sqrt(m)
-    assert outdated(nudged, 10.0, 1.0, pairs)
+    assert outdated(nudged, 10.0, pairs)
     apart = 1.2 * q  # leaves 13.2 − 10
     apart[7] += 2.0 / np.sqrt(m)
-    assert not outdated(apart, 10.0, 1.0, pairs)
-    assert outdated(-q, 10.0, 1.0, pairs)
+    assert not outdated(apart, 10.0, pairs)
+    assert outdated(-q, 10.0, pairs)
 
 
 def test_a_flock_on_a_line_is_drawn_together_along_it():
     q = np.zeros((300, 2))
     q[:, 1] = 8.0 * np.arange(300)
     pairs = kept(q, 11.0)
-    assert not outdated(q * 0.95, 10.0, 1.0, pairs)
-    assert outdated(q * 0.9, 10.0, 1.0, pairs)
+    assert not outdated(q * 0.95, 10.0, pairs)
+    assert outdated(q * 0.9, 10.0, pairs)
 
 
 def test_too_many_pairs_are_told_before_memory_is_full():
@@ -118,9 +123,9 @@ def test_the_order_is_one_of_all_agents_and_neighbours_follow_each_other():
 
 def test_what_is_not_finite_ends_no_list():
     q = np.array([[0.0], [0.5], [np.nan]])
-    pairs = listed_anew(q, 1.1, empty_list(3))
-    assert pairs[2] == 1
-    assert not outdated(q, 1.0, 0.1, pairs)
+    pairs = listed_anew(q, 1.1, no_pairs(3, 1))
+    assert pairs.count == 1
+    assert not outdated(q, 1.0, pairs)
 
 
 def test_a_law_without_pairs_needs_no_list():

@@ -121,12 +121,14 @@ def test_integrators_get_every_term_or_none(name):
 
 
 def test_of_obstacles_each_kind_is_compiled_once_whatever_is_beside_it():
-    both = Algorithm3(target=TARGET, obstacles=(*SOLIDS[::-1], *SOLIDS)).compiled(2)
-    alone = Algorithm3(target=TARGET, obstacles=SOLIDS[:1]).compiled(2)
-    (only,) = (term for term in alone.terms if term.guard)
-    wall, sphere = (term for term in both.terms if term.guard)
-    for name in ("act", "energy", "guard"):
+    both, alone = (Algorithm3(target=TARGET, obstacles=each) for each in ((*SOLIDS[::-1], *SOLIDS), SOLIDS[:1]))
+    wall, sphere, only = (
+        term for law in (both, alone) for term in law.compiled(2).terms if "obstacle_sums" in term.act.__module__
+    )
+    for name in ("act", "energy"):
         assert getattr(sphere, name) is getattr(only, name) is not getattr(wall, name)
+    wall_kind, sphere_kind, only_kind = (kind.kernels for law in (both, alone) for kind in law.obstacle_field.kinds)
+    assert sphere_kind.guard is only_kind.guard is not wall_kind.guard
     assert (sphere.numbers[0], wall.numbers[0], only.numbers[0]) == (2, 2, 1)
 
 

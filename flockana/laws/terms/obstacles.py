@@ -69,8 +69,7 @@ class ObstacleTerm(Term):
         beta, kernels = self.field.beta, []
         for kind in self.field.kinds:
             numbers = body_numbers(beta.r, self.stiffness, self.damping, beta.par, *kind[2:])
-            own = kind.kernels
-            kernels.append(TermKernel(own.act, own.energy, numbers, beta.panels, 0.0, own.guard))
+            kernels.append(TermKernel(kind.kernels.act, kind.kernels.energy, numbers, beta.panels, 0.0))
         return tuple(kernels)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

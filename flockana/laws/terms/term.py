@@ -25,8 +25,6 @@ class TermKernel(NamedTuple):
         Chebyshev panels, if they read any.
     reach : float
         Within which they need all pairs; 0 if they need none.
-    guard : Kernel, optional
-        What share of a step may be taken, of the same numbers.
     """
 
     act: Kernel
@@ -34,7 +32,6 @@ class TermKernel(NamedTuple):
     numbers: FloatArray
     panels: FloatArray
     reach: float
-    guard: Kernel | None = None
 
 
 class Compiled(NamedTuple):
@@ -51,7 +48,7 @@ class Compiled(NamedTuple):
     @property
     def functions(self) -> LawFunctions:
         """Its functions, compiled."""
-        return law_functions(tuple((term.act, term.energy, term.guard) for term in self.terms))
+        return law_functions(tuple((term.act, term.energy) for term in self.terms))
 
     @property
     def numbers(self) -> LawNumbers:

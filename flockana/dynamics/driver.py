@@ -1,0 +1,137 @@
+"""The driver of all runs of continuous laws: steps that stand up to all checks, and samples between them.
+
+Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any law by one of scipy's solvers or RK4
+(`flockana.dynamics.solvers`). Beside the state, ∫ dH/dt is integrated as one more variable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.compiled import engine_of
+from flockana.dynamics.encounters import StepChecks
+from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.sample import Sample, Samples, Tally, has_energy
+from flockana.dynamics.solvers import Solver
+from flockana.dynamics.switches import Switches, switched
+from flockana.kernels.march import Block
+from flockana.laws.law import Law
+from flockana.laws.switched import SwitchedLaw
+
+
+class Stepper(Protocol):
+    """An integrator that makes steps into a block, from its first row."""
+
+    frame: Frame
+    plan: Plan
+    block: Block
+    stops: FloatArray  # times to come at which a step must end
+    evaluations: int
+    redone: int  # steps made again
+    failure: str  # why it gave up, if it did
+
+    def advance(self, checks: StepChecks) -> int:
+        """Make steps that stand; `failure` says why the run ends with them, if it does."""
+
+    def go_on(self, good: int) -> None:
+        """Go on from the end of the last step."""
+
+    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
+        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
+
+    def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(times, states, work) of the samples due within the steps."""
+
+
+def integrated(
+    law: Law,
+    q0: FloatArray,
+    p0: FloatArray,
+    t0: float,
+    plan: Plan,
+    keep: FloatArray | None,
+    tally: Tally,
+) -> Iterator[Sample | Samples]:
+    """Samples and steps of a run, each kept as soon as it is made; `keep` are the times of samples, None: every step.
+
+    A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
+    with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets the
+    numbers of steps made again and of switches.
+    """
+    jumps = isinstance(law, SwitchedLaw) and law.located and not plan.dt
+    engine = None if jumps else engine_of(law, q0, p0, t0, plan)
+    if engine is not None:
+        yield from _driven(engine, law, q0, p0, keep, tally)
+        return
+    frame = Frame.of(t0, q0, p0, energetic=has_energy(law, t0, q0, p0))
+    switches = Switches(law, q0) if jumps else None  # type: ignore[arg-type]
+    solver = Solver(law, frame, plan, frame.start(q0, p0), None if switches is None else switches.flow)
+    if switches is None:
+        yield from _driven(solver, law, q0, p0, keep, tally)
+    else:
+        yield from switched(solver, switches, q0, p0, keep, tally)
+
+
+def _driven(
+    stepper: Stepper, law: Law, q0: FloatArray, p0: FloatArray, keep: FloatArray | None, tally: Tally
+) -> Iterator[Sample | Samples]:
+    """Steps to the last of the stops, and samples at the times that are due."""
+    frame, checks = stepper.frame, StepChecks(law, stepper.frame, stepper.plan)
+    tally.notes["redone"], t0 = 0, frame.t0
+    if keep is None or keep[0] == t0:  # not a rounding beside it, as in the frame
+        yield Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], {"work": np.array(0.0)} if frame.energetic else {})
+    while stepper.stops.size:
+        good = stepper.advance(checks)
+        tally.evaluations, tally.notes["redone"] = stepper.evaluations, stepper.redone
+        if good:
+            tally.steps += good
+            yield from _parted(stepper, good, keep)
+        if stepper.failure:
+            tally.fail(stepper.failure)
+            return
+        stepper.go_on(good)
+
+
+def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:
+    """The steps that are no samples, then the samples; one by one they would cost as much as the steps of small flocks.
+
+    Steps come first: a run that is interrupted after them has no samples whose steps are not known.
+    """
+    made, (states, work) = stepper.block.t[1 : good + 1].copy(), stepper.states(good)
+
+    def samples(t: FloatArray, states: FloatArray, work: FloatArray, wanted: bool = True) -> Samples:
+        extra = {"work": work} if wanted and stepper.frame.energetic else {}
+        return Samples(t, states[:, 0], states[:, 1], states[:, 2], extra, wanted)
+
+    if wanted is None:
+        yield samples(made, states, work)
+        return
+    due, seen, done = stepper.between()
+    chosen, apart = _among(made, wanted), ~_among(due, made)  # where a step ended there is nothing in what is between
+    if not chosen.all():
+        t, other = (made[~chosen], states[~chosen]) if chosen.any() else (made, states)
+        yield samples(t, other, work, wanted=False)
+    if chosen.any() or apart.any():
+        t = np.concatenate([made[chosen], due[apart]])
+        order = np.argsort(t)
+        some, its_work = (
+            np.concatenate([own[chosen], others[apart]])[order] for own, others in ((states, seen), (work, done))
+        )
+        yield samples(t[order], some, its_work)
+
+
+def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
+    """Which times are among some others, which rise: `np.isin` would sort them again for each block of steps.
+
+    Examples
+    --------
+    >>> _among(np.array([0.0, 1.0, 3.0]), np.array([1.0, 2.0])).tolist()
+    [False, True, False]
+    """
+    nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
+    return np.asarray(nearest == times)

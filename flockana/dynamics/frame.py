@@ -1,0 +1,85 @@
+"""The vector that integrators step: the state relative to the mean motion of the start, and what a run asks of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.tolerance import Control, Floors
+
+Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
+EXACT = Control(0.0, Floors(0.0, 0.0, 0.0))
+
+
+class Plan(NamedTuple):
+    """What a run asks of an integrator."""
+
+    method: str
+    stops: FloatArray  # rising times at which a step must end, the last of them the end of the run
+    due: FloatArray  # times of samples between steps
+    control: Control = EXACT  # tolerances, and the longest step
+    dt: float = 0.0  # step of a method of fixed steps, 0 for others
+
+    def gave_up(self, t: float, why: str) -> str:
+        """Return in words why a run ended early."""
+        if self.dt:
+            return f"RK4 left the finite numbers at t = {t:g}: reduce dt = {self.dt:g}"
+        return f"{self.method} gave up at t = {t:g}: {why}"
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """States as vectors: positions and velocities relative to the mean motion of the start, and ∫ dH/dt.
+
+    So a relative tolerance is relative to nothing that a choice of the origin, or of an inertial frame, would change.
+    """
+
+    t0: float
+    origin: FloatArray  # (N,): the vector of the mean motion at t0
+    drift: FloatArray  # its rate
+    shape: tuple[int, int]  # (n, m)
+    energetic: bool  # whether ∫ dH/dt is the vector's last component
+
+    @classmethod
+    def of(cls, t0: float, q0: FloatArray, p0: FloatArray, *, energetic: bool) -> Frame:
+        """Return the frame of a start."""
+        place, velocity = (np.tile(x.mean(axis=0), len(x)) for x in (q0, p0))
+        rest = np.zeros(int(energetic))
+        origin, drift = np.concatenate([place, velocity, rest]), np.concatenate([velocity, 0.0 * place, rest])
+        return cls(t0, origin, drift, (q0.shape[0], q0.shape[1]), energetic)
+
+    @property
+    def size(self) -> int:
+        """Number of positions."""
+        return self.shape[0] * self.shape[1]
+
+    @property
+    def view(self) -> tuple[float, FloatArray, FloatArray]:
+        """(t0, place at t0, velocity) of the frame, as compiled code reads it."""
+        m = self.shape[1]
+        return float(self.t0), self.origin[:m].copy(), self.drift[:m].copy()
+
+    def start(self, q0: FloatArray, p0: FloatArray) -> FloatArray:
+        """The vector of the start."""
+        y0: FloatArray = np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
+        return y0
+
+    def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(q, p) of a vector."""
+        whole = y + (self.origin + self.drift * (t - self.t0))
+        both = whole[: 2 * self.size].reshape(2, *self.shape)
+        return both[0], both[1]
+
+    def rate(self, flow: Flow) -> Callable[[float, FloatArray], FloatArray]:
+        """The right-hand side of the vector."""
+        size, energetic = self.size, self.energetic
+
+        def rhs(t: float, y: FloatArray) -> FloatArray:
+            u, rate = flow(t, *self.state(t, y))
+            return np.concatenate([y[size : 2 * size], u.ravel(), [rate] if energetic else []])
+
+        return rhs

@@ -1,0 +1,173 @@
+"""Integrators of laws that are not compiled: scipy's solvers and the classical Runge-Kutta method, step by step.
+
+scipy's solvers with a past (BDF, LSODA) begin anew where a step is made again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.base.errors import ArgumentError
+from flockana.dynamics.encounters import ONE_STEP, StepChecks, at_a_pole
+from flockana.dynamics.frame import Flow, Frame, Plan
+from flockana.dynamics.sample import finite
+from flockana.kernels.advance import recorded
+from flockana.kernels.march import GROWTH, Block
+from flockana.kernels.verlet import no_pairs
+from flockana.laws.law import Law
+
+SCIPY = "scipy-"  # what the name of a method begins with if it is to be scipy's in any case
+
+
+class Classical:
+    """The classical Runge-Kutta method of order 4, stepped towards a time as scipy's solvers are."""
+
+    def __init__(
+        self, fun: Callable[..., FloatArray], t: float, y: FloatArray, t_bound: float, f: FloatArray, first_step: float
+    ) -> None:
+        self.fun, self.t, self.y, self.t_bound, self.f, self.h_abs = fun, t, y, t_bound, f, first_step
+        self.status = "running"
+
+    def step(self) -> None:
+        """Make one step."""
+        t, y, k1, left = self.t, self.y, self.f, self.t_bound - self.t
+        h = left if left <= self.h_abs else self.h_abs
+        k2 = self.fun(t + 0.5 * h, y + 0.5 * h * k1)
+        k3 = self.fun(t + 0.5 * h, y + 0.5 * h * k2)
+        k4 = self.fun(t + h, y + h * k3)
+        self.y = y + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+        self.t, self.h_abs = (self.t_bound, np.inf) if h == left else (t + h, GROWTH * h)
+        self.status, self.f = "finished" if h == left else "running", self.fun(self.t, self.y)
+
+
+class Solver:
+    """A law, or another flow, stepped by one of scipy's solvers or by the classical Runge-Kutta method."""
+
+    def __init__(self, law: Law, frame: Frame, plan: Plan, y: FloatArray, flow: Flow | None = None) -> None:
+        self.law, self.frame, self.plan, self.method = law, frame, plan, plan.method.removeprefix(SCIPY)
+        self.failure, self.evaluations, self.redone = "", 0, 0
+        self.stops, self._due = plan.stops, plan.due[plan.due > frame.t0]
+        self.order, self.pairs = np.arange(frame.shape[0], dtype=np.uint64), no_pairs(0, frame.shape[1])
+        self.block = Block(np.zeros(2), np.empty((2, y.size)), np.empty((2, y.size)), np.full(2, np.nan))
+        self.begin(law.flow if flow is None else flow, frame.t0, y)
+
+    def begin(self, flow: Flow, t: float, y: FloatArray) -> None:
+        """Go on from here, with another flow."""
+        self._rhs = self.frame.rate(partial(self._counted, flow))
+        self.block.t[0], self.block.y[0], self.block.energy[0] = t, y, np.nan
+        self.stops = self.stops[self.stops > t]
+        if self.stops.size:
+            if self.plan.dt:
+                self.block.f[0] = self._rhs(t, y)
+            self._open(self.stops[0], None)
+            self._write(0)
+
+    def _counted(self, flow: Flow, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
+        """A flow that counts its evaluations, and stops a solver that would not notice that it is no longer finite."""
+        self.evaluations += 1
+        u, rate = flow(t, q, p)
+        if self.method == "LSODA" and not finite(u):  # LSODA would try to step over it for ever
+            raise FloatingPointError(f"the law's acceleration is not finite at t = {t:g}")
+        return u, rate
+
+    def _open(self, until: float, first: float | None) -> None:
+        """A new solver from the first row to some time, whose first step is as long as given if it can be."""
+        t, y = float(self.block.t[0]), self.block.y[0].copy()
+        self._course: Callable[[float], FloatArray] | None = None
+        if self.plan.dt:
+            first = np.inf if first is None else first
+            self._solver: Any = Classical(self._rhs, t, y, until, self.block.f[0].copy(), first)
+            return
+        import scipy.integrate
+
+        sizes = (self.frame.size, self.frame.size, int(self.frame.energetic))
+        atol = np.repeat(self.plan.control.floor, sizes)
+        options: dict[str, Any] = {"rtol": self.plan.control.rtol, "atol": atol, "max_step": self.plan.control.longest}
+        if first is not None and self.method in ONE_STEP:
+            options["first_step"] = min(first, until - t, self.plan.control.longest)
+        self._solver = getattr(scipy.integrate, self.method)(self._rhs, t, y, until, **options)
+
+    def _write(self, row: int) -> bool:
+        """Write where the solver is; most know the rate there. Return whether that is finite."""
+        t, y, f = float(self._solver.t), self._solver.y, getattr(self._solver, "f", None)
+        self.block.t[row], self.block.y[row] = t, y
+        self.block.f[row] = self._rhs(t, y) if f is None else f
+        return finite(self.block.y[row], self.block.f[row])
+
+    def advance(self, checks: StepChecks) -> int:
+        """Make one step that stands, to the second row; 0 if the run ends, for the reason in `failure`."""
+        while self.step():
+            if checks.energetic:
+                for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
+                    t = float(self.block.t[row])
+                    self.block.energy[row] = self.law.hamiltonian(t, *self.frame.state(t, self.block.y[row]))
+            shorter, singular = checks.look(self.block, self.order, self.pairs)
+            if singular:
+                self.failure = at_a_pole(float(self.block.t[0]))
+                return 0
+            if not shorter:
+                return 1
+            self.redone += 1
+            self._open(self.stops[0] if self.plan.dt else float(self.block.t[0]) + shorter, shorter)
+        return 0
+
+    def step(self) -> bool:
+        """Whether one step succeeds, to the second row; if not, `failure` says why."""
+        if self._solver.status == "finished":  # a stop, or a step that was made again ended here
+            self._open(self.stops[0], getattr(self._solver, "h_abs", None))
+        self._course = None
+        if not self._attempt():
+            return False
+        start = float(self.block.t[0])
+        if self.block.t[1] <= start:
+            self.failure = self.plan.gave_up(start, "its step is lost in the rounding of the time")
+        return not self.failure
+
+    def _attempt(self) -> bool:
+        """Whether one step of the solver as it comes succeeds."""
+        try:
+            why = self._solver.step()
+            if self._solver.status != "failed" and self._write(1):
+                return True
+            why = why or "the state is no longer finite"
+        except (ValueError, FloatingPointError, np.linalg.LinAlgError) as error:  # implicit solvers raise on NaN
+            if isinstance(error, ArgumentError):
+                raise
+            why = str(error)
+        self.failure = self.plan.gave_up(float(self._solver.t), why)
+        return False
+
+    def go_on(self, good: int) -> None:
+        """Go on from the end of the last step."""
+        for rows in self.block:
+            rows[0] = rows[good]
+        t = float(self.block.t[0])
+        self.stops, self._due = self.stops[self.stops > t], self._due[self._due > t]
+
+    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
+        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
+        found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
+        return found
+
+    def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(times, states, work) of the samples due within the step."""
+        due = self._due[self._due < self.block.t[1]]
+        states, work = np.empty((due.size, 3, *self.frame.shape)), np.full(due.size, np.nan)
+        for k, t in enumerate(due.tolist()):
+            y = self.course(t)
+            q, p = self.frame.state(t, y)
+            states[k] = q, p, self.law.flow(t, q, p)[0]
+            work[k] = y[-1] if self.frame.energetic else np.nan
+        return due, states, work
+
+    def course(self, t: float) -> FloatArray:
+        """The vector at a time within the last step."""
+        if self._course is None:
+            self._course = self._solver.dense_output()
+        found: FloatArray = self._course(t)
+        return found
