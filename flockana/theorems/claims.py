@@ -101,7 +101,7 @@ def concluded(
         The margin that decided, a scalar.
     """
     needs = tuple(needs)
-    status, how, contradicts = _with_needs(by_numbers, needs, about), rigour, ""
+    status, how, contradicts = with_needs(by_numbers, needs, about), rigour, ""
     cites: tuple[str, ...] = ()
     proved: Status = "verified" if proof else "refuted"
     if (key := proof or disproof) and all(need.status == "met" for need in needs):
@@ -136,7 +136,7 @@ def _status_of(margin: Enclosure, about: About) -> Status:
     return "verified" if about == "run" and (margin.lo >= 0.0).all() else "inconclusive"
 
 
-def _with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
+def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
     """Status under hypotheses: vacuous if one is unmet; nothing but a fact about the run rests on an assumed one."""
     known = {need.status for need in needs}
     if "unmet" in known:
@@ -340,7 +340,7 @@ def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields
     >>> undecided("rate", "the velocities match from the start").status
     'inconclusive'
     """
-    status = _with_needs("inconclusive", needs := tuple(needs), "run")
+    status = with_needs("inconclusive", needs := tuple(needs), "run")
     return Claim(name, status, detail=detail, needs=needs, **fields)
 
 
