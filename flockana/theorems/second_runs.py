@@ -110,8 +110,9 @@ def integrated(
         options["atol"] = _scaled(stats.get("atol"), factor)
     elif own_step and "dt" in stats:
         options = {"method": "RK4", "dt": stats["dt"]}
-    if max_step is not None:
-        options["max_step"] = max_step
+    longest = stats.get("max_step") if max_step is None else max_step
+    if longest is not None:
+        options["max_step"] = longest
     return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
 
 
