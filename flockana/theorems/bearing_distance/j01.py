@@ -96,7 +96,5 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, (36)",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "corrected": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected"},
 )

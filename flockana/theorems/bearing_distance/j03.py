@@ -109,7 +109,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "hurwitz": "refuted", "trees": "verified"},
+    expected={"refuted": "printed hurwitz", "verified": "trees"},
     corrected=("trees",),
 )

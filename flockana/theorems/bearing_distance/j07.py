@@ -95,8 +95,7 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, (10)",
     check=_check,
-    references=("jond-2025",),
-    expected={"step": "verified", "reachable": "refuted", "speed": "refuted", "clip": "verified"},
+    expected={"verified": "step clip", "refuted": "reachable speed"},
     corrected=("clip",),
     ours=("step",),
 )

@@ -87,6 +87,6 @@ THEOREM = erratum(
     source="ours, on Jadbabaie, Lin and Morse's averages of headings in [0, 2π)",
     check=_check,
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
-    expected={"frame-bound": "verified", "clear-of-cut": "verified", "vectors": "verified"},
+    expected={"verified": "frame-bound clear-of-cut vectors"},
     author="flockana",
 )

@@ -190,5 +190,5 @@ THEOREM = erratum(
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"double-agent": "refuted", "smallest": "refuted", "strained": "refuted", "algorithm-2": "refuted"},
+    expected={"refuted": "double-agent smallest strained algorithm-2"},
 )

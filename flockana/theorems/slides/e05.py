@@ -164,13 +164,7 @@ THEOREM = erratum(
     source="Lecture slides, Theorem 5",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={
-        "printed-13": "refuted",
-        "uncrossed-13": "verified",
-        "printed-8": "refuted",
-        "uncrossed-8": "verified",
-        "six": "verified",
-    },
+    expected={"refuted": "printed-13 printed-8", "verified": "uncrossed-13 uncrossed-8 six"},
     corrected=("uncrossed-13", "uncrossed-8"),
     ours=("six",),
 )

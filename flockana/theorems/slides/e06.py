@@ -72,7 +72,6 @@ THEOREM = erratum(
     source="Lecture slides, Theorem 5",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
-    expected={"printed": "refuted", "corrected": "verified", "sharp": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected sharp"},
     ours=("sharp",),
 )

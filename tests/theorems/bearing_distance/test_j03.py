@@ -1,14 +1,11 @@
 """Erratum J3: the matrices of the path of four, by hand."""
 
 import numpy as np
-import pytest
 
 from flockana.theorems.bearing_distance.j03 import path_matrices
 
 
-def test_the_path_of_four(verdict_of):
-    assert verdict_of("J3").claim("printed").computed == pytest.approx(0.2494, abs=1e-4)
-    assert verdict_of("J3").claim("hurwitz").computed == pytest.approx(0.0108, abs=1e-4)
+def test_the_path_of_four():
     stiffness, damping = path_matrices(1.0)
     # by hand: ends want 1 and have 2.05, the middle ones want 2; an edge's row is minus the difference of two agents
     end, own, middle = 1 - 1 / 2.05, 1 - 2 / 2.05, 1 - 2 / 2.7
