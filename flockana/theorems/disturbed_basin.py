@@ -44,13 +44,7 @@ def _law(seen: Observed) -> Hypothesis:
 
 
 def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
-    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise.
-
-    Examples
-    --------
-    >>> round(largest_push(Disturbed(Algorithm1(), force=[[0.3], [-0.3]]), (2, 1)), 12)
-    0.424264068712
-    """
+    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise."""
     parts = (np.broadcast_to(np.asarray(part), shape) for part in (law.force, law.swing) if part is not None)
     return float(sum(np.linalg.norm(moving_frame(part)) for part in parts)) * (1.0 + _SLACK)
 

@@ -12,13 +12,7 @@ _PROOF = "theorem5-counts"
 
 
 def link_counts() -> dict[int, tuple[int, int, int]]:
-    """Links of the hexagonal spiral of n agents, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60.
-
-    Examples
-    --------
-    >>> link_counts()[2], link_counts()[19]
-    ((1, 0, 1), (42, 51, 42))
-    """
+    """Links of the hexagonal spiral of n agents, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60."""
     counts = {n: len(links(hexagonal_spiral(n, _D), _R)) for n in range(1, _MOST + 1)}
     return {n: (count, 3 * n - 6, harborth(n)) for n, count in counts.items()}
 
