@@ -137,7 +137,15 @@ def _status_of(margin: Enclosure, about: About) -> Status:
 
 
 def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
-    """Status under hypotheses: vacuous if one is unmet; nothing but a fact about the run rests on an assumed one."""
+    """Return a status under hypotheses: vacuous if one is unmet; an assumed one bears facts about the run alone.
+
+    Parameters
+    ----------
+    status : str
+        Status by numbers or certificates alone.
+    needs, about
+        As in `judged`.
+    """
     known = {need.status for need in needs}
     if "unmet" in known:
         return "vacuous"

@@ -110,10 +110,10 @@ def _table(pair: FormulaInteraction) -> tuple[FloatArray, FloatArray, FloatArray
     """Return edges of parts of the range, and the largest slopes of force and adjacency from part to part."""
     bounds = pair.slopes(_PARTS)
     edges = np.array([*(bound.left for bound in bounds), bounds[-1].right])
-    return edges, *(_from_to(np.array([getattr(bound, name) for bound in bounds])) for name in ("force", "adjacency"))
+    return edges, _from_to([bound.force for bound in bounds]), _from_to([bound.adjacency for bound in bounds])
 
 
-def _from_to(values: FloatArray) -> FloatArray:
+def _from_to(values: list[float]) -> FloatArray:
     """Return the largest of some values from the row's index to the column's."""
     rows = [np.maximum.accumulate(np.where(np.arange(len(values)) < k, 0.0, values)) for k in range(len(values))]
     return np.array(rows)
