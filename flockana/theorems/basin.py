@@ -143,11 +143,6 @@ def barrier(
 
     A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
     with L = 0 they were no better.
-
-    Examples
-    --------
-    >>> barrier(2.0, 0.0, [1.0, 3.0], lambda window: 0.0)
-    (9.0, 0.0)
     """
     best, constant = 0.0, inf
     for window in sorted(windows, reverse=True):
@@ -178,11 +173,6 @@ def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
     A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length by
     at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T,
     which is at most the largest sum of the weights at both ends of a link.
-
-    Examples
-    --------
-    >>> round(lipschitz_constant(3, np.array([[0, 1], [1, 2]]), np.array([1.0, 2.0])) / sqrt(2.0), 12)
-    5.0
     """
     if not len(pairs):
         return 0.0

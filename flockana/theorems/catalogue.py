@@ -17,7 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.claims import vacuous
 from flockana.theorems.fits import ensure_fits
-from flockana.theorems.observed import Observed, with_doubt
+from flockana.theorems.observed import Observed, as_known
 from flockana.theorems.theorem import Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
@@ -274,5 +274,4 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
         return _of_another_law(item, run, tolerances, subject)
     ensure_fits(run)
     seen = Observed.of(run)
-    hypotheses, claims = item.examine(seen, tolerances)
-    return Verdict(item.id, hypotheses, with_doubt(claims, seen), tolerances, subject, item.author)
+    return Verdict(item.id, *as_known(*item.examine(seen, tolerances), seen), tolerances, subject, item.author)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.errata import printed
+from flockana.theorems.errata import SOURCES, printed
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
@@ -101,7 +101,7 @@ def concluded(
         The margin that decided, a scalar.
     """
     needs = tuple(needs)
-    status, how, contradicts = _with_needs(by_numbers, needs, about), rigour, ""
+    status, how, contradicts = with_needs(by_numbers, needs, about), rigour, ""
     cites: tuple[str, ...] = ()
     proved: Status = "verified" if proof else "refuted"
     if (key := proof or disproof) and all(need.status == "met" for need in needs):
@@ -136,8 +136,16 @@ def _status_of(margin: Enclosure, about: About) -> Status:
     return "verified" if about == "run" and (margin.lo >= 0.0).all() else "inconclusive"
 
 
-def _with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
-    """Status under hypotheses: vacuous if one is unmet; nothing but a fact about the run rests on an assumed one."""
+def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> Status:
+    """Return a status under hypotheses: vacuous if one is unmet; an assumed one bears facts about the run alone.
+
+    Parameters
+    ----------
+    status : str
+        Status by numbers or certificates alone.
+    needs, about
+        As in `judged`.
+    """
     known = {need.status for need in needs}
     if "unmet" in known:
         return "vacuous"
@@ -157,15 +165,11 @@ def counted(
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     most : int
         How many there may be.
     certain, possible : int
         How many there are at least, and at most.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    **fields
+    needs, **fields
         As in `judged`.
 
     Examples
@@ -182,13 +186,9 @@ def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis]
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     margin, error : float
         The margin and how far it may be off: by a residual, Weyl's bound or the quadrature's estimate.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    **fields
+    needs, **fields
         As in `judged`.
 
     Examples
@@ -204,13 +204,9 @@ def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothes
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     margin, rounding : float
         The margin and its rounding.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    **fields
+    needs, **fields
         As in `judged`.
 
     Examples
@@ -226,13 +222,9 @@ def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     margin, rounding : float
         The margin and the rounding of what it compares.
-    needs : iterable of Hypothesis
-        Hypotheses of the claim.
-    **fields
+    needs, **fields
         As in `judged`.
 
     Examples
@@ -266,8 +258,6 @@ def exact(name: str, holds: bool, **fields: Any) -> Claim:
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     holds : bool
         Whether it is true.
     **fields
@@ -286,8 +276,6 @@ def equal(name: str, residual: Any, **fields: Any) -> Claim:
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     residual : expression or sequence of expressions
         The difference of the two sides, which becomes the witness.
     **fields
@@ -340,7 +328,7 @@ def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields
     >>> undecided("rate", "the velocities match from the start").status
     'inconclusive'
     """
-    status = _with_needs("inconclusive", needs := tuple(needs), "run")
+    status = with_needs("inconclusive", needs := tuple(needs), "run")
     return Claim(name, status, detail=detail, needs=needs, **fields)
 
 
@@ -351,8 +339,8 @@ def erratum(
     statement: str,
     source: str,
     check: Callable[[Tolerances], list[Claim]],
-    expected: Mapping[str, Status],
-    references: tuple[str, ...] = ("olfati-saber-2006",),
+    expected: Mapping[Status, str],
+    references: tuple[str, ...] = (),
     author: By = "source",
     corrected: tuple[str, ...] = (),
     ours: tuple[str, ...] = (),
@@ -368,21 +356,22 @@ def erratum(
     check : callable
         Returns the claims, from the tolerances.
     expected : mapping of str to str
-        Status that is expected of each claim; that of the whole follows from them.
+        By expected status the names of claims, with blanks between; the status of the whole follows from them.
     references : tuple of str
-        Keys of the bibliography.
+        Keys of the bibliography; by default the source of the numbered errata of that letter.
     author, corrected, ours
-        As in `Theorem`.
+        As in `Theorem`; by default a claim of the name "corrected" is one.
 
     Examples
     --------
     >>> two = erratum(
     ...     "two", title="1 + 1 is 2", statement="1 + 1 = 2", source="arithmetic",
-    ...     check=lambda tolerances: [exact("sum", 1 + 1 == 2)], expected={"sum": "verified"},
+    ...     check=lambda tolerances: [exact("sum", 1 + 1 == 2)], expected={"verified": "sum"},
     ... )
     >>> dict(two.expected), two.examine(Tolerances())[1][0].status
     ({'two': 'verified', 'two:sum': 'verified'}, 'verified')
     """
+    each = {claim: status for status, claims in expected.items() for claim in claims.split()}
     item = Theorem(
         id=name,
         title=title or printed(name),
@@ -390,10 +379,10 @@ def erratum(
         source=source,
         kind="fixed",
         check=lambda tolerances: ([], check(tolerances)),
-        references=references,
+        references=references or SOURCES.get(name[0], SOURCES["E"]),
         author=author,
-        corrected=corrected,
+        corrected=corrected or tuple({"corrected"} & each.keys()),
         ours=ours,
     )
-    by_author = overall(status for claim, status in expected.items() if item.by(claim) == author)
-    return replace(item, expected={name: by_author} | {f"{name}:{claim}": s for claim, s in expected.items()})
+    by_author = overall(status for claim, status in each.items() if item.by(claim) == author)
+    return replace(item, expected={name: by_author} | {f"{name}:{claim}": status for claim, status in each.items()})

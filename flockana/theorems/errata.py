@@ -17,6 +17,7 @@ SORTS: dict[Sort, str] = {
     "vacuous": "true of nothing, or of next to nothing",
     "confirmed": "looked into, and true as printed",
 }
+SOURCES = {"E": ("olfati-saber-2006",), "J": ("jond-2025",), "L": ("li-dead-zone",)}  # by the first letter of an id
 # whose errata they are
 FOREWORD = (
     "E1 to E16 are of lecture slides and of student projects on Olfati-Saber's paper of 2006; of none is it shown that "

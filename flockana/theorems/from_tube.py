@@ -113,14 +113,7 @@ def below(name: str, energy: arb, bound: arb) -> Hypothesis:
 
 
 def met(tube: Tube) -> dict[Pair, float]:
-    """Pairs that certainly meet, by when at the latest: on a line, agents that certainly change places.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm1, enclose
-    >>> list(met(enclose(Algorithm1(), [[0.0], [1.0]], [[60.0], [-60.0]], (0.0, 0.03125))))
-    [(0, 1)]
-    """
+    """Pairs that certainly meet, by when at the latest: on a line, agents that certainly change places."""
     times: dict[Pair, float] = {}
     if tube.m > 1:
         return times
@@ -209,15 +202,7 @@ def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
 
 
 def rest_strain(basin: BasinLike, alpha: Any) -> arb:
-    """Largest |link − d|/d of a basin's equilibrium, a ball at the present precision; 1 without links.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm1, certify
-    >>> from flint import arb
-    >>> abs(rest_strain(certify([[0.0], [7.0]], law=Algorithm1()), Algorithm1().alpha)) < arb("1e-12")
-    True
-    """
+    """Largest |link − d|/d of a basin's equilibrium, a ball at the present precision; 1 without links."""
     from flint import arb
 
     from flockana.certified.balls import exact

@@ -14,13 +14,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 
 
 def squash(x: float) -> float:
-    """Return x/(1 + |x|), increasing and finite at infinity.
-
-    Examples
-    --------
-    >>> squash(1.0), squash(-3.0), squash(float("inf"))
-    (0.5, -0.75, 1.0)
-    """
+    """Return x/(1 + |x|), increasing and finite at infinity."""
     return x / (1.0 + abs(x)) if isfinite(x) else (1.0 if x > 0.0 else -1.0)
 
 

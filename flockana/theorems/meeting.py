@@ -30,15 +30,7 @@ class Meeting(NamedTuple):
 
 
 def meeting(run: Trajectory | Observed) -> Meeting:
-    """Those of a run's law, which has an α-interaction, and its number of agents.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm1, simulate
-    >>> run = simulate(Algorithm1(), [[0.0], [7.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> meeting(run).c_star == 30.0 * run.law.alpha.c_star, meeting(run).floor
-    (True, 0.0)
-    """
+    """Those of a run's law, which has an α-interaction, and its number of agents."""
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
     if gain == 0.0:
         return Meeting(0.0, 0.0)

@@ -23,10 +23,12 @@ from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import Floors
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
+from flockana.theorems.claims import with_needs
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
-from flockana.theorems.theorem import Claim, Status
+from flockana.theorems.step_resolution import NAME
+from flockana.theorems.theorem import Claim, Hypothesis, Status
 
 
 class End(NamedTuple):
@@ -59,6 +61,8 @@ class Observed(ResultCache):
         Half widths at the steps that both have in common.
     doubt : str
         Why nothing is known, or an empty text.
+    unresolved : str
+        Where both runs may leap over a feature of a formula, or an empty text.
     """
 
     given: Trajectory
@@ -66,6 +70,7 @@ class Observed(ResultCache):
     other: Trajectory
     errors: Errors
     doubt: str = ""
+    unresolved: str = ""
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
@@ -299,6 +304,26 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
         detail = f"{claim.detail}; {seen.doubt}" if status == "inconclusive" else claim.detail
         told.append(replace(claim, status=status, detail=detail.lstrip("; ")))
     return tuple(told)
+
+
+def as_known(
+    hypotheses: Iterable[Hypothesis], claims: Iterable[Claim], seen: Observed
+) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    """Return hypotheses and claims as far as the run is known: numbers rest on steps that resolve the law."""
+    claims = with_doubt(claims, seen)
+    if not seen.unresolved:
+        return tuple(hypotheses), claims
+    need = Hypothesis(NAME, "assumed", detail=seen.unresolved)
+    return (*hypotheses, need), tuple(_resting_on(claim, need) for claim in claims)
+
+
+def _resting_on(claim: Claim, need: Hypothesis) -> Claim:
+    """Return a claim under one more hypothesis, unless a proof decides it or it says nothing of this run."""
+    if claim.rigour not in ("numeric", "statistical") or claim.status == "vacuous":
+        return claim
+    status = with_needs(claim.status, (need,), claim.about)
+    text = f"{claim.detail}; assumed: {need.name}" if claim.status in ("verified", "refuted") else claim.detail
+    return replace(claim, status=status, needs=(*claim.needs, need), detail=text.lstrip("; "))
 
 
 def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:

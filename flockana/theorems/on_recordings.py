@@ -25,7 +25,7 @@ from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
 from flockana.theorems.claims import vacuous
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed, with_doubt
+from flockana.theorems.observed import Observed, as_known
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, largest_over
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
 
@@ -139,8 +139,8 @@ def verify_recording(
         claims = tuple(vacuous(each, first, by=item.by(each)) for each in _names(item))
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
-    hypotheses, claims = item.examine(seen, tolerances)
-    decided = tuple(_weighed(claim, rec, first) for claim in with_doubt(claims, seen))
+    hypotheses, claims = as_known(*item.examine(seen, tolerances), seen)
+    decided = tuple(_weighed(claim, rec, first) for claim in claims)
     return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
 
 
@@ -171,12 +171,12 @@ def _of_samples(
         speed.mean(axis=1),
     )
     doubt = "" if len(run.t) > 1 else "one sample shows no motion"
-    seen = ObservedRecording(run, run, run, errors, doubt, float(place[-1].max()))
+    seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
     stated = Hypothesis(
         "the accuracy of the samples is stated", "met" if rec.accuracy.decides else "assumed", detail=str(rec.accuracy)
     )
-    hypotheses, claims = item.examine(seen, tolerances)
-    decided = tuple(_weighed(claim, rec, stated) for claim in with_doubt(claims, seen))
+    hypotheses, claims = as_known(*item.examine(seen, tolerances), seen)
+    decided = tuple(_weighed(claim, rec, stated) for claim in claims)
     name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
     return Verdict(
         item.id, (stated, *hypotheses), decided, tolerances, f"{name}, at its samples: {rec.accuracy}", item.author
@@ -217,7 +217,7 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     after = np.minimum(np.searchsorted(rec.t, times, side="left"), len(rec.t) - 1)
     before = np.maximum(np.searchsorted(rec.t, times, side="right") - 1, 0)
     widened = [x + np.maximum(y[before], y[after]) for x, y in zip(seen.errors[1:], off, strict=True)]
-    return ObservedRecording(given, run, seen.other, Errors(times, *widened), place=end)
+    return ObservedRecording(given, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end)
 
 
 def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:

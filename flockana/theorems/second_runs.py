@@ -1,6 +1,8 @@
 """A second run of the same start, how far the two differ, and why nothing may be known of a run.
 
-The second run is a hundred times tighter, or looser where that cannot be; of a fixed step it is an adaptive one.
+The second run is a hundred times tighter, or looser where that cannot be; of a fixed step it is an adaptive one. By the
+same method its steps are bounded by a part of the first's longest, so that the two share no stage; of a pair law given
+by a formula also by what the formula's slopes ask for where pairs come by, so that it leaps over no feature.
 """
 
 from __future__ import annotations
@@ -19,10 +21,15 @@ from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.beta import InsideObstacleError
 from flockana.laws.discrete import DiscreteLaw
+from flockana.theorems.step_resolution import demand_of, steps_of, unresolved
 
 TIGHTER = 1e-2  # the second run's tolerances over the first's
 DOUBT = 2.0  # times what two runs differ by: all of the error, if the tighter one's is at most half as large
 RK4_SECOND = 1e-10  # relative tolerance of the second run of one with a fixed step
+_SHARE = 0.618  # of the first run's longest step: the golden ratio, so that no number of steps brings stages together
+_FINER = 0.5  # of the step that a formula asks for
+_MOST_STEPS = 4096  # that a formula may ask of the second run, or _TIMES those of the first if these are more
+_TIMES = 8
 _MOST = 2**23  # numbers of the second run that are kept at the steps of the first
 _LOOKED_AT = 9  # samples at which a run is asked whether it is in its law's domain
 _LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP853 to a tight tolerance
@@ -39,12 +46,15 @@ class Errors(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two runs of one start at the same samples, their half widths, and the reason if these are unknown."""
+    """Two runs of one start at the same samples, their half widths, the reason if these are unknown, and where both may
+    leap over a feature of a formula.
+    """
 
     tighter: Trajectory
     looser: Trajectory
     errors: Errors
     doubt: str = ""
+    unresolved: str = ""
 
 
 def paired(run: Trajectory) -> Pair:
@@ -54,7 +64,7 @@ def paired(run: Trajectory) -> Pair:
         return Pair(run, run, _nothing_known(run), doubt)
     steps, states = _steps_in_common(run)
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
-    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER)
+    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER, max_step=_longest_step(run))
     if again.status != "complete" or len(again.t) != len(steps):
         kind = "tighter" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
@@ -63,10 +73,31 @@ def paired(run: Trajectory) -> Pair:
     first, second = (thinned, run) if tight else (run, thinned)
     place, speed, _ = second.floors
     errors = _errors(again, states)
-    return Pair(first, second, Errors(errors.t, *map(np.maximum, errors[1:], (place, speed, place, speed))))
+    errors = Errors(errors.t, *map(np.maximum, errors[1:], (place, speed, place, speed)))
+    return Pair(first, second, errors, unresolved=unresolved(again, place))
 
 
-def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *, own_step: bool = False) -> Trajectory:
+def _longest_step(run: Trajectory) -> float | None:
+    """Return the longest step that the second run may take; None if it is free."""
+    steps, _ = steps_of(run)
+    asked = max(
+        _FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / max(_MOST_STEPS, _TIMES * len(steps))
+    )
+    method, given = run.stats.get("method"), run.stats.get("max_step") or np.inf
+    own = np.inf if "rtol" not in run.stats or method in _LOW_ORDER else _SHARE * float(steps.max())
+    bound = min(asked, own, given)
+    return bound if np.isfinite(bound) else None
+
+
+def integrated(
+    run: Trajectory,
+    first: int,
+    times: FloatArray,
+    factor: float,
+    *,
+    own_step: bool = False,
+    max_step: float | None = None,
+) -> Trajectory:
     """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
 
     A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
@@ -79,6 +110,9 @@ def integrated(run: Trajectory, first: int, times: FloatArray, factor: float, *,
         options["atol"] = _scaled(stats.get("atol"), factor)
     elif own_step and "dt" in stats:
         options = {"method": "RK4", "dt": stats["dt"]}
+    longest = stats.get("max_step") if max_step is None else max_step
+    if longest is not None:
+        options["max_step"] = longest
     return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
 
 

@@ -28,21 +28,10 @@ _OF_RUN = 1e-3  # relative, of a margin beyond the errors
 
 def data_of(verdict):
     """What a verdict says, as plain data."""
-    kept = (
-        "name",
-        "by",
-        "status",
-        "rigour",
-        "proof",
-        "disproof",
-        "computed",
-        "stated",
-        "margin",
-        "error",
-        "witness",
-        "detail",
-    )
-    return {claim.pop("name"): claim for claim in ({k: c[k] for k in kept} for c in verdict.to_dict()["claims"])}
+    kept = "name by status rigour proof disproof computed stated margin error witness detail"
+    return {
+        claim.pop("name"): claim for claim in ({k: c[k] for k in kept.split()} for c in verdict.to_dict()["claims"])
+    }
 
 
 @cache

@@ -149,15 +149,12 @@ EXCEPT = {
 }
 
 
-NEARLY = 1.0 - 1e-6  # of a violation, in the second run
-
-
 @pytest.fixture
 def claim_of(monkeypatch):
     """A claim of a theorem about one run that another encloses, as if that were its tighter second run."""
 
     def found(name, part, first, second):
-        monkeypatch.setattr(second_runs, "integrated", lambda *_: replace(second, between=None))
+        monkeypatch.setattr(second_runs, "integrated", lambda *_, **__: replace(second, between=None))
         seen = Observed.of(replace(first, between=None))
         claims = with_doubt(theorem(name).examine(seen, Tolerances())[1], seen)
         return next(claim for claim in claims if claim.name == part)
@@ -165,18 +162,23 @@ def claim_of(monkeypatch):
     return found
 
 
+@pytest.mark.parametrize("ratio", [1e6, 1e4, 1e-2, 1e-6], ids="{:g} times the noise".format)
 @pytest.mark.parametrize(("name", "part", "base", "plant"), PLANTED)
-def test_a_violation_decides_if_it_is_larger_than_the_error_and_nothing_if_not(claim_of, name, part, base, plant):
+def test_a_violation_decides_if_it_is_larger_than_the_error_and_nothing_if_not(
+    claim_of, name, part, base, plant, ratio
+):
+    """The tighter run violates the claim by so many times what the two runs differ by."""
     run = run_of(base)
     unharmed = claim_of(name, part, run, run)
     assert unharmed.status in ("verified", "inconclusive")
     assert not unharmed.contradicts
-    found = claim_of(name, part, plant(run, 1.0), plant(run, NEARLY))
-    assert found.status == ("inconclusive" if found.contradicts else "refuted")
-    assert bool(found.contradicts) == bool(unharmed.proof)
-    assert 0.0 <= found.error < -found.margin
-    for one, other in ((plant(run, 1.0), run), (run, plant(run, 1.0))):
-        claim = claim_of(name, part, one, other)
+    found = claim_of(name, part, plant(run, 1.0), plant(run, ratio / (1.0 + ratio)))
+    if ratio > 1.0:
+        assert found.status == ("inconclusive" if found.contradicts else "refuted")
+        assert bool(found.contradicts) == bool(unharmed.proof)
+        assert 0.0 <= found.error < -found.margin
+        return
+    for claim in (found, claim_of(name, part, run, plant(run, 1.0))):
         assert not claim.contradicts
         assert claim.status == "inconclusive" or (claim.status == "verified" and claim.proof)
 
@@ -190,7 +192,7 @@ def test_every_theorem_about_runs_is_fed_one_or_says_why_not():
 def test_a_violation_refutes_nothing_under_what_is_assumed(claim_of):
     """Theorem 6: of an edited run it is not known whether an agent enters an obstacle between two samples."""
     run = run_of("algorithm 3")
-    found = claim_of("os-6", "balance", lifted(run, 1.0), lifted(run, NEARLY))
+    found = claim_of("os-6", "balance", lifted(run, 1.0), lifted(run, 1.0 - 1e-6))
     assert "assumed" in {need.status for need in found.needs}
     assert (found.status, found.contradicts, found.margin < -found.error) == ("inconclusive", "", True)
 

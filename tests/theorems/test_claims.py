@@ -154,7 +154,7 @@ def test_an_erratum_has_the_status_of_its_claims():
         statement="1 + 1 = 2",
         source="arithmetic",
         check=lambda tolerances: [exact("printed", 1 + 1 == 3), exact("corrected", 1 + 1 == 2)],
-        expected={"printed": "refuted", "corrected": "verified"},
+        expected={"refuted": "printed", "verified": "corrected"},
     )
     assert dict(item.expected) == {"E0": "refuted", "E0:printed": "refuted", "E0:corrected": "verified"}
     assert [claim.status for claim in item.examine(Tolerances())[1]] == ["refuted", "verified"]

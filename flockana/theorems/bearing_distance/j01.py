@@ -21,14 +21,7 @@ _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most;
 
 
 def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
-    """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all.
-
-    Examples
-    --------
-    >>> law, q, p = random_forest(3, 0)
-    >>> len(law.edges) == len(q) - 3
-    True
-    """
+    """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all."""
     rng = np.random.default_rng(seed)
     edges: list[tuple[int, int]] = []
     agents = 0
@@ -96,7 +89,5 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, (36)",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "corrected": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected"},
 )

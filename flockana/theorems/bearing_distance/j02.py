@@ -83,7 +83,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof",
     check=_check,
-    references=("jond-2025",),
-    expected={"hurwitz": "refuted", "outside": "verified", "positive-definite": "refuted"},
+    expected={"refuted": "hurwitz positive-definite", "verified": "outside"},
     corrected=("outside",),
 )

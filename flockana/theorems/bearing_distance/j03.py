@@ -18,13 +18,7 @@ _PATH_LENGTHS, _PATH_SPACING = (2.05, 2.7, 2.05), (1.0, 2.0, 2.0, 1.0)  # α_i r
 
 
 def path_matrices(mu: float) -> tuple[FloatArray, FloatArray]:
-    """(A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four, with edges of 2.05, 2.7, 2.05 and αr = |N_i|.
-
-    Examples
-    --------
-    >>> path_matrices(1.0)[1].diagonal().round(12).tolist()
-    [1.5, 1.0, 1.5]
-    """
+    """(A^s, A^a) of x'' = −A^a x' − A^s x on an undirected path of four: edges of 2.05, 2.7, 2.05, αr = |N_i|."""
     links = ((0, 1), (1, 2), (2, 3))
     law = MinimalFlocking(edges=both_ways(links), spacing=_PATH_SPACING, mu=mu)
     head, tail, weight, rho, align = law.edge_data(np.empty((4, 1)))
@@ -109,7 +103,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof, after (39)",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "hurwitz": "refuted", "trees": "verified"},
+    expected={"refuted": "printed hurwitz", "verified": "trees"},
     corrected=("trees",),
 )

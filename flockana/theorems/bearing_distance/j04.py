@@ -64,7 +64,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, section 4, (28) to (35)",
     check=_check,
-    references=("jond-2025",),
-    expected={"28": "refuted", "identity": "refuted", "34": "verified", "loop": "verified"},
+    expected={"refuted": "28 identity", "verified": "34 loop"},
     corrected=("loop",),
 )

@@ -81,7 +81,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, section 4, assumptions",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "runaway": "verified"},
+    expected={"refuted": "printed", "verified": "runaway"},
     ours=("runaway",),
 )

@@ -68,7 +68,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, (17) and Remark 3",
     check=_check,
-    references=("jond-2025",),
-    expected={"forms": "verified", "equivalent": "refuted", "holds-together": "refuted", "measured": "verified"},
+    expected={"verified": "forms measured", "refuted": "equivalent holds-together"},
     corrected=("measured",),
 )

@@ -75,7 +75,5 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, definition of N_i^s",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "corrected": "verified", "flock": "refuted"},
-    corrected=("corrected",),
+    expected={"refuted": "printed flock", "verified": "corrected"},
 )

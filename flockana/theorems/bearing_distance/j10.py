@@ -92,14 +92,7 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, section 5.1",
     check=_check,
-    references=("jond-2025",),
-    expected={
-        "distances": "refuted",
-        "order": "refuted",
-        "unordered-still": "verified",
-        "weights": "refuted",
-        "recommended": "verified",
-    },
+    expected={"refuted": "distances order weights", "verified": "unordered-still recommended"},
     corrected=("recommended",),
     ours=("unordered-still",),
 )

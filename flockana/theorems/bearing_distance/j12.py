@@ -140,8 +140,6 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, (8) and section 5",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "corrected": "verified", "stand-off": "verified", "contact": "refuted"},
-    corrected=("corrected",),
+    expected={"refuted": "printed contact", "verified": "corrected stand-off"},
     ours=("stand-off",),
 )

@@ -114,8 +114,7 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, (6)",
     check=_check,
-    references=("jond-2025",),
-    expected={"printed": "refuted", "rest": "verified", "sliding": "verified", "alone": "verified", "flock": "refuted"},
+    expected={"refuted": "printed flock", "verified": "rest sliding alone"},
     corrected=("rest", "sliding"),
     ours=("alone",),
 )

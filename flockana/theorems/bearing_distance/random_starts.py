@@ -16,26 +16,13 @@ SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 
 
 def zone_start(seed: int, n: int = 10) -> tuple[FloatArray, FloatArray]:
-    """Return the random start of section 5.1 of the paper: q in (0, 10)² m, p in (0, 1)² m/s by component.
-
-    Examples
-    --------
-    >>> zone_start(0)[0].shape
-    (10, 2)
-    """
+    """Return the random start of section 5.1 of the paper: q in (0, 10)² m, p in (0, 1)² m/s by component."""
     rng = np.random.default_rng(seed)
     return rng.uniform(0.0, 10.0, (n, 2)), rng.uniform(0.0, 1.0, (n, 2))
 
 
 def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float = 5.0) -> tuple[FloatArray, FloatArray]:
-    """Return a random start with no two agents closer than `least` and the net within `reach` connected.
-
-    Examples
-    --------
-    >>> from flockana.measures.metrics import min_distance
-    >>> min_distance(separated_start(0)[0]) > 2.0
-    True
-    """
+    """Return a random start with no two agents closer than `least` and the net within `reach` connected."""
     rng = np.random.default_rng(seed)
     while True:
         q = rng.uniform(0.0, 10.0, (1, 2))
@@ -50,11 +37,6 @@ def crowd_start(seed: int, n: int, *, least: float = 2.0, any_direction: bool = 
     """Return a start of n agents as dense as ten in (0, 10)² m, no two closer than `least`.
 
     Velocities are in (0, 1)² m/s, as printed, or in (−1, 1)².
-
-    Examples
-    --------
-    >>> bool(crowd_start(0, 1000)[0].max() < 100.0)
-    True
     """
     rng = np.random.default_rng(seed)
     side = 10.0 * np.sqrt(n / 10.0)

@@ -40,17 +40,7 @@ def state(q: FloatArray, p: FloatArray) -> End:
 
 
 def edge_shares(case: TreeCase, end: End) -> FloatArray:
-    """Return V̂/(½μρ²) of each edge; below 1 its length never reaches 0; ∞ where unknown.
-
-    Examples
-    --------
-    >>> from flockana.laws.minimal import MinimalFlocking
-    >>> from flockana.theorems.bearing_distance.tree_case import tree_case
-    >>> chain = tree_case(MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0), 3)
-    >>> q = np.array([[0.0], [0.5], [1.5]])
-    >>> edge_shares(chain, state(q, 0.0 * q)).round(3).tolist()
-    [0.25, 3.5]
-    """
+    """Return V̂/(½μρ²) of each edge; below 1 its length never reaches 0; ∞ where unknown."""
     lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
     if case.root is not None:
         return _directed(case, case.energies(lengths, rates).hi)

@@ -44,13 +44,7 @@ class Decline:
     stretch: float
 
     def __call__(self, s: float) -> float:
-        """φ(s).
-
-        Examples
-        --------
-        >>> Decline(RationalWeight(decay=1.0), 3.0, 1.0)(1.0)
-        1.5
-        """
+        """φ(s)."""
         return self.strength * float((1.0 + (self.stretch * s / self.weight.length) ** 2) ** -self.weight.decay)
 
     @property
@@ -62,14 +56,7 @@ class Decline:
         return asinh(self.stretch * s / self.weight.length)
 
     def between(self, start: float, end: float) -> float:
-        """∫φ from one number to another, of either sign.
-
-        Examples
-        --------
-        >>> from math import pi
-        >>> round(Decline(RationalWeight(decay=1.0), 1.0, 1.0).between(-1.0, 1.0) / pi, 12)
-        0.5
-        """
+        """∫φ from one number to another, of either sign."""
         return self._unit * self._over(self._w(start), self._w(end))
 
     def _over(self, start: float, end: float) -> float:
@@ -81,15 +68,7 @@ class Decline:
         return value
 
     def beyond(self, start: float) -> float:
-        """∫φ from a number on for ever; infinite for β <= ½.
-
-        Examples
-        --------
-        >>> from math import pi
-        >>> line = Decline(RationalWeight(decay=1.0), 1.0, 1.0)
-        >>> round(line.beyond(1.0) / pi, 12), round(line.beyond(-1.0) / pi, 12)
-        (0.25, 0.75)
-        """
+        """∫φ from a number on for ever; infinite for β <= ½."""
         from scipy.special import beta, betainc
 
         power = self.weight.decay - 0.5
@@ -100,13 +79,7 @@ class Decline:
         return self._unit * (tail if start >= 0.0 else whole - tail)
 
     def reached(self, start: float, speed: float) -> float:
-        """The x_M at which ∫φ from `start` is the speed; infinite if there is none.
-
-        Examples
-        --------
-        >>> round(Decline(RationalWeight(decay=0.0), 2.0, 1.0).reached(1.0, 6.0), 9)
-        4.0
-        """
+        """The x_M at which ∫φ from `start` is the speed; infinite if there is none."""
         from scipy.optimize import brentq
 
         asked, low = speed / self._unit, self._w(start)

@@ -22,13 +22,7 @@ _TERMS = 4.0  # roundings of a difference, a length and a quotient
 
 
 def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
-    """Return the row-stochastic matrix M of one step θ' = M θ, equal weights over neighbours and itself.
-
-    Examples
-    --------
-    >>> averaging_matrix(2, np.array([[0, 1]])).tolist()
-    [[0.5, 0.5], [0.5, 0.5]]
-    """
+    """Return the row-stochastic matrix M of one step θ' = M θ, equal weights over neighbours and itself."""
     matrix = np.eye(n)
     matrix[pairs[:, 0], pairs[:, 1]] = matrix[pairs[:, 1], pairs[:, 0]] = 1.0
     matrix /= matrix.sum(axis=1, keepdims=True)
@@ -36,13 +30,7 @@ def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def contraction(matrix: FloatArray) -> float:
-    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread.
-
-    Examples
-    --------
-    >>> contraction(np.array([[0.75, 0.25], [0.25, 0.75]]))
-    0.5
-    """
+    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread."""
     return float(max(0.5 * np.abs(matrix - row).sum(axis=1).max() for row in matrix))
 
 
@@ -106,13 +94,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
 
 
 def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
-    """Return the number of agents that each averages over, itself included.
-
-    Examples
-    --------
-    >>> neighbourhoods(3, np.array([[0, 1]])).tolist()
-    [2.0, 2.0, 1.0]
-    """
+    """Return the number of agents that each averages over, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0
 
 

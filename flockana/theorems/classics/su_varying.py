@@ -33,13 +33,7 @@ _AGREES = 1e-6  # of the way that the centre has to go, or of d: well above the 
 
 
 def convergence_rate(gains: Gains) -> float:
-    """Return −max Re s of s² + c2 s + c1, the rate at which the centre of mass approaches the leader.
-
-    Examples
-    --------
-    >>> convergence_rate(Gains(c1_gamma=1.0, c2_gamma=2.0)), convergence_rate(Gains(c1_gamma=4.0, c2_gamma=5.0))
-    (1.0, 1.0)
-    """
+    """Return −max Re s of s² + c2 s + c1, the rate at which the centre of mass approaches the leader."""
     c1, c2 = float(gains.c1_gamma), float(gains.c2_gamma)
     return 0.5 * c2 - sqrt(max(0.25 * c2 * c2 - c1, 0.0))
 

@@ -66,6 +66,6 @@ THEOREM = erratum(
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
     check=_check,
     references=("tanner-2007", "flockana"),
-    expected={"printed": "refuted", "corrected": "verified", "second-order": "verified"},
+    expected={"refuted": "printed", "verified": "corrected second-order"},
     corrected=("corrected", "second-order"),
 )

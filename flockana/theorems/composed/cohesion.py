@@ -27,13 +27,7 @@ def gains_of(run: Trajectory | Observed) -> FloatArray:
 
 
 def bound(energy: Enclosure, gain: float, unit: float | None) -> Enclosure:
-    """Return how far a potential of this height lets an agent go, pulled linearly or with a bounded force.
-
-    Examples
-    --------
-    >>> [round(float(bound(Enclosure.of(h), 1.0, unit).mid), 6) for h, unit in ((8.0, None), (2.0, 3.0))]
-    [4.0, 2.108185]
-    """
+    """Return how far a potential of this height lets an agent go, pulled linearly or with a bounded force."""
     height = energy.clip(0.0) / gain
     return (2.0 * height + (0.0 if unit is None else (height / unit).square())).sqrt()
 

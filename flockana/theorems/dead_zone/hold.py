@@ -50,18 +50,7 @@ def hold(
     off: float = 0.0,
     p_off: float = 0.0,
 ) -> Basin:
-    """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given.
-
-    Examples
-    --------
-    Two agents at their contact, and two that have more energy than it takes to leave it:
-
-    >>> law, q = DeadZoneFlocking(), np.array([[0.0], [3.49973]])
-    >>> hold(law, q, 0.0 * q).certificate.margin > 0.9
-    True
-    >>> hold(law, q, np.array([[0.1], [-0.1]])).certificate.margin
-    -1.0
-    """
+    """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given."""
     if len(q) == 1:
         return ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:

@@ -70,7 +70,5 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, (7) and (9)",
     check=_check,
-    references=("li-dead-zone",),
-    expected={"printed": "refuted", "corrected": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected"},
 )

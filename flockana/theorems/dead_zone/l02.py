@@ -50,7 +50,5 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, (6)-(8)",
     check=_check,
-    references=("li-dead-zone",),
-    expected={"printed": "refuted", "corrected": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected"},
 )

@@ -56,7 +56,6 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, (1) and the principles of section III",
     check=_check,
-    references=("li-dead-zone",),
-    expected={"printed": "refuted", "balance-distance": "refuted", "contact": "verified"},
+    expected={"refuted": "printed balance-distance", "verified": "contact"},
     corrected=("contact",),
 )

@@ -160,15 +160,9 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, sections IV and VI",
     check=_check,
-    references=("li-dead-zone",),
     expected={
-        "printed": "refuted",
-        "energy": "verified",
-        "one-leader": "verified",
-        "different-leaders": "verified",
-        "fraction": "refuted",
-        "acceleration": "verified",
-        "acceleration-needed": "verified",
+        "refuted": "printed fraction",
+        "verified": "energy one-leader different-leaders acceleration acceleration-needed",
     },
     ours=("energy",),
 )

@@ -195,16 +195,7 @@ def components_of(
     p_off: float = 0.0,
     energy_off: Callable[[npt.NDArray[np.intp]], float] = lambda agents: 0.0,
 ) -> Components:
-    """Return the components of the net at r.
-
-    Examples
-    --------
-    >>> law, apart = DeadZoneFlocking(), np.array([[0.0], [16.0]])
-    >>> components_of(apart, np.array([[-1.0], [1.0]]), law).parting
-    True
-    >>> components_of(apart, np.array([[1.0], [-1.0]]), law).parting
-    False
-    """
+    """Return the components of the net at r."""
     label = components(len(q), links(q, law.interaction.r))
     groups = [np.flatnonzero(label == k) for k in range(int(label.max()) + 1)]
     members = (Component(law, q[g], p[g], dt, off, p_off, energy_off(g)) for g in groups)

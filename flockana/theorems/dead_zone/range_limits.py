@@ -30,16 +30,7 @@ def thinned(run: Trajectory) -> bool:
 
 
 def first_entry(seen: Observed, r: float) -> Entry:
-    """Return the first pair that comes into range in a run.
-
-    Examples
-    --------
-    >>> from flockana.laws.dead_zone import DeadZoneFlocking
-    >>> from flockana.dynamics.simulate import simulate
-    >>> run = simulate(DeadZoneFlocking(), [[0.0], [16.0]], [[1.0], [-1.0]], (0.0, 2.0))
-    >>> first_entry(Observed.of(run), 15.0).pair
-    (0, 1)
-    """
+    """Return the first pair that comes into range in a run."""
     run = seen.run
     if seen.doubt or len(run.t) == 1:  # nothing was seen to happen
         return Entry(None, None, True)

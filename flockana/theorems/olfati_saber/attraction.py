@@ -40,14 +40,6 @@ def attraction(
 
     Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
     of a flock with more coordinates than a dense Hessian is made for.
-
-    Examples
-    --------
-    >>> q = np.array([[0.0, 0.0], [7.001, 0.0]])
-    >>> attraction(Algorithm1(), q, 0.0 * q).certificate.margin > 0.99
-    True
-    >>> attraction(Algorithm1(), q, np.array([[9.0, 0.0], [-9.0, 0.0]])).certificate.margin
-    -1.0
     """
     if q.shape[0] == 1:
         return ALONE

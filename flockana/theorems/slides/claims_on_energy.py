@@ -35,13 +35,7 @@ def state_claim(state: Any) -> Claim:
 
 
 def rises(energy: Enclosure) -> Enclosure:
-    """Return by how much an energy is above its least value so far, at each sample.
-
-    Examples
-    --------
-    >>> rises(Enclosure.of([2.0, 1.0, 4.0])).mid.tolist()
-    [0.0, 0.0, 3.0]
-    """
+    """Return by how much an energy is above its least value so far, at each sample."""
     return energy + (-energy).largest_so_far()
 
 

@@ -26,24 +26,12 @@ _PROOF = "nonplanar-fcc"
 
 
 def fcc_star(d: float) -> FloatArray:
-    """A site of the face-centred cubic lattice and its twelve neighbours.
-
-    Examples
-    --------
-    >>> fcc_star(7.0).shape
-    (13, 3)
-    """
+    """A site of the face-centred cubic lattice and its twelve neighbours."""
     return d / sqrt(2.0) * np.array(STAR, dtype=float)
 
 
 def fcc_eight(d: float) -> FloatArray:
-    """Eight sites of the face-centred cubic lattice with 17 links and no drawing in the plane.
-
-    Examples
-    --------
-    >>> fcc_eight(7.0).shape
-    (8, 3)
-    """
+    """Eight sites of the face-centred cubic lattice with 17 links and no drawing in the plane."""
     return d / sqrt(2.0) * np.array(EIGHT, dtype=float)
 
 
@@ -52,13 +40,7 @@ def _add(site: Site, step: Site) -> Site:
 
 
 def fragments(size: int) -> Iterator[tuple[Site, ...]]:
-    """Every connected set of `size` face-centred cubic sites, once up to translation (Redelmeier 1981).
-
-    Examples
-    --------
-    >>> [sum(1 for _ in fragments(k)) for k in (1, 2, 3)]
-    [1, 6, 50]
-    """
+    """Every connected set of `size` face-centred cubic sites, once up to translation (Redelmeier 1981)."""
     origin: Site = (0, 0, 0)
 
     def grow(chosen: list[Site], untried: list[Site], seen: set[Site]) -> Iterator[tuple[Site, ...]]:
@@ -84,13 +66,7 @@ def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
-    """How many fragments of that size there are, and how many of them are not planar; exact, in whole numbers.
-
-    Examples
-    --------
-    >>> non_planar_fragments(4)
-    (475, 0)
-    """
+    """How many fragments of that size there are, and how many of them are not planar; exact, in whole numbers."""
     known: dict[tuple[tuple[int, int], ...], bool] = {}
     total = bad = 0
     for sites in fragments(size):
@@ -164,13 +140,7 @@ THEOREM = erratum(
     source="Lecture slides, Theorem 5",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={
-        "printed-13": "refuted",
-        "uncrossed-13": "verified",
-        "printed-8": "refuted",
-        "uncrossed-8": "verified",
-        "six": "verified",
-    },
+    expected={"refuted": "printed-13 printed-8", "verified": "uncrossed-13 uncrossed-8 six"},
     corrected=("uncrossed-13", "uncrossed-8"),
     ours=("six",),
 )

@@ -12,13 +12,7 @@ _PROOF = "theorem5-counts"
 
 
 def link_counts() -> dict[int, tuple[int, int, int]]:
-    """Links of the hexagonal spiral of n agents, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60.
-
-    Examples
-    --------
-    >>> link_counts()[2], link_counts()[19]
-    ((1, 0, 1), (42, 51, 42))
-    """
+    """Links of the hexagonal spiral of n agents, 3n − 6, and ⌊3n − √(12n − 3)⌋, for n = 1 … 60."""
     counts = {n: len(links(hexagonal_spiral(n, _D), _R)) for n in range(1, _MOST + 1)}
     return {n: (count, 3 * n - 6, harborth(n)) for n, count in counts.items()}
 
@@ -72,7 +66,6 @@ THEOREM = erratum(
     source="Lecture slides, Theorem 5",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006", "harborth-1974"),
-    expected={"printed": "refuted", "corrected": "verified", "sharp": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected sharp"},
     ours=("sharp",),
 )

@@ -44,6 +44,5 @@ THEOREM = erratum(
     source="MSN project, data collection",
     check=_check,
     references=("isola-2024", "olfati-saber-2006"),
-    expected={"printed": "refuted", "corrected": "verified"},
-    corrected=("corrected",),
+    expected={"refuted": "printed", "verified": "corrected"},
 )

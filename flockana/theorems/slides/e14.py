@@ -99,6 +99,6 @@ THEOREM = erratum(
     ),
     source="slides, Algorithm 1 against Reynolds' rules",
     check=_check,
-    expected={"printed": "refuted", "translation": "refuted", "corrected": "verified", "state": "verified"},
+    expected={"refuted": "printed translation", "verified": "corrected state"},
     corrected=("corrected", "state"),
 )

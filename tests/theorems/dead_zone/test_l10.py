@@ -5,15 +5,7 @@ import pytest
 
 from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems import verify
 from flockana.theorems.dead_zone.l10 import energy_share, wild_pair
-
-
-def test_the_claims():
-    verdict = verify("L10")
-    assert verdict.claim("printed-necessary").rigour == "symbolic"
-    assert verdict.claim("not-necessary").computed == pytest.approx(2.0, rel=1e-12)
-    assert verdict.claim("sufficient").computed < 1.0
 
 
 def test_the_same_pair_without_damping_parts():
