@@ -26,13 +26,7 @@ Acceleration = Callable[[FloatArray, FloatArray], Any]
 
 
 def intended_law() -> Algorithm2:
-    """Return the law that the four faulty programs are meant to implement.
-
-    Examples
-    --------
-    >>> intended_law().alpha.d
-    7.0
-    """
+    """Return the law that the four faulty programs are meant to implement."""
     return Algorithm2(target=StaticTarget(GOAL))
 
 

@@ -14,14 +14,12 @@ from flockana.dynamics.tolerance import rounding_floors
 from flockana.laws.discrete import DiscreteLaw
 from flockana.recorded.accuracy import CONFIDENCE
 from flockana.recorded.recording import Recording
-from flockana.recorded.shooting import matched, windows
+from flockana.recorded.shooting import matched, usual_window, windows
 from flockana.recorded.steps import predicted
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
 _ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two samples
-_TIMES = 8.0  # of the law, which a window of noisy samples is as long as
-_FEWEST = 40  # samples in a window
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +136,7 @@ def _over_windows(rec: Recording, law: Any) -> Following:
         raise ArgumentError(
             f"noisy positions under the map {type(law).__name__}: expected its continuous law, or velocities and bound="
         )
-    scales = law.scales
-    duration = max(_TIMES * (rec.interval if scales is None else scales.time), _FEWEST * rec.interval)
-    smooth = rec.with_velocities()
+    duration, smooth = usual_window(rec, law), rec.with_velocities()
     assert smooth.p is not None
     parts = windows(rec, duration)
     try:
@@ -169,4 +165,3 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     else:
         text = f"solutions of the law are off by {misfit:.3g} times the noise, which is only estimated ({where})"
     return Following(status, 1.0 - ratio, text, q0, p0, smooth.p, smooth.accuracy.speed)
-

@@ -21,9 +21,12 @@ from flockana.recorded.steps import rk4, substeps
 from flockana.recorded.velocities import motions
 
 _ROUNDS = 120  # residuals that are computed at most
+_TIMES = 8.0  # of the law, which a window of samples is as long as
+_FEWEST = 40  # samples in a window
 _GAIN = 1e-2  # of squared deviations, that a round must promise for the search to go on
 _NUDGE = 1e-5  # relative change of a parameter for slopes
-_SHARES = tuple(0.4 / 2.0**k for k in range(8))  # of the law's time, which a step of the integration is at most
+_STEP = 0.4  # of the law's time, which a step of the integration is at most
+_FINEST = 32  # times finer steps may be
 _BLURRED = 0.05  # standard errors that the integration may move a parameter by
 _COARSE, _FINE = 0.4, 0.1  # of the law's time, over which slopes are carried by one linearisation, at first and at last
 _CLOSE = 0.3  # gain that coarse slopes promise, from which on they are fine
@@ -60,28 +63,26 @@ class Window:
     root: FloatArray
     start: FloatArray  # a first guess: positions and velocities, shape (2 n m,)
 
-    def solution(self, law: Any, start: FloatArray, share: float) -> tuple[FloatArray, FloatArray]:
+    def solution(self, law: Any, start: FloatArray, finer: int) -> tuple[FloatArray, FloatArray]:
         """Return positions and velocities of a law's solution from a start at the samples, shape (K, n, m)."""
         q, p = np.empty(self.q.shape), np.empty(self.q.shape)
         q[0], p[0] = start.reshape(2, *self.q.shape[1:])
         for k in range(1, len(self.t)):
             t, h = float(self.t[k - 1]), float(self.t[k] - self.t[k - 1])
-            count, state = substeps(law, h, share), (q[k - 1], p[k - 1])
+            count, state = finer * substeps(law, h, _STEP), (q[k - 1], p[k - 1])
             for s in range(count):
                 state = rk4(law, t + s * h / count, h / count, *state)
             q[k], p[k] = state
         return q, p
 
-    def residual(self, law: Any, start: FloatArray, share: float) -> FloatArray:
+    def residual(self, law: Any, start: FloatArray, finer: int) -> FloatArray:
         """Return the residuals of a law's solution over their deviations, shape (K n m,); 0 in gaps."""
-        off = np.nan_to_num(self.q - self.solution(law, start, share)[0])
+        off = np.nan_to_num(self.q - self.solution(law, start, finer)[0])
         return (self.root * off.reshape(self.root.shape)).ravel()
 
-    def slopes(
-        self, law: Any, nearby: Sequence[_Nearby], start: FloatArray, share: float, block: float
-    ) -> FloatArray:
+    def slopes(self, law: Any, nearby: Sequence[_Nearby], start: FloatArray, finer: int, block: float) -> FloatArray:
         """Return the slopes of the law's solution over deviations in start and parameters, (K n m, 2 n m + P)."""
-        q, p = self.solution(law, start, share)
+        q, p = self.solution(law, start, finer)
         size, (count, width) = start.size // 2, self.root.shape
         now = np.concatenate([np.eye(2 * size), np.zeros((2 * size, len(nearby)))], axis=1)
         found = np.empty((count, width, now.shape[1]))
@@ -142,6 +143,12 @@ class _Rate:
 def _within(t: FloatArray, time: float) -> int:
     """Samples that lie within some time."""
     return max(1, int(min(len(t), time / float(np.median(np.diff(t)) if len(t) > 1 else 1.0))))
+
+
+def usual_window(rec: Recording, law: Any) -> float:
+    """Return the duration of windows: several of the law's times, and of many samples."""
+    scales = law.scales
+    return max(_TIMES * (0.0 if scales is None else scales.time), _FEWEST * rec.interval)
 
 
 def windows(rec: Recording, duration: float) -> list[Window]:
@@ -222,17 +229,18 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
     Slopes are kept as long as steps gain what these promise: most rounds cost solutions alone.
     """
     theta, starts, damping = first.copy(), [part.start for part in parts], 0.0
-    share, block, since, message = _fine_enough(parts, with_values(theta)), _COARSE, 0.0, ""
-    now = _residuals(parts, with_values, theta, starts, share)
+    finer, block, since, message = _fine_enough(parts, with_values(theta)), _COARSE, 0.0, ""
+    now = _residuals(parts, with_values, theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    normal = None
+    normal, size = None, sum(int(np.count_nonzero(part.root)) for part in parts)
     for _ in range(_ROUNDS):
         if normal is None:
-            since, normal = 0.0, _normal(parts, with_values, theta, starts, (share, block), damping)
+            since, normal = 0.0, _normal(parts, with_values, theta, starts, finer, block, damping=damping)
         moved, moves, promised = normal.step(now)
-        if promised <= (_GAIN if block == _FINE else _CLOSE):
-            if block == _FINE and since <= _NEAR and normal.damping == 0.0:
+        unit = max(_squares(now) / size, 1.0)  # residuals of a law that does not fit are larger than noise
+        if promised <= (_GAIN if block == _FINE else _CLOSE) * unit:
+            if block == _FINE and since <= _NEAR * unit and normal.damping == 0.0:
                 message = "settled"
                 break
             block, damping, normal = _FINE, 0.0, None
@@ -240,7 +248,7 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
         part_of = _share(theta, moved, first)
         tried_theta = theta + part_of * moved
         tried_starts = [x + part_of * move for x, move in zip(starts, moves, strict=True)]
-        tried = _residuals(parts, with_values, tried_theta, tried_starts, share)
+        tried = _residuals(parts, with_values, tried_theta, tried_starts, finer)
         gained = 0.0 if tried is None else _squares(now) - _squares(tried)
         if tried is not None and gained > 0.0:
             theta, starts, now, since = tried_theta, tried_starts, tried, since + gained
@@ -250,42 +258,41 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
             if damping > _DAMPED:
                 message = "no smaller residual was found nearby"
                 break
-        if not since or abs(gained - promised) > _TRUSTED * promised:
+        if not since or normal.damping or abs(gained - promised) > _TRUSTED * promised:
             normal = None
-    if not message or normal is None:
+    if message != "settled" or normal is None:
         message = message or f"no end after {_ROUNDS} rounds"
-        normal = _normal(parts, with_values, theta, starts, (share, _FINE), 0.0)
-    size = sum(int(np.count_nonzero(part.root)) for part in parts)
+        normal = _normal(parts, with_values, theta, starts, finer, _FINE)
     freedom = max(size - sum(x.size for x in starts) - len(theta), 1)
     told = np.diag(normal.reduced) * theta**2 > _FELT
     return Matched(theta, normal.covariance, told, starts, now, freedom, message)
 
 
-def _fine_enough(parts: list[Window], law: Any) -> float:
-    """Longest steps, in law times, whose error moves no parameter by more than a fraction of its standard error."""
-    coarse = [part.residual(law, part.start, _SHARES[0]) for part in parts]
-    for share, finer in zip(_SHARES, _SHARES[1:], strict=False):
-        fine = [part.residual(law, part.start, finer) for part in parts]
-        if np.sqrt(sum(float(np.sum((a - b) ** 2)) for a, b in zip(coarse, fine, strict=True))) <= 15.0 / 16.0 * _BLURRED:
-            return share
-        coarse = fine
-    return _SHARES[-1]
+def _fine_enough(parts: list[Window], law: Any) -> int:
+    """How much finer steps must be for their error to move no parameter by more than a bit of its standard error."""
+    finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
+    while finer < _FINEST:
+        fine = [part.residual(law, part.start, 2 * finer) for part in parts]
+        if _squares([a - b for a, b in zip(coarse, fine, strict=True)]) <= _BLURRED**2:
+            break
+        finer, coarse = 2 * finer, fine
+    return finer
 
 
 def _residuals(
-    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], share: float
+    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], finer: int
 ) -> list[FloatArray] | None:
     """Residuals of all windows; None if there is no such law, or its solution is not finite."""
     try:
         law = with_values(theta)
-        found = [part.residual(law, start, share) for part, start in zip(parts, starts, strict=True)]
+        found = [part.residual(law, start, finer) for part, start in zip(parts, starts, strict=True)]
     except FlockanaError:
         return None
     return found if all(np.isfinite(each).all() for each in found) else None
 
 
 def _normal(
-    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], by: tuple[float, float], damping: float
+    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], *by: Any, damping: float = 0.0
 ) -> _Normal:
     law, nearby = with_values(theta), _nearby_laws(with_values, theta)
     slopes = [part.slopes(law, nearby, start, *by) for part, start in zip(parts, starts, strict=True)]
