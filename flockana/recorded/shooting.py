@@ -17,7 +17,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.recorded.recording import Recording
-from flockana.recorded.steps import rk4, substeps
+from flockana.recorded.steps import led
 from flockana.recorded.velocities import motions
 
 _ROUNDS = 120  # residuals that are computed at most
@@ -69,10 +69,7 @@ class Window:
         q[0], p[0] = start.reshape(2, *self.q.shape[1:])
         for k in range(1, len(self.t)):
             t, h = float(self.t[k - 1]), float(self.t[k] - self.t[k - 1])
-            count, state = finer * substeps(law, h, _STEP), (q[k - 1], p[k - 1])
-            for s in range(count):
-                state = rk4(law, t + s * h / count, h / count, *state)
-            q[k], p[k] = state
+            q[k], p[k] = led(law, t, h, q[k - 1], p[k - 1], refine=finer, share=_STEP)
         return q, p
 
     def residual(self, law: Any, start: FloatArray, finer: int) -> FloatArray:

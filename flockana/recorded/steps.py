@@ -29,11 +29,14 @@ def predicted(
     """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m)."""
     ends = np.empty((2, max(len(t) - 1, 0), *q.shape[1:]))
     for k in range(len(t) - 1):
-        ends[0, k], ends[1, k] = _led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine)
+        ends[0, k], ends[1, k] = led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine=refine)
     return ends[0], ends[1]
 
 
-def _led(law: Any, t: float, h: float, q: FloatArray, p: FloatArray, refine: int) -> tuple[FloatArray, FloatArray]:
+def led(
+    law: Any, t: float, h: float, q: FloatArray, p: FloatArray, *, refine: int = 1, share: float = SHARE
+) -> tuple[FloatArray, FloatArray]:
+    """Return where a law leads from a state within a time h."""
     if isinstance(law, DiscreteLaw):
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
@@ -44,7 +47,7 @@ def _led(law: Any, t: float, h: float, q: FloatArray, p: FloatArray, refine: int
         for k in range(steps):
             q, p, _, memory = law.step(t + k * law.dt, q, p, memory)
         return q, p
-    count = substeps(law, h) * refine
+    count = substeps(law, h, share) * refine
     for k in range(count):
         q, p = rk4(law, t + k * h / count, h / count, q, p)
     return q, p

@@ -113,9 +113,7 @@ def test_a_recording_is_drawn_and_played_without_a_law(run, tmp_path):
     assert "bound" in repr(rec)
 
 
-@pytest.mark.parametrize(
-    "accuracy", [{}, {"bound": 0.1, "p_bound": 0.2}, {"sd": np.full((11, 12), 0.3), "estimated": True}]
-)
+@pytest.mark.parametrize("accuracy", [{}, {"bound": 0.1, "p_bound": 0.2}, {"sd": 0.3, "estimated": True}])
 def test_a_saved_recording_is_read_back_with_its_accuracy(run, tmp_path, accuracy):
     q = run.q.copy()
     q[3, 2] = np.nan
