@@ -107,8 +107,7 @@ def test_measures_at_a_gap_are_those_of_the_agents_that_were_seen(run):
 
 def test_a_recording_is_drawn_and_played_without_a_law(run, tmp_path):
     rec = recording_of(run, bound=0.0)
-    page = rec.player(d=7.0, r=8.4).save(str(tmp_path / "it.html"))
-    assert page.stat().st_size > 10_000
+    assert rec.player(d=7.0, r=8.4).save(str(tmp_path / "it.html")).stat().st_size > 10_000
     assert rec.trajectory(d=7.0, r=8.4).metric("connectivity")[0] == fl.connectivity(run.q[0], 8.4)
     assert "bound" in repr(rec)
 
