@@ -15,8 +15,6 @@ from flockana.cli.status import OK, UNEXPECTED
 if TYPE_CHECKING:
     from flockana.recorded.recording import Recording
 
-_JUDGED = ("os-1", "os-3", "os-6", "energy", "alpha-flocking", "os-5-terminal")  # with a law, if they are about it
-
 
 def observe_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS.")],
@@ -127,20 +125,16 @@ def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> 
     """Comparison, fit and verdicts, as `recording_page` takes them."""
     from flockana.recorded.compare import compare
     from flockana.recorded.fit import fit as fitted
-    from flockana.theorems import theorem, verify
-    from flockana.theorems.on_recordings import DEFINITIONS
-    from flockana.theorems.together import theorems_about
+    from flockana.theorems import verify
 
     if rec is None:
         return {"verdicts": []}
     if law is None:
-        return {"verdicts": [verify(name, rec, d=d, r=r) for name in DEFINITIONS if len(rec.t) > 1]}
-    p = rec.p if rec.p is not None else rec.with_velocities().p
-    about = theorems_about(law, rec.q[0], p[0], float(rec.t[0]))  # type: ignore[index]
+        return {"verdicts": verify(None, rec, d=d, r=r) if len(rec.t) > 1 else []}
     found: dict[str, Any] = {"comparison": compare(rec, law)}
     if fit:
         found["fitted"] = fitted(rec, law)
-    return found | {"verdicts": [verify(theorem(name), rec, law=law) for name in _JUDGED if name in about]}
+    return found | {"verdicts": verify(None, rec, law=law)}
 
 
 def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, Any], notes: list[str]) -> None:

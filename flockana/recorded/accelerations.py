@@ -13,6 +13,8 @@ from flockana.recorded.recording import Recording
 from flockana.recorded.schemes import Found, kinematic_scheme
 from flockana.recorded.velocities import motions
 
+_FEWEST = 4  # samples for splines
+
 
 class Accelerations(NamedTuple):
     """Accelerations u of shape (K, n, m) with their errors, and the states (t, q, p) that they belong to.
@@ -42,28 +44,40 @@ class Accelerations(NamedTuple):
 
 
 def accelerations(rec: Recording) -> Accelerations:
-    """Return the accelerations of a recording, the recorded ones if there are any."""
+    """Return the accelerations of a recording: the recorded ones, else the better known of steps and of splines."""
     if rec.u is not None and rec.p is not None and not rec.gaps:
         return Accelerations("accelerations", rec.t, rec.u, np.zeros(rec.q.shape[:2]), (rec.t, rec.q, rec.p), None)
-    noisy = rec.sd is not None and bool(np.max(rec.sd) > 0.0)
-    if rec.p is None or noisy or rec.gaps:
+    if rec.p is None or rec.gaps:
         return _of_splines(rec)
     if len(rec.t) < 2:
         raise ArgumentError("one sample without accelerations shows no law: expected two or more, or u=")
+    steps = _of_steps(rec, rec.p)
+    if rec.sd is None or not np.max(rec.sd) > 0.0 or len(rec.t) < _FEWEST:
+        return steps
+    splines = _of_splines(rec)
+    return steps if np.median(steps.error) <= np.median(splines.error) else splines
+
+
+def _of_steps(rec: Recording, p: FloatArray) -> Accelerations:
+    """Mean accelerations from sample to sample, by recorded velocities."""
     h = np.diff(rec.t)
-    u = np.diff(rec.p, axis=0) / h[:, None, None]
-    speed = np.broadcast_to(np.asarray(rec.accuracy.speed, dtype=np.float64), rec.q.shape[:2])
-    error = np.nan_to_num((speed[1:] + speed[:-1]) / h[:, None], posinf=0.0)
+    u = np.diff(p, axis=0) / h[:, None, None]
+    wide: Any = rec.accuracy.speed
+    if rec.sd is not None:  # standard deviations, as those of splines are
+        wide = rec.p_sd if rec.p_sd is not None else rec.sd / rec.interval
+    speed = np.broadcast_to(np.asarray(wide, dtype=np.float64), rec.q.shape[:2])
+    both = np.hypot(speed[1:], speed[:-1]) if rec.sd is not None else speed[1:] + speed[:-1]
+    error = np.nan_to_num(both / h[:, None], posinf=0.0)
     scheme = kinematic_scheme(rec)
     if scheme is not None:  # then u is the input at the beginning of each step
-        return Accelerations("accelerations", rec.t[:-1], u, error, (rec.t[:-1], rec.q[:-1], rec.p[:-1]), scheme)
-    return Accelerations("steps", rec.t[:-1], u, error, (rec.t, rec.q, rec.p), None)
+        return Accelerations("accelerations", rec.t[:-1], u, error, (rec.t[:-1], rec.q[:-1], p[:-1]), scheme)
+    return Accelerations("steps", rec.t[:-1], u, error, (rec.t, rec.q, p), None)
 
 
 def _of_splines(rec: Recording) -> Accelerations:
     """Accelerations where all agents are known."""
-    if len(rec.t) < 4:
-        raise ArgumentError(f"{len(rec.t)} samples without accelerations: expected 4 or more")
+    if len(rec.t) < _FEWEST:
+        raise ArgumentError(f"{len(rec.t)} samples without accelerations: expected {_FEWEST} or more")
     fit = motions(rec)
     whole = fit.carried.all(axis=1) & ~np.isnan(fit.q).any(axis=(1, 2))
     if not whole.any():

@@ -45,26 +45,14 @@ class Accuracy:
 
 
 def band(samples: int, m: int) -> float:
-    """Return the radius, in standard deviations of a coordinate, that holds of all samples at once with 0.99.
-
-    Examples
-    --------
-    >>> round(band(1, 1), 4), band(1000, 2) > 4.0
-    (2.5758, True)
-    """
+    """Return the radius, in standard deviations of a coordinate, that holds of all samples at once with 0.99."""
     from scipy.stats import chi2
 
     return float(sqrt(chi2.isf((1.0 - CONFIDENCE) / samples, m)))
 
 
 def ensure_error(name: str, value: Any, shape: tuple[int, int]) -> float | FloatArray | None:
-    """Return a stated error: None, one number >= 0, or one for each sample of each agent, shape (T, n).
-
-    Examples
-    --------
-    >>> ensure_error("bound", 0.5, (3, 2))
-    0.5
-    """
+    """Return a stated error: None, one number >= 0, or one for each sample of each agent, shape (T, n)."""
     if value is None:
         return None
     if np.ndim(value) == 0:

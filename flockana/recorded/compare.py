@@ -17,6 +17,7 @@ from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.schemes import scheme_by_law
 
 _WORST = 5  # places that are named
+_ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gains are only rough
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class Comparison:
     findings : tuple of str
         What differs, in words.
     noise : float
-        Typical error of an acceleration, from the accuracy of the samples; 0 if none is stated.
+        Typical error of an acceleration, from the accuracy of the samples; 0 if none is stated. See `caution`.
     """
 
     law: Any
@@ -61,6 +62,17 @@ class Comparison:
     def share(self) -> str:
         """Explained share in words; a residual larger than the accelerations explains nothing."""
         return f"{self.explained:.4%}" if self.explained > 0.0 else "nothing"
+
+    @property
+    def caution(self) -> str:
+        """What noise does to this comparison, in words; empty if the accelerations are known well enough."""
+        usual = float(np.nanmedian(lengths(self.recorded)))  # the ends of splines can be far off
+        if self.noise <= _ROUGH * usual:
+            return ""
+        return (
+            f"accelerations (from {self.basis}) are known to {self.noise:.2g}, where their usual size is {usual:.2g}: "
+            "shares and gains are rough; fit(recording, law) rests on positions"
+        )
 
     @property
     def by_agent(self) -> FloatArray:
@@ -91,6 +103,7 @@ class Comparison:
                 f"  {one.share:8.2%}  {one.text}: {one.symbol} = {one.found:.5g}{known}, {one.stated:.5g} in the law"
             )
         lines += [f"  finding: {text}" for text in self.findings]
+        lines += [f"  caution: {self.caution}"] if self.caution else []
         t, agent, size = self.worst[0]
         lines.append(f"  off most by {size:.3g}, agent {agent} at t = {t:.4g}")
         return "\n".join(lines)
@@ -104,6 +117,7 @@ class Comparison:
             "explained_refitted": self.explained_refitted,
             "shares": [one._asdict() for one in self.shares],
             "findings": list(self.findings),
+            "caution": self.caution,
             "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
         }
 
@@ -112,7 +126,8 @@ def compare(rec: Recording, law: Any) -> Comparison:
     """Return a comparison of a recording with a law.
 
     Recorded accelerations are compared if there are any; else the mean ones from sample to sample, if velocities were
-    recorded, or those of a scheme that positions and velocities tell; else those of smoothing splines.
+    recorded, or those of a scheme that positions and velocities tell; else those of smoothing splines. Where noise is
+    stated, the one of the two that is known better is compared; under strong noise `Comparison.caution` says so.
 
     Parameters
     ----------

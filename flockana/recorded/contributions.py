@@ -35,14 +35,7 @@ class Contribution:
 
 
 def contributions(law: Any) -> tuple[Contribution, ...]:
-    """Return the parts of a law: one for each gain, or the law as a whole.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> [part.symbol for part in contributions(Algorithm1())]
-    ['c1α', 'c2α']
-    """
+    """Return the parts of a law: one for each gain, or the law as a whole."""
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)

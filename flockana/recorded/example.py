@@ -11,13 +11,6 @@ NOISE = 0.05
 
 
 def example_recording() -> Recording:
-    """Return fourteen tracked agents over six time units: positions with noise 0.05, gaps, and a switch of two names.
-
-    Examples
-    --------
-    >>> rec = example_recording()
-    >>> rec.n, len(rec.t), rec.gaps > 0
-    (14, 151, True)
-    """
+    """Return fourteen tracked agents over six time units: noise of 0.05, gaps, and a switch of two names."""
     with as_file(files("flockana.recorded") / "data" / "synthetic.csv") as path:
         return read_recording(path, sd=NOISE)

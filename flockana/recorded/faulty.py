@@ -26,13 +26,7 @@ Acceleration = Callable[[FloatArray, FloatArray], Any]
 
 
 def intended_law() -> Algorithm2:
-    """Return the law that the four faulty programs are meant to implement.
-
-    Examples
-    --------
-    >>> intended_law().alpha.d
-    7.0
-    """
+    """Return the law that the four faulty programs are meant to implement."""
     return Algorithm2(target=StaticTarget(GOAL))
 
 
@@ -99,14 +93,7 @@ CODES: Mapping[str, Acceleration] = {"A": code_a, "B": code_b, "C": code_c, "D":
 
 
 def faulty_recording(name: str) -> Recording:
-    """Return the recording of a faulty implementation, "A" to "D": positions and velocities every 0.02 time units.
-
-    Examples
-    --------
-    >>> from flockana.recorded.compare import compare
-    >>> compare(faulty_recording("D"), intended_law()).findings
-    ('steps are explicit Euler of 0.02',)
-    """
+    """Return the recording of a faulty implementation, "A" to "D": positions and velocities every 0.02 time units."""
     code = CODES[ensure_known("implementation", name, CODES)]
     rng = np.random.default_rng(7)
     q = D * np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=2).reshape(-1, 2)

@@ -14,12 +14,10 @@ from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.parameters import Free
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.shooting import matched, windows
+from flockana.recorded.shooting import matched, usual_window, windows
 from flockana.recorded.steps import predicted
 
 _LEVEL = 0.95
-_TIMES = 8.0  # of the law, which a window of samples is as long as
-_FEWEST = 40  # samples in a window
 _UNKNOWN = 0.5  # relative standard error beyond which the data do not tell a parameter
 _TIED = 0.99  # correlation of two parameters beyond which the data tell one combination only
 _FAR = 1e6  # residual of a law that cannot be
@@ -124,9 +122,8 @@ def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
     """Solutions matched to windows of noisy positions."""
     if len(rec.t) < 4:
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
-    scales = parameters.law.scales
-    usual = _FEWEST * rec.interval if scales is None else max(_TIMES * scales.time, _FEWEST * rec.interval)
-    parts = windows(rec, usual if window is None else ensure_positive("window", window))
+    duration = usual_window(rec, parameters.law) if window is None else ensure_positive("window", window)
+    parts = windows(rec, duration)
     found = matched(parts, parameters.with_values, parameters.values)
     variance = found.squares / found.freedom
     stated = rec.sd is not None and not rec.estimated

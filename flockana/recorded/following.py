@@ -14,14 +14,12 @@ from flockana.dynamics.tolerance import rounding_floors
 from flockana.laws.discrete import DiscreteLaw
 from flockana.recorded.accuracy import CONFIDENCE
 from flockana.recorded.recording import Recording
-from flockana.recorded.shooting import Window, match_start, windows
+from flockana.recorded.shooting import matched, usual_window, windows
 from flockana.recorded.steps import predicted
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
 _ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two samples
-_TIMES = 8.0  # of the law, which a window of noisy samples is as long as
-_FEWEST = 40  # samples in a window
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,30 +136,25 @@ def _over_windows(rec: Recording, law: Any) -> Following:
         raise ArgumentError(
             f"noisy positions under the map {type(law).__name__}: expected its continuous law, or velocities and bound="
         )
-    scales = law.scales
-    duration = max(_TIMES * (rec.interval if scales is None else scales.time), _FEWEST * rec.interval)
-    smooth = rec.with_velocities()
+    duration, smooth = usual_window(rec, law), rec.with_velocities()
     assert smooth.p is not None
-    squares, freedom, largest = 0.0, 0, (0.0, 0.0, 0)
-    first: FloatArray | None = None
-    for part in windows(rec, duration):
-        start, residual = _matched(law, part)
-        first = start if first is None else first
-        seen = part.root > 0.0
-        scaled = np.zeros(part.root.shape)
-        scaled[seen] = residual
-        squares, freedom = squares + float(residual @ residual), freedom + residual.size - start.size
-        size = np.abs(scaled).reshape(len(part.t), rec.n, rec.m).max(axis=2)
+    parts = windows(rec, duration)
+    try:
+        found = matched(parts, lambda _: law, np.empty(0))
+    except FlockanaError as error:
+        raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
+    squares, freedom, largest = found.squares, found.freedom, (0.0, 0.0, 0)
+    for part, residual in zip(parts, found.residuals, strict=True):
+        size = np.abs(residual).reshape(len(part.t), rec.n, rec.m).max(axis=2)
         k, i = np.unravel_index(int(np.argmax(size)), size.shape)
         largest = max(largest, (float(size[k, i]), float(part.t[k]), int(i)))
-    assert first is not None
-    misfit = float(np.sqrt(squares / max(freedom, 1)))
-    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, max(freedom, 1)) / max(freedom, 1)))
+    misfit = float(np.sqrt(squares / freedom))
+    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, freedom) / freedom))
     band = float(norm.isf((1.0 - CONFIDENCE) / 4.0 / rec.q.size))
     size, t, agent = largest
     ratio = max(misfit / most, size / band)
     where = f"worst: {size:.3g} deviations, agent {rec.ids[agent]} at t = {t:.6g}"
-    q0, p0 = first.reshape(2, rec.n, rec.m)
+    q0, p0 = found.starts[0].reshape(2, rec.n, rec.m)
     stated = rec.sd is not None and not rec.estimated
     status: Literal["met", "unmet", "assumed"] = "assumed"
     if stated:
@@ -172,10 +165,3 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     else:
         text = f"solutions of the law are off by {misfit:.3g} times the noise, which is only estimated ({where})"
     return Following(status, 1.0 - ratio, text, q0, p0, smooth.p, smooth.accuracy.speed)
-
-
-def _matched(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
-    try:
-        return match_start(law, part)
-    except FlockanaError as error:
-        raise ArgumentError(f"the law cannot be integrated from t = {part.t[0]:g} of the recording: {error}") from error

@@ -18,6 +18,7 @@ from flockana.recorded.reading.text import read_text
 from flockana.recorded.recording import Recording
 
 _ARRAYS = {".npz": npz_arrays, ".npy": npz_arrays, ".mat": mat_arrays, ".nc": netcdf_arrays}
+_ACCURACY = ("bound", "sd", "p_bound", "p_sd", "estimated")
 _DUMPS = (".dump", ".lammpstrj", ".lammps")
 _ITEM = b"ITEM:"
 
@@ -54,7 +55,7 @@ def read_recording(
     m : int, optional
         Dimension, of a dump; by default that of its positions.
     bound, sd, p_bound, p_sd : float or array_like, optional
-        Accuracy, as in `Recording`.
+        Accuracy, as in `Recording`; by default what a file of `Recording.save` states.
 
     Raises
     ------
@@ -82,7 +83,11 @@ def read_recording(
     if not path.exists():
         raise FileError(f"no file {path}: expected CSV, TSV, npz, mat, netCDF or a dump of LAMMPS")
     try:
-        return Recording(**_contents(path, columns, dt, clock, m), source=path.name, **accuracy)
+        given = {name: value for name, value in accuracy.items() if value is not None}
+        contents = _contents(path, columns, dt, clock, m)
+        kept = {} if given else {name: contents[name] for name in _ACCURACY if name in contents}
+        data = {name: value for name, value in contents.items() if name not in _ACCURACY}
+        return Recording(**({"source": path.name} | data | kept | given))
     except FileError:
         raise
     except ArgumentError as error:
@@ -95,12 +100,24 @@ def _contents(
 ) -> dict[str, Any]:
     suffix = path.suffix.lower()
     if suffix in _ARRAYS:
-        by_name = columns if isinstance(columns, Mapping) else None
-        return named_arrays(_ARRAYS[suffix](path), str(path), columns=by_name, dt=dt)
+        by_name, arrays = columns if isinstance(columns, Mapping) else None, _ARRAYS[suffix](path)
+        return _stated(arrays) | named_arrays(arrays, str(path), columns=by_name, dt=dt)
     if suffix in _DUMPS or _starts_with_item(path):
         return _dumped(path, dt, m)
     names = None if columns is None or isinstance(columns, Mapping) else list(columns)
     return table_arrays(read_text(path, names), columns=columns, dt=dt, clock=clock)
+
+
+def _stated(arrays: Mapping[str, Any]) -> dict[str, Any]:
+    """Names, source and accuracy that `Recording.save` wrote beside the samples."""
+    if not {"ids", "source", "estimated"} <= arrays.keys():
+        return {}
+    found = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
+    return found | {
+        "ids": arrays["ids"].tolist(),
+        "source": str(arrays["source"]),
+        "estimated": bool(arrays["estimated"]),
+    }
 
 
 def _starts_with_item(path: Path) -> bool:

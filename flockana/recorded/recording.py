@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
-from flockana.base.errors import ArgumentError, format_value
+from flockana.base.errors import ArgumentError, FileError, format_value
+from flockana.base.files import atomic_write, ensure_path
 from flockana.base.memory import ResultCache
 from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
@@ -285,6 +287,26 @@ class Recording(ResultCache):
         u = np.zeros(rec.q.shape) if rec.u is None else np.nan_to_num(rec.u)
         return Trajectory(rec.t, rec.q, rec.p, u, ensure_law(law), {}, "complete", f"recorded: {self.source}")
 
+    def save(self, path: Any) -> Path:
+        """Write an npz file, from which `read_recording` gives the same recording, its accuracy included.
+
+        Parameters
+        ----------
+        path : path
+            The file, which ends in .npz.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        """
+        if ensure_path(path, action="write").suffix != ".npz":
+            raise FileError(f"cannot write {str(path)!r}: expected a name that ends in .npz")
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        with atomic_write(path) as partial:
+            np.savez_compressed(partial, **{name: value for name, value in given.items() if value is not None})
+        return Path(path)
+
     def player(self, *, d: float | None = None, r: float | None = None, height: int = 760) -> Any:
         """Return the recording in the player: a notebook shows it, ``.save(path)`` writes a page.
 
@@ -299,40 +321,20 @@ class Recording(ResultCache):
 
 
 def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
-    """Return the paper's pair law of a scale and a range, the other 1.2 times larger or smaller if one is missing.
-
-    Examples
-    --------
-    >>> round(scaled_alpha(5.0, None).r, 12)
-    6.0
-    """
+    """Return the paper's pair law of a scale and a range, the other 1.2 times larger or smaller if one is missing."""
     d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
     return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))
 
 
 def ensure_recording(rec: Any) -> Recording:
-    """Return `rec` if it is a recording, or raise.
-
-    Examples
-    --------
-    >>> ensure_recording(Recording([0.0], [[[0.0]]])).n
-    1
-    """
+    """Return `rec` if it is a recording, or raise."""
     if not isinstance(rec, Recording):
         raise ArgumentError(f"rec = {format_value(rec):.80}: expected a Recording, such as read_recording(file) gives")
     return rec
 
 
 def recording_of(run: Trajectory, **accuracy: Any) -> Recording:
-    """Return the samples of a run as a recording.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.dynamics.simulate import simulate
-    >>> recording_of(simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0)), bound=0.0).n
-    2
-    """
+    """Return the samples of a run as a recording."""
     u = None if isinstance(run.law, DiscreteLaw) else run.u
     return Recording(run.t, run.q, run.p, u, source=f"a run of {type(run.law).__name__}", **accuracy)
 

@@ -1,8 +1,13 @@
-"""Solutions of a law matched to noisy positions: each window of samples has a start of its own, found with it."""
+"""Solutions of a law matched to noisy positions: each window of samples has a start of its own, found with it.
+
+Parameters and starts are sought together by the method of Gauss and Newton. Residuals are divided by the noise, so that
+they are independent with deviation 1, and an error of the integration whose residuals have the norm x moves a parameter
+by at most x standard errors; the steps are chosen by it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,36 +17,41 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.recorded.recording import Recording
-from flockana.recorded.steps import rk4, substeps
+from flockana.recorded.steps import led
 from flockana.recorded.velocities import motions
 
-_ROUNDS = 40  # of Gauss and Newton, damped
-_SETTLED = 0.01  # standard errors by which a round moves every parameter, below which the search ends
-_GAIN = 1e-2  # of squared deviations, that a round must gain for a start to be sought further
+_ROUNDS = 120  # residuals that are computed at most
+_TIMES = 8.0  # of the law, which a window of samples is as long as
+_FEWEST = 40  # samples in a window
+_GAIN = 1e-2  # of squared deviations, that a round must promise for the search to go on
 _NUDGE = 1e-5  # relative change of a parameter for slopes
-_STEP = 0.1  # of the law's time, which a step of the integration is at most
+_STEP = 0.4  # of the law's time, which a step of the integration is at most
+_FINEST = 32  # times finer steps may be
+_BLURRED = 0.05  # standard errors that the integration may move a parameter by
+_COARSE, _FINE = 0.4, 0.1  # of the law's time, over which slopes are carried by one linearisation, at first and at last
+_CLOSE = 0.3  # gain that coarse slopes promise, from which on they are fine
+_NEAR = 1.0  # gain of steps by the same slopes, within which these still give the covariance
 _LEAST = 1e-6  # of its first value, below which no positive parameter goes
 _FELT = 1e-6  # squared deviations that a parameter moves the residuals by, if it is doubled, for it to be told
 _DAMPED = 1e8  # damping beyond which nothing is left to try
+_TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; else they are computed anew
 
 
 class Matched(NamedTuple):
-    """Parameters with the covariance of noise 1, the squares that are left, how many numbers, and how it ended."""
+    """Parameters with the covariance of noise 1, starts, residuals, how many numbers, and how it ended."""
 
     values: FloatArray
     covariance: FloatArray
     told: npt.NDArray[np.bool_]  # parameters that the residuals feel
-    squares: float
+    starts: list[FloatArray]
+    residuals: list[FloatArray]
     freedom: int
     message: str
 
-
-class _Slopes(NamedTuple):
-    """Residuals of a window over their deviations, and their slopes in the start and in the parameters."""
-
-    residual: FloatArray
-    by_start: FloatArray
-    by_parameter: FloatArray
+    @property
+    def squares(self) -> float:
+        """Sum of the squared residuals."""
+        return _squares(self.residuals)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +63,89 @@ class Window:
     root: FloatArray
     start: FloatArray  # a first guess: positions and velocities, shape (2 n m,)
 
-    def residual(self, law: Any, start: FloatArray, nearby: list[tuple[Any, Any, float]]) -> _Slopes:
-        """Return the residuals of a law's solution from a start, with their slopes."""
-        seen, size = self.root.ravel() > 0.0, start.size // 2
-        places, slopes = along(law, self.t, start, self.q.shape[1:], nearby)
-        off = np.where(self.root > 0.0, np.nan_to_num(self.q.reshape(self.root.shape)) - places, 0.0)
-        scaled = (slopes * self.root[:, :, None]).reshape(len(seen), -1)[seen]
-        return _Slopes((self.root * off).ravel()[seen], scaled[:, : 2 * size], scaled[:, 2 * size :])
+    def solution(self, law: Any, start: FloatArray, finer: int) -> tuple[FloatArray, FloatArray]:
+        """Return positions and velocities of a law's solution from a start at the samples, shape (K, n, m)."""
+        q, p = np.empty(self.q.shape), np.empty(self.q.shape)
+        q[0], p[0] = start.reshape(2, *self.q.shape[1:])
+        for k in range(1, len(self.t)):
+            t, h = float(self.t[k - 1]), float(self.t[k] - self.t[k - 1])
+            q[k], p[k] = led(law, t, h, q[k - 1], p[k - 1], refine=finer, share=_STEP)
+        return q, p
+
+    def residual(self, law: Any, start: FloatArray, finer: int) -> FloatArray:
+        """Return the residuals of a law's solution over their deviations, shape (K n m,); 0 in gaps."""
+        off = np.nan_to_num(self.q - self.solution(law, start, finer)[0])
+        return (self.root * off.reshape(self.root.shape)).ravel()
+
+    def slopes(self, law: Any, nearby: Sequence[_Nearby], start: FloatArray, finer: int, block: float) -> FloatArray:
+        """Return the slopes of the law's solution over deviations in start and parameters, (K n m, 2 n m + P)."""
+        q, p = self.solution(law, start, finer)
+        size, (count, width) = start.size // 2, self.root.shape
+        now = np.concatenate([np.eye(2 * size), np.zeros((2 * size, len(nearby)))], axis=1)
+        found = np.empty((count, width, now.shape[1]))
+        found[0] = now[:size]
+        scales = law.scales
+        step = _within(self.t, np.inf if scales is None else block * scales.time)
+        for a in range(0, count - 1, step):
+            b = min(a + step, count - 1)
+            t, middle = 0.5 * float(self.t[a] + self.t[b]), (a + b) // 2
+            state = [0.5 * (x[middle] + x[a + b - middle]) for x in (q, p)]
+            rate = _Rate.at(law, nearby, t, *state)
+            for k in range(a, b):
+                now = rate.carried(now, float(self.t[k + 1] - self.t[k]))
+                found[k + 1] = now[:size]
+        found *= self.root[:, :, None]
+        return found.reshape(count * width, -1)
+
+
+class _Nearby(NamedTuple):
+    """A law with more and one with less of a parameter, and the difference."""
+
+    more: Any
+    less: Any
+    by: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Rate:
+    """A law's linearisation: ∂u/∂q, ∂u/∂p, and ∂u by parameters."""
+
+    by_q: FloatArray
+    by_p: FloatArray
+    forced: FloatArray
+
+    @classmethod
+    def at(cls, law: Any, nearby: Sequence[_Nearby], t: float, q: FloatArray, p: FloatArray) -> _Rate:
+        forced = np.zeros((q.size, 2 * q.size + len(nearby)))
+        for k, (more, less, by) in enumerate(nearby):
+            forced[:, 2 * q.size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
+        return cls(*_derivatives(law, t, q, p), forced)
+
+    def carried(self, slope: FloatArray, h: float) -> FloatArray:
+        """Return slopes after a step, to its third order."""
+        size = len(self.by_q)
+
+        def rate(x: FloatArray) -> FloatArray:
+            return np.concatenate([x[size:], self.by_q @ x[:size] + self.by_p @ x[size:]])
+
+        term = h * rate(slope)
+        term[size:] += h * self.forced
+        total = slope + term
+        for order in (2.0, 3.0):
+            term = h / order * rate(term)
+            total += term
+        return total
+
+
+def _within(t: FloatArray, time: float) -> int:
+    """Samples that lie within some time."""
+    return max(1, int(min(len(t), time / float(np.median(np.diff(t)) if len(t) > 1 else 1.0))))
+
+
+def usual_window(rec: Recording, law: Any) -> float:
+    """Return the duration of windows: several of the law's times, and of many samples."""
+    scales = law.scales
+    return max(_TIMES * (0.0 if scales is None else scales.time), _FEWEST * rec.interval)
 
 
 def windows(rec: Recording, duration: float) -> list[Window]:
@@ -82,77 +168,136 @@ def windows(rec: Recording, duration: float) -> list[Window]:
     return found
 
 
+@dataclass(frozen=True, eq=False)
+class _Normal:
+    """Normal equations of starts and parameters: slopes of each window, and the starts eliminated."""
+
+    slopes: list[FloatArray]
+    corners: list[FloatArray]  # inverse of each start's own block
+    across: list[FloatArray]  # block between a start and the parameters
+    reduced: FloatArray
+    damping: float
+
+    @classmethod
+    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> _Normal:
+        reduced, corners, across = np.zeros((count, count)), [], []
+        for each in slopes:
+            whole = each.T @ each
+            whole[np.diag_indices_from(whole)] *= 1.0 + damping
+            size = len(whole) - count
+            corners.append(_inverse(whole[:size, :size]))
+            across.append(whole[:size, size:])
+            reduced += whole[size:, size:] - across[-1].T @ corners[-1] @ across[-1]
+        return cls(slopes, corners, across, reduced, damping)
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Covariance of the parameters for noise of deviation 1."""
+        return _inverse(self.reduced)
+
+    def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
+        """Return the step of the parameters, of each start, and the squares that it promises to gain."""
+        downhill = [each.T @ off for each, off in zip(self.slopes, residuals, strict=True)]
+        sizes = [len(corner) for corner in self.corners]
+        slope, gained = np.zeros(len(self.reduced)), 0.0
+        for down, size, corner, across in zip(downhill, sizes, self.corners, self.across, strict=True):
+            slope += down[size:] - across.T @ (corner @ down[:size])
+        moved = self.covariance @ slope
+        starts = []
+        for down, size, corner, across in zip(downhill, sizes, self.corners, self.across, strict=True):
+            starts.append(corner @ (down[:size] - across @ moved))
+            gained += float(down[:size] @ starts[-1]) + float(down[size:] @ moved)
+        return moved, starts, gained
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """Pseudoinverse of a symmetric matrix that is scaled to 1 on its diagonal."""
+    if not len(matrix):
+        return matrix
+    size = np.sqrt(np.diag(matrix))
+    unit = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
+    found: FloatArray = unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
+    return found
+
+
 def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> Matched:
-    """Return the parameters by which solutions of a law match windows of samples best, the starts found with them."""
+    """Return the parameters by which solutions of a law match windows of samples best, the starts found with them.
+
+    Slopes are kept as long as steps gain what these promise: most rounds cost solutions alone.
+    """
     theta, starts, damping = first.copy(), [part.start for part in parts], 0.0
-    now = _evaluated(parts, with_values, theta, starts)
+    finer, block, since, message = _fine_enough(parts, with_values(theta)), _COARSE, 0.0, ""
+    now = _residuals(parts, with_values, theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
-    message = f"no end after {_ROUNDS} rounds"
+    normal, size = None, sum(int(np.count_nonzero(part.root)) for part in parts)
     for _ in range(_ROUNDS):
-        normal, gradient, back, open_ = _normal_equations(now, len(theta))
-        covariance = np.linalg.pinv(normal)
-        moved = np.linalg.pinv(normal + damping * np.diag(np.diag(normal))) @ gradient
-        if open_ + float(gradient @ moved) <= _GAIN:
-            message = "settled"
-            break
-        share = _share(theta, moved, first)
-        tried_theta = theta + share * moved
-        tried_starts = [x + share * step(moved) for x, step in zip(starts, back, strict=True)]
-        tried = _evaluated(parts, with_values, tried_theta, tried_starts)
-        if tried is None or _squares(tried) > _squares(now) * (1.0 + 1e-12):
+        if normal is None:
+            since, normal = 0.0, _normal(parts, with_values, theta, starts, finer, block, damping=damping)
+        moved, moves, promised = normal.step(now)
+        unit = max(_squares(now) / size, 1.0)  # residuals of a law that does not fit are larger than noise
+        if promised <= (_GAIN if block == _FINE else _CLOSE) * unit:
+            if block == _FINE and since <= _NEAR * unit and normal.damping == 0.0:
+                message = "settled"
+                break
+            block, damping, normal = _FINE, 0.0, None
+            continue
+        part_of = _share(theta, moved, first)
+        tried_theta = theta + part_of * moved
+        tried_starts = [x + part_of * move for x, move in zip(starts, moves, strict=True)]
+        tried = _residuals(parts, with_values, tried_theta, tried_starts, finer)
+        gained = 0.0 if tried is None else _squares(now) - _squares(tried)
+        if tried is not None and gained > 0.0:
+            theta, starts, now, since = tried_theta, tried_starts, tried, since + gained
+            damping = 0.1 * damping if damping > 1e-4 else 0.0
+        elif since == 0.0:
             damping = max(10.0 * damping, 1e-2)
             if damping > _DAMPED:
                 message = "no smaller residual was found nearby"
                 break
-            starts = [x + 0.1 * share * step(0.0 * moved) for x, step in zip(starts, back, strict=True)]
-            retried = _evaluated(parts, with_values, theta, starts)
-            now = now if retried is None else retried
-            continue
-        errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        settled = bool((np.abs(share * moved) <= _SETTLED * errors + 1e-12 * np.abs(theta)).all()) and damping < 1e-3
-        gained = _squares(now) - _squares(tried)
-        theta, starts, now, damping = tried_theta, tried_starts, tried, 0.1 * damping if damping > 1e-4 else 0.0
-        if settled and gained <= 1e-3 * max(_squares(now), 1e-300):
-            message = "settled"
-            break
-    normal, _, _, _ = _normal_equations(now, len(theta))
-    size = sum(len(each.residual) for each in now)
+        if not since or normal.damping or abs(gained - promised) > _TRUSTED * promised:
+            normal = None
+    if message != "settled" or normal is None:
+        message = message or f"no end after {_ROUNDS} rounds"
+        normal = _normal(parts, with_values, theta, starts, finer, _FINE)
     freedom = max(size - sum(x.size for x in starts) - len(theta), 1)
-    told = np.diag(normal) * theta**2 > _FELT
-    return Matched(theta, np.asarray(np.linalg.pinv(normal), np.float64), told, _squares(now), freedom, message)
+    told = np.diag(normal.reduced) * theta**2 > _FELT
+    return Matched(theta, normal.covariance, told, starts, now, freedom, message)
 
 
-def match_start(law: Any, part: Window) -> tuple[FloatArray, FloatArray]:
-    """Return the start from which a law's solution matches a window best, and the residuals over their deviations."""
-    start, now = part.start, part.residual(law, part.start, [])
-    for _ in range(_ROUNDS):
-        moved = np.linalg.lstsq(now.by_start, now.residual, rcond=None)[0]
-        for share in (1.0, 0.3, 0.1, 0.03):
-            tried = part.residual(law, start + share * moved, [])
-            if float(tried.residual @ tried.residual) < float(now.residual @ now.residual):
-                break
-        else:
+def _fine_enough(parts: list[Window], law: Any) -> int:
+    """How much finer steps must be for their error to move no parameter by more than a bit of its standard error."""
+    finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
+    while finer < _FINEST:
+        fine = [part.residual(law, part.start, 2 * finer) for part in parts]
+        if _squares([a - b for a, b in zip(coarse, fine, strict=True)]) <= _BLURRED**2:
             break
-        gained = float(now.residual @ now.residual) - float(tried.residual @ tried.residual)
-        start, now = start + share * moved, tried
-        if gained <= _GAIN:
-            break
-    return start, now.residual
+        finer, coarse = 2 * finer, fine
+    return finer
 
 
-def _evaluated(parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray]) -> Any:
-    """Residuals and slopes of all windows; None if there is no such law, or its solution is not finite."""
+def _residuals(
+    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], finer: int
+) -> list[FloatArray] | None:
+    """Residuals of all windows; None if there is no such law, or its solution is not finite."""
     try:
-        law, nearby = with_values(theta), nearby_laws(with_values, theta)
-        found = [part.residual(law, start, nearby) for part, start in zip(parts, starts, strict=True)]
+        law = with_values(theta)
+        found = [part.residual(law, start, finer) for part, start in zip(parts, starts, strict=True)]
     except FlockanaError:
         return None
-    return found if all(np.isfinite(each.residual).all() for each in found) else None
+    return found if all(np.isfinite(each).all() for each in found) else None
 
 
-def _squares(found: list[_Slopes]) -> float:
-    return float(sum(each.residual @ each.residual for each in found))
+def _normal(
+    parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], *by: Any, damping: float = 0.0
+) -> _Normal:
+    law, nearby = with_values(theta), _nearby_laws(with_values, theta)
+    slopes = [part.slopes(law, nearby, start, *by) for part, start in zip(parts, starts, strict=True)]
+    return _Normal.of(slopes, len(theta), damping)
+
+
+def _squares(found: list[FloatArray]) -> float:
+    return float(sum(each @ each for each in found))
 
 
 def _share(theta: FloatArray, moved: FloatArray, first: FloatArray) -> float:
@@ -160,70 +305,6 @@ def _share(theta: FloatArray, moved: FloatArray, first: FloatArray) -> float:
     falls = (first > 0.0) & (moved < 0.0)
     room = np.where(falls, (0.9 * theta - _LEAST * first) / np.where(falls, -moved, 1.0), np.inf)
     return float(min(1.0, np.maximum(room, 1e-3).min(initial=1.0)))
-
-
-def _normal_equations(found: list[_Slopes], count: int) -> tuple[FloatArray, FloatArray, list[Any], float]:
-    """Normal equations of the parameters with all starts eliminated, how starts follow a step, and what they gain."""
-    normal, gradient, back, gain = np.zeros((count, count)), np.zeros(count), list[Any](), 0.0
-    for each in found:
-        basis, corner = np.linalg.qr(each.by_start)
-        across = basis.T @ each.by_parameter
-        slopes, along_basis = each.by_parameter - basis @ across, basis.T @ each.residual
-        normal += slopes.T @ slopes
-        gradient += slopes.T @ each.residual
-        gain += float(along_basis @ along_basis)
-        back.append(_follower(corner, along_basis, across))
-    return normal, gradient, back, gain
-
-
-def _follower(corner: FloatArray, along_basis: FloatArray, across: FloatArray) -> Any:
-    inverse = np.linalg.pinv(corner)
-
-    def step(moved: FloatArray) -> FloatArray:
-        found: FloatArray = inverse @ (along_basis - across @ moved)
-        return found
-
-    return step
-
-
-def along(
-    law: Any, t: FloatArray, start: FloatArray, shape: tuple[int, ...], nearby: list[tuple[Any, Any, float]]
-) -> tuple[FloatArray, FloatArray]:
-    """Return the places of a law's solution (K, n m), and their slopes in the start and in parameters."""
-    size = start.size // 2
-    q, p = start[:size].reshape(shape).copy(), start[size:].reshape(shape).copy()
-    slope = np.concatenate([np.eye(2 * size), np.zeros((2 * size, len(nearby)))], axis=1)
-    places, slopes = np.empty((len(t), size)), np.empty((len(t), size, slope.shape[1]))
-    for k in range(len(t)):
-        if k:
-            before, h = float(t[k - 1]), float(t[k] - t[k - 1])
-            count, first_q, first_p = substeps(law, h, _STEP), q, p
-            for s in range(count):
-                q, p = rk4(law, before + s * h / count, h / count, q, p)
-            slope = _carried(law, before + 0.5 * h, h, 0.5 * (first_q + q), 0.5 * (first_p + p), slope, nearby)
-        places[k], slopes[k] = q.ravel(), slope[:size]
-    return places, slopes
-
-
-def _carried(
-    law: Any, t: float, h: float, q: FloatArray, p: FloatArray, slope: FloatArray, nearby: list[tuple[Any, Any, float]]
-) -> FloatArray:
-    """Slopes after a step, by the law's linearisation in its middle, to the fourth order of the step."""
-    size = q.size
-    by_q, by_p = _derivatives(law, t, q, p)
-    forced = np.zeros((2 * size, slope.shape[1]))
-    for k, (more, less, by) in enumerate(nearby):
-        forced[size:, 2 * size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
-
-    def rate(x: FloatArray) -> FloatArray:
-        return np.concatenate([x[size:], by_q @ x[:size] + by_p @ x[size:]])
-
-    term = h * (rate(slope) + forced)
-    total = slope + term
-    for order in (2.0, 3.0, 4.0):
-        term = h / order * rate(term)
-        total = total + term
-    return total
 
 
 def _derivatives(law: Any, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -244,12 +325,12 @@ def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) ->
     return np.stack(columns, axis=1)
 
 
-def nearby_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[tuple[Any, Any, float]]:
-    """Return for each parameter the law with more and with less of it, and the difference."""
+def _nearby_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[_Nearby]:
+    """For each parameter the law with more and with less of it, and the difference."""
     found = []
     for k, value in enumerate(values.tolist()):
         more, less = values.copy(), values.copy()
         by = _NUDGE * (abs(value) or 1.0)
         more[k], less[k] = value + by, value - by if value != 0.0 else 0.0
-        found.append((with_values(more), with_values(less), float(more[k] - less[k])))
+        found.append(_Nearby(with_values(more), with_values(less), float(more[k] - less[k])))
     return found

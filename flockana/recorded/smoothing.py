@@ -39,15 +39,7 @@ class _Filtered(NamedTuple):
 
 
 def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
-    """Return the smoothing spline through each series, with the largest intensity of its jerk that they allow.
-
-    Examples
-    --------
-    >>> t = np.linspace(0.0, 1.0, 21)
-    >>> fit = smoothed(t, np.sin(3.0 * t)[:, None], np.full((21, 1), 1e-6))
-    >>> bool(np.abs(fit.mean[:, 0, 1] - 3.0 * np.cos(3.0 * t)).max() < 0.02)
-    True
-    """
+    """Return the smoothing spline through each series, with the largest intensity of its jerk that they allow."""
     unit = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
     middle = np.nanmean(y, axis=0)
     spread = float(np.nanmax(np.abs(y - middle))) or 1.0

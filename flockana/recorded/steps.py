@@ -17,14 +17,7 @@ _WHOLE = 1e-6  # of a step by which an interval between samples may miss a whole
 
 
 def substeps(law: Any, interval: float, share: float = SHARE) -> int:
-    """Return the number of integration steps between samples.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> substeps(Algorithm1(), 0.02) >= 1
-    True
-    """
+    """Return the number of integration steps between samples."""
     scales = law.scales
     time = interval if scales is None else scales.time
     return int(min(max(ceil(interval / (share * time)), 1), _MOST))
@@ -33,22 +26,17 @@ def substeps(law: Any, interval: float, share: float = SHARE) -> int:
 def predicted(
     law: Any, t: FloatArray, q: FloatArray, p: FloatArray, *, refine: int = 1
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m).
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> q = np.array([[[0.0], [50.0]], [[1.0], [50.0]]])
-    >>> predicted(Algorithm1(), np.array([0.0, 1.0]), q, np.ones((2, 2, 1)))[0].round(9).tolist()
-    [[[1.0], [51.0]]]
-    """
+    """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m)."""
     ends = np.empty((2, max(len(t) - 1, 0), *q.shape[1:]))
     for k in range(len(t) - 1):
-        ends[0, k], ends[1, k] = _led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine)
+        ends[0, k], ends[1, k] = led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine=refine)
     return ends[0], ends[1]
 
 
-def _led(law: Any, t: float, h: float, q: FloatArray, p: FloatArray, refine: int) -> tuple[FloatArray, FloatArray]:
+def led(
+    law: Any, t: float, h: float, q: FloatArray, p: FloatArray, *, refine: int = 1, share: float = SHARE
+) -> tuple[FloatArray, FloatArray]:
+    """Return where a law leads from a state within a time h."""
     if isinstance(law, DiscreteLaw):
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):
@@ -59,21 +47,14 @@ def _led(law: Any, t: float, h: float, q: FloatArray, p: FloatArray, refine: int
         for k in range(steps):
             q, p, _, memory = law.step(t + k * law.dt, q, p, memory)
         return q, p
-    count = substeps(law, h) * refine
+    count = substeps(law, h, share) * refine
     for k in range(count):
         q, p = rk4(law, t + k * h / count, h / count, q, p)
     return q, p
 
 
 def rk4(law: Any, t: float, h: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the state after one step of the classical Runge-Kutta scheme.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> rk4(Algorithm1(), 0.0, 0.5, np.zeros((1, 1)), np.ones((1, 1)))[0].tolist()
-    [[0.5]]
-    """
+    """Return the state after one step of the classical Runge-Kutta scheme."""
     u1 = law.flow(t, q, p)[0]
     p2 = p + 0.5 * h * u1
     u2 = law.flow(t + 0.5 * h, q + 0.5 * h * p, p2)[0]

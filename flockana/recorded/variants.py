@@ -25,14 +25,7 @@ class Variant:
 
 
 def variants(law: Any) -> tuple[Variant, ...]:
-    """Return the forms to try in place of a law's own.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> len(variants(Algorithm1())), variants(Algorithm1())[0].gain
-    (4, 'c1_alpha')
-    """
+    """Return the forms to try in place of a law's own."""
     found: list[Variant] = []
     alpha = getattr(law, "alpha", None)
     if isinstance(alpha, AlphaInteraction) and hasattr(law, "gains"):

@@ -18,6 +18,7 @@ from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.claims import vacuous
 from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, as_known
+from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.theorem import Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
@@ -177,15 +178,17 @@ def verify(
     0.6666666666666666
     """
     if _is_recording(trajectory):
-        if name is None or basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
+        if basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
             raise ArgumentError(
                 "of a recording: expected verify(theorem, recording, law=...), or d= and r= without a law"
             )
-        from flockana.theorems.on_recordings import verify_recording
+        from flockana.theorems.on_recordings import verify_recording, verify_recording_together
 
+        used, case = Tolerances() if tolerances is None else tolerances, {"law": law, "d": d, "r": r}
+        if name is None:
+            return verify_recording_together(trajectory, used, **case, subject=subject)
         item = name if isinstance(name, Theorem) else theorem(name)
-        used = Tolerances() if tolerances is None else tolerances
-        return verify_recording(item, trajectory, used, law=law, d=d, r=r, subject=subject)
+        return verify_recording(item, trajectory, used, **case, subject=subject)
     if name is None:
         from flockana.theorems.together import verify_together  # which checks each theorem by this function
 
@@ -274,4 +277,6 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
         return _of_another_law(item, run, tolerances, subject)
     ensure_fits(run)
     seen = Observed.of(run)
-    return Verdict(item.id, *as_known(*item.examine(seen, tolerances), seen), tolerances, subject, item.author)
+    examined = on_steps if is_about_steps(item, seen) else Theorem.examine
+    known = as_known(*examined(item, seen, tolerances), seen)
+    return Verdict(item.id, *known, tolerances, subject, item.author)

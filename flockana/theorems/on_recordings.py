@@ -23,11 +23,14 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
+from flockana.theorems.catalogue import theorem
 from flockana.theorems.claims import vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed, as_known
+from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, largest_over
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+from flockana.theorems.together import Verdicts, theorems_about
 
 DEFINITIONS = ("alpha-flocking", "alpha-flocking-strict", "os-5-terminal")  # which need no law
 _WAYS = 3  # random directions in which states are moved to the ends of their enclosures
@@ -139,9 +142,21 @@ def verify_recording(
         claims = tuple(vacuous(each, first, by=item.by(each)) for each in _names(item))
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
-    hypotheses, claims = as_known(*item.examine(seen, tolerances), seen)
+    examined = on_steps if is_about_steps(item, seen) else Theorem.examine
+    hypotheses, claims = as_known(*examined(item, seen, tolerances), seen)
     decided = tuple(_weighed(claim, rec, first) for claim in claims)
     return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
+
+
+def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: Any = None, **case: Any) -> Verdicts:
+    """Return the verdicts of all theorems about a law on a recording; without a law, of definitions about samples."""
+    rec.ensure_complete("a verdict")
+    if law is None:
+        return Verdicts(verify_recording(theorem(name), rec, tolerances, **case) for name in DEFINITIONS)
+    p = rec.p if rec.p is not None else rec.with_velocities().p
+    assert p is not None
+    names = theorems_about(ensure_law(law), rec.q[0], p[0], float(rec.t[0]))
+    return Verdicts(verify_recording(theorem(name), rec, tolerances, law=law, **case) for name in names).about_the_law()
 
 
 def _names(item: Theorem) -> tuple[str, ...]:

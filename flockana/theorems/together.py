@@ -11,6 +11,7 @@ from flockana.base.tables import MARKS, html_table, latex_table, tex
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.catalogue import catalogue, theorem, verify
 from flockana.theorems.observed import Observed
+from flockana.theorems.of_schemes import ON_STEPS, is_about_steps
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
 
 
@@ -41,6 +42,10 @@ class Verdicts(tuple[Verdict, ...]):
 
     def _repr_html_(self) -> str:
         return html_table(self.rows(), ("theorem", "status", "rigour", "decided by", "title"))
+
+    def about_the_law(self) -> Verdicts:
+        """Return these verdicts without vacuous ones of theorems that name no law, as they are about another."""
+        return Verdicts(v for v in self if v.status != "vacuous" or theorem(v.theorem).law is not None)
 
     def to_latex(self) -> str:
         """Return the table as a LaTeX ``tabular`` in the style of booktabs."""
@@ -82,7 +87,7 @@ def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ..
 def _is_about(item: Theorem, seen: Observed) -> bool:
     if item.kind != "trajectory":
         return False
-    return item.law is None or item.law(seen).status != "unmet"
+    return item.law is None or item.law(seen).status != "unmet" or (item.id in ON_STEPS and is_about_steps(item, seen))
 
 
 def verify_together(
@@ -104,5 +109,4 @@ def verify_together(
         for name in names:
             advance(len(made), name)
             made.append(verify(theorem(name), run, tolerances=tolerances, subject=subject))
-    # a theorem that names no law of its own says in its hypotheses whether it is about this one
-    return Verdicts(v for v in made if v.status != "vacuous" or theorem(v.theorem).law is not None)
+    return Verdicts(made).about_the_law()

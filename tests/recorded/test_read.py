@@ -29,11 +29,10 @@ def written(path, frame, **options):
     return path
 
 
-def ensure_same(rec, velocities=True):
+def ensure_same(rec):
     np.testing.assert_array_equal(rec.t, T)
     np.testing.assert_array_equal(rec.q, Q)
-    if velocities:
-        np.testing.assert_array_equal(rec.p, P)
+    np.testing.assert_array_equal(rec.p, P)
 
 
 @pytest.mark.parametrize("sep", [",", ";", "\t"])

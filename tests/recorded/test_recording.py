@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.errors import ArgumentError
+from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.recorded.accuracy import band
 from flockana.recorded.recording import recording_of
 
@@ -107,10 +107,22 @@ def test_measures_at_a_gap_are_those_of_the_agents_that_were_seen(run):
 
 def test_a_recording_is_drawn_and_played_without_a_law(run, tmp_path):
     rec = recording_of(run, bound=0.0)
-    page = rec.player(d=7.0, r=8.4).save(str(tmp_path / "it.html"))
-    assert page.stat().st_size > 10_000
+    assert rec.player(d=7.0, r=8.4).save(str(tmp_path / "it.html")).stat().st_size > 10_000
     assert rec.trajectory(d=7.0, r=8.4).metric("connectivity")[0] == fl.connectivity(run.q[0], 8.4)
     assert "bound" in repr(rec)
+
+
+@pytest.mark.parametrize("accuracy", [{}, {"bound": 0.1, "p_bound": 0.2}, {"sd": 0.3, "estimated": True}])
+def test_a_saved_recording_is_read_back_with_its_accuracy(run, tmp_path, accuracy):
+    q = run.q.copy()
+    q[3, 2] = np.nan
+    rec = fl.Recording(T, q, run.p, **accuracy, ids=[f"bird{i}" for i in range(12)], source="a camera")
+    back = fl.read_recording(rec.save(tmp_path / "it.npz"))
+    for name in ("t", "q", "p", "u", "bound", "sd", "p_bound", "p_sd", "estimated", "ids", "source"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(rec, name), err_msg=name)
+    assert fl.read_recording(tmp_path / "it.npz", sd=0.5).accuracy.kind == "sd"
+    with pytest.raises(FlockanaError, match=r"expected a name that ends in \.npz"):
+        rec.save(tmp_path / "it.csv")
 
 
 def test_what_needs_every_agent_names_the_first_gap(run):

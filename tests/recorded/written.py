@@ -13,7 +13,7 @@ D, R, EPS, H, A, B = 7.0, 8.4, 0.1, 0.2, 5.0, 5.0
 C1A, C2A, C1G, C2G = 30.0, 2.0 * np.sqrt(30.0), 1.1, 2.0 * np.sqrt(1.1)
 
 
-def own_acceleration(q, p, *, pull_per_axis=False, direction_per_axis=False, c2a=C2A):
+def own_acceleration(q, p, *, pull_per_axis=False, c2a=C2A):
     """Algorithm 2 as a user writes it, all pairs at once."""
 
     def norm(s):
@@ -24,7 +24,7 @@ def own_acceleration(q, p, *, pull_per_axis=False, direction_per_axis=False, c2a
     bump = np.where(z < H, 1.0, np.where(z < 1.0, 0.5 * (1.0 + np.cos(np.pi * (z - H) / (1.0 - H))), 0.0))
     y = norm(s) - norm(D) + abs(A - B) / np.sqrt(4.0 * A * B)
     phi = bump * 0.5 * ((A + B) * y / np.sqrt(1.0 + y**2) + A - B)
-    n = x / np.sqrt(1.0 + EPS * (x**2 if direction_per_axis else (s**2)[:, :, None]))
+    n = x / np.sqrt(1.0 + EPS * (s**2)[:, :, None])
     np.fill_diagonal(bump, 0.0)
     np.fill_diagonal(phi, 0.0)
     u = C1A * (phi[:, :, None] * n).sum(axis=1) + c2a * (bump[:, :, None] * (p[None] - p[:, None])).sum(axis=1)

@@ -5,6 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
+from flockana.theorems.on_recordings import DEFINITIONS
 from tests.recorded.written import LAW, P0, Q0, own_run
 
 T = np.linspace(0.0, 6.0, 151)
@@ -119,8 +120,18 @@ def test_schemes_are_laws_of_recordings_too():
     assert "is off by" in unmet(rec, LAW)
 
 
+def test_without_a_theorem_all_that_apply_are_judged(own, verdict):
+    rec = fl.Recording(T, *own, bound=1e-6, source="own code")
+    found = {one.theorem: one for one in fl.verify(None, rec, law=LAW)}
+    assert {"os-3", "energy", "alpha-flocking"} <= set(found)
+    assert "os-1" not in found
+    assert found["os-3"].summary == verdict.summary
+    assert all(one.hypotheses[0].name == "the samples follow the law" for one in found.values())
+
+
 def test_definitions_about_samples_need_no_law(own):
     rec = fl.Recording(T, *own, bound=1e-6)
+    assert [one.theorem for one in fl.verify(None, rec, d=7.0, r=8.4)] == list(DEFINITIONS)
     found = fl.verify("alpha-flocking", rec, d=7.0, r=8.4)
     assert [c.status for c in found.claims] == ["verified"] * 4
     assert "at its samples" in found.subject

@@ -22,13 +22,7 @@ _NAMES = {
 def named_arrays(
     arrays: Mapping[str, Any], where: str, *, columns: Mapping[str, Any] | None = None, dt: float | None = None
 ) -> dict[str, Any]:
-    """Return t, q, p and u among arrays by name.
-
-    Examples
-    --------
-    >>> sorted(named_arrays({"time": [0.0], "pos": [[[1.0]]], "mass": 2.0}, "it.npz"))
-    ['q', 't']
-    """
+    """Return t, q, p and u among arrays by name."""
     lower = {name.lower(): name for name in arrays}
     found: dict[str, Any] = {}
     for kind, names in _NAMES.items():

@@ -49,24 +49,12 @@ class Layout:
 
 
 def plain(name: Any) -> str:
-    """Return a column's name without unit, capitals, and blanks or # at its ends.
-
-    Examples
-    --------
-    >>> plain(" X [m]"), plain("Time (s)")
-    ('x', 'time')
-    """
+    """Return a column's name without unit, capitals, and blanks or # at its ends."""
     return _UNIT.sub("", str(name).lstrip("# ")).strip().lower()
 
 
 def coordinate(name: str) -> tuple[str, int] | None:
-    """Return the kind and the axis that a plain name stands for, None for anything else.
-
-    Examples
-    --------
-    >>> coordinate("vy"), coordinate("pos_x"), coordinate("mass")
-    (('p', 1), ('q', 0), None)
-    """
+    """Return the kind and the axis that a plain name stands for, None for anything else."""
     for kind, forms in KINDS.items():
         for axis, letter in enumerate(AXES):
             if name in {form.format(letter) for form in forms}:
@@ -75,13 +63,7 @@ def coordinate(name: str) -> tuple[str, int] | None:
 
 
 def layout_of(names: Sequence[Any], where: str) -> Layout:
-    """Return the layout of a table by its header.
-
-    Examples
-    --------
-    >>> layout_of(["time", "id", "x", "y", "mass"], "flock.csv").long["q"]
-    ['x', 'y']
-    """
+    """Return the layout of a table by its header."""
     by_name = {plain(name): str(name) for name in names}
     time = next((by_name[each] for each in TIMES if each in by_name), None)
     frame = next((by_name[each] for each in FRAMES if each in by_name), None)

@@ -22,15 +22,7 @@ def table_arrays(
     dt: float | None = None,
     clock: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p, u and ids of a table, as `Recording` takes them.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> two = pd.DataFrame({"time": [0.0, 0.0], "id": ["a", "b"], "x": [1.0, 8.0]})
-    >>> table_arrays(two)["q"].tolist()
-    [[[1.0], [8.0]]]
-    """
+    """Return t, q, p, u and ids of a table, as `Recording` takes them."""
     where = str(frame.attrs.get("where", "the frame"))
     layout = (
         given_layout(columns, list(frame), where) if isinstance(columns, Mapping) else layout_of(list(frame), where)

@@ -60,14 +60,7 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
 
 
 def numbers(frame: Any, column: str) -> Any:
-    """Return a column as floats with NaN for gaps; raise on the first cell that is no finite number.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> numbers(pd.DataFrame({"x": [1, None]}), "x").tolist()
-    [1.0, nan]
-    """
+    """Return a column as floats with NaN for gaps; raise on the first cell that is no finite number."""
     import pandas as pd
 
     series = frame[column]
@@ -87,14 +80,7 @@ def numbers(frame: Any, column: str) -> Any:
 
 
 def row_name(frame: Any, k: int) -> str:
-    """Return where a row stands, for a message: its line in a file, or its index in a frame.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> row_name(pd.DataFrame({"x": [1.0]}), 0)
-    'the frame, row 0'
-    """
+    """Return where a row stands, for a message: its line in a file, or its index in a frame."""
     where, first = frame.attrs.get("where", "the frame"), frame.attrs.get("first")
     if first is None:
         return f"{where}, row {frame.index[k]}"

@@ -65,7 +65,8 @@ THEOREM = Theorem(
         "velocity; (iii) so does an uninformed agent with an infinite sequence of contiguous, nonempty, uniformly "
         "bounded intervals from t0 on, across each of which a joint path leads from it to an informed one; (iv) "
         "with Q(0) < (k+1) c*, at most k distinct pairs collide. (iv) holds at each instant, and for k = 0; over time "
-        "more pairs can (erratum E13)."
+        "more pairs can (erratum E13). (iii) is open here: links may be as weak as one likes when they come and go, "
+        "and a run shows its own end only."
     ),
     source="Su, Wang and Lin 2009, on a minority of informed agents",
     kind="trajectory",

@@ -52,6 +52,11 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     return Hypothesis(name, "met" if sure else "assumed", float(slack[since:].min()), detail), since
 
 
+def start_of_condition(seen: Observed) -> int:
+    """Return the first sample from which condition (76) holds to the end, at most the last but one."""
+    return min(_condition(seen)[1], len(seen.t) - 2)
+
+
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     run = seen.run
     slow_enough, since = _condition(seen)

@@ -1,0 +1,106 @@
+"""What theorems on motion say of a scheme's steps (`ExplicitEuler`, `SemiImplicitEuler`, `TaylorStep`).
+
+A theorem about a flow is vacuous of a run in steps; definitions about samples hold of one as they stand. Of the energy
+identity and of Theorem 6 the library says more: the energy loses in each step what it loses along the flow, and changes
+by the scheme's own defect; whether it falls nevertheless is seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+from flockana.dynamics.trajectory import Trajectory
+from flockana.laws.scheme import Scheme
+from flockana.recorded.steps import predicted
+from flockana.theorems.claims import judged, vacuous
+from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.observed import Observed
+from flockana.theorems.olfati_saber.os_6 import start_of_condition
+from flockana.theorems.rounding import EPS
+from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+
+ON_STEPS = {
+    "energy": "where no term adds energy, H rises in a step by no more than the scheme's own defect",
+    "os-6": "where its hypotheses hold of the law's flow, H rises in a step by no more than the scheme's own defect",
+}
+_FINE = 8  # times finer than usual the flow is integrated
+
+
+def says_of_schemes(item: Theorem) -> str:
+    """Return what a theorem on motion says of a scheme's run, in a sentence; empty for other theorems."""
+    if item.kind != "trajectory":
+        return ""
+    if item.id in ON_STEPS:
+        return f"Of a scheme: {ON_STEPS[item.id]}."
+    if item.law is None:
+        return "Of a scheme: the same, as it speaks of samples or states its law among its hypotheses."
+    return "Of a scheme: nothing, as it is about the law's flow, unless its first hypothesis names the scheme."
+
+
+def is_about_steps(item: Theorem, seen: Observed) -> bool:
+    """Return whether a run is in steps of a scheme whose law the theorem is about, and the scheme is not."""
+    law = seen.law
+    if not isinstance(law, Scheme) or item.kind != "trajectory" or item.law is None:
+        return False
+    return item.law(seen).status == "unmet" and item.law(_of_law(seen, law)).status != "unmet"
+
+
+def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
+    law: Scheme = seen.law
+    detail = f"{type(law).__name__} steps {type(law.law).__name__} by {law.dt:g}. {says_of_schemes(item)}"
+    missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
+    claims = [vacuous(name, missed, by=item.by(name)) for name in item.claims]
+    if item.id not in ON_STEPS or len(seen.t) < 2:
+        return (missed,), tuple(claims)
+    flow = _of_law(seen, law)
+    needs, _ = item.check(flow, tolerances)
+    since = start_of_condition(flow) if item.id == "os-6" else 0
+    return (missed,), (*claims, *_of_energy(seen.run, since, list(needs), tolerances))
+
+
+def _of_law(seen: Observed, law: Scheme) -> Observed:
+    """The states of a scheme's run as samples of its law, nothing known between them."""
+    run = seen.run
+    work = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here
+    return Observed.alone(Trajectory(run.t, run.q, run.p, run.u, law.law, work))
+
+
+def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerances: Tolerances) -> list[Claim]:
+    """Both claims of ours: the energy falls from sample to sample, and rises by no more than the scheme's defect."""
+    run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
+    energy = run.energy()
+    unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS
+    led, rough = (_ends(law, run, refine) for refine in (_FINE, _FINE // 2))
+    change, defect = np.diff(energy), energy[1:] - led
+    worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
+    own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
+    rises, most = int((change > 0.0).sum()), max(float(change.max()), 0.0)
+    falls = judged(
+        "steps-fall",
+        Enclosure.around(tolerances.energy - change / unit, rounding),
+        needs,
+        computed=float(change.max()) / unit,
+        stated=f"H rises by no more than {tolerances.energy:g} of the largest |H| from sample to sample",
+        detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {own}",
+    )
+    lost = energy[:-1] - led
+    within = judged(
+        "steps-defect",
+        Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit),
+        needs,
+        computed=float(lost.min()) / unit,
+        stated="H(t + dt) - H(t) <= the scheme's defect: H at the end of the step less H where the law's flow leads",
+        detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {own}",
+    )
+    return [replace(claim, by="flockana") for claim in (falls, within)]
+
+
+def _ends(law: Any, run: Trajectory, refine: int) -> FloatArray:
+    """H where the law's flow leads from each sample by the time of the next."""
+    ends = predicted(law, run.t, run.q, run.p, refine=refine)
+    return np.array([law.hamiltonian(float(t), *state) for t, *state in zip(run.t[1:], *ends, strict=True)])
