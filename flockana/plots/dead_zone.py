@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.plots.snapshot import configuration, draw_sample, in_view
@@ -38,6 +39,7 @@ _SAMPLES = 300
 _GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and their agents, again from the first
 
 
+@check_kinds
 def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw F against the distance of a pair (Fig. 2 of the paper); a dot marks the value taken at each jump.
 

@@ -18,6 +18,7 @@ from flockana.base.checks import (
     ensure_positive,
 )
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
@@ -111,6 +112,7 @@ def h2_norm(system: StateSpace) -> float:
     return sqrt(max(0.0, float(np.trace(system.C @ gramian @ system.C.T))))
 
 
+@check_kinds
 def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
     """Covariance of the outputs under white noise of one intensity in every input, from the Lyapunov equation.
 
@@ -256,6 +258,7 @@ class NormTable:
     bounds: FloatArray  # shape (N, 2): closed-form bounds of `h2`
 
 
+@check_kinds
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
     """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 
