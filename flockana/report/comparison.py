@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
-from matplotlib.figure import Figure
-
-from flockana import plots
 from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _COLUMNS = 5
 _SIZE = 3.1  # inches of a panel
@@ -84,12 +85,16 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
     rows = -(-len(outcomes) // columns)
 
     def paths(figure: Figure) -> None:
+        from flockana import plots
+
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for unused in axes[len(outcomes) :]:
             unused.remove()
         plots.side_by_side(outcomes, ax=axes[: len(outcomes)])
 
     def together(figure: Figure) -> None:
+        from flockana import plots
+
         plots.velocity_diameters(outcomes, ax=figure.subplots())
 
     names = ", ".join(outcome.entry.name for outcome in outcomes)

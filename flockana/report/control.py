@@ -6,11 +6,10 @@ import base64
 import json
 from dataclasses import dataclass
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from flockana import plots
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.charts import Chart, Curve, panels
@@ -20,6 +19,9 @@ from flockana.stability import Linearisation
 from flockana.stability.norms import norms_against_size
 from flockana.stability.sweeps import centre_locus
 from flockana.stability.translational import CentreOfMass
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SIZES = (3, 7, 12, 19)
 
@@ -48,6 +50,8 @@ def control_pictures() -> tuple[Picture, ...]:
     table = norms_against_size(Algorithm1(), _SIZES)
 
     def roots(figure: Figure) -> None:
+        from flockana import plots
+
         axes = figure.subplots(1, 2)
         plots.root_locus(locus, ax=axes[0])
         plots.norms(table, ax=axes[1])

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from flockana import plots
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.lattice import harborth, hexagonal_spiral
@@ -17,6 +15,9 @@ from flockana.report.figures import Picture
 from flockana.report.image import svg
 from flockana.report.pages import Page
 from flockana.theorems import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SIZES = range(3, 21)
 _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
@@ -87,6 +88,8 @@ def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
 
     def draw(figure: Figure) -> None:
+        from flockana import plots
+
         plots.collapse_brackets(brackets, ax=figure.subplots())
 
     text = (
@@ -104,6 +107,8 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
     together, ground = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
 
     def draw(figure: Figure) -> None:
+        from flockana import plots
+
         plots.barrier(together, ground, witness["c*"], ax=figure.subplots())
 
     text = (
