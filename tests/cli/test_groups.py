@@ -23,6 +23,11 @@ def test_root_help_has_every_command_once_with_its_example(capsys):
     assert all(entry[1].startswith(f"flockana {name} ") for group in GROUPS.values() for name, entry in group.items())
 
 
+@pytest.mark.parametrize("name", [name for name in _COMMANDS if name != "explore"])  # explore serves a page
+def test_every_command_has_results_to_pipe(capsys, name):
+    assert "--json" in printed(capsys, name, "--help")[1]
+
+
 def test_theorems_are_a_line_each_and_filtered(capsys):
     _, text, _ = printed(capsys, "theorems", "collision", "--source", "olfati", "--status", "verified")
     names = [line.split()[0] for line in text.splitlines()[1:-1]]
@@ -57,7 +62,8 @@ def test_a_saved_run_is_animated_and_checked_with_one_refusal(capsys, tmp_path):
     code, text, _ = printed(capsys, "run", "hexagon", "-o", str(run), "--json")
     assert code == 0
     assert json.loads(text)["status"] == "complete"
-    assert printed(capsys, "animate", "--on", str(run), "-o", str(film), "--seconds", "0.2")[0] == 0
+    code, text, _ = printed(capsys, "animate", "--on", str(run), "-o", str(film), "--seconds", "0.2", "--json")
+    assert (code, json.loads(text)["file"]) == (0, str(film))
     assert film.stat().st_size > 0
     _, text, _ = printed(capsys, "verify", "os-3", "--on", str(run), "--no-report")
     assert text.count("Algorithm 2 is applied: Algorithm1") == 3  # one for each author of claims
