@@ -16,8 +16,8 @@ _R = TypeVar("_R")
 # what messages ask for, by the class in an annotation; classes that are not listed are not checked
 _EXAMPLES = {
     "AlphaInteraction": "the pair interaction of a law, as Algorithm2().alpha",
-    "CollapseDiagram": "what lattice.collapse_diagram(...) gives",
-    "DataArray": "an xarray.DataArray, as of phase_order(...)",
+    "CollapseDiagram": "what equilibria.collapse_diagram(...) gives",
+    "DataArray": "an xarray.DataArray, as phases(...) gives it",
     "Dataset": "an xarray.Dataset, as ensemble(...) gives it",
     "DeadZoneInteraction": "the pair interaction of DeadZoneFlocking",
     "Falsification": "what falsify(...) gives",
@@ -26,7 +26,7 @@ _EXAMPLES = {
     "Mapping": "a mapping, such as a dict of values by label",
     "Mode": "one of the modes of linearise(...)",
     "NormTable": "what stability.norms_against_size(...) gives",
-    "Reynolds": "a law such as Reynolds()",
+    "Reynolds": "what reynolds.reynolds(...) gives",
     "SampledBasin": "what sample_basin(...) gives",
     "Sequence": "a sequence",
     "StateSpace": "a control.StateSpace, as disturbance_system(...) gives it",

@@ -83,13 +83,7 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
 
 @check_kinds
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
-
-    Parameters
-    ----------
-    sweep : flockana.stability.sweeps.Sweep
-        From `centre_locus` or `gain_sweep`.
-    """
+    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest."""
     ax = ensure_axes(ax)
     roots = sweep.eigenvalues
     width, alpha = line_width_and_opacity(roots.shape[1])
@@ -104,13 +98,7 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw the real parts of all eigenvalues over the gain, the largest one in front.
-
-    Parameters
-    ----------
-    sweep : flockana.stability.sweeps.Sweep
-        From `gain_sweep` or `centre_locus`.
-    """
+    """Draw the real parts of all eigenvalues over the gain, the largest one in front."""
     ax = ensure_axes(ax)
     decay = sweep.eigenvalues.real[:, sweep.neutral :]
     width, alpha = line_width_and_opacity(decay.shape[1])
@@ -126,13 +114,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
-    """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic.
-
-    Parameters
-    ----------
-    table : flockana.stability.norms.NormTable
-        From `norms_against_size`.
-    """
+    """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic."""
     ax = ensure_axes(ax)
     n, (low, high) = table.sizes, table.bounds.T
     ax.fill_between(n, low, high, color=BLUE, alpha=0.15, linewidth=0.0, label="bounds of H₂")
