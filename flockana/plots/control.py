@@ -83,7 +83,13 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
 
 @check_kinds
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest."""
+    """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
+
+    Parameters
+    ----------
+    sweep : flockana.stability.sweeps.Sweep
+        From `centre_locus` or `gain_sweep`.
+    """
     ax = ensure_axes(ax)
     roots = sweep.eigenvalues
     width, alpha = line_width_and_opacity(roots.shape[1])
@@ -98,7 +104,13 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
-    """Draw the real parts of all eigenvalues over the gain, the largest one in front."""
+    """Draw the real parts of all eigenvalues over the gain, the largest one in front.
+
+    Parameters
+    ----------
+    sweep : flockana.stability.sweeps.Sweep
+        From `gain_sweep` or `centre_locus`.
+    """
     ax = ensure_axes(ax)
     decay = sweep.eigenvalues.real[:, sweep.neutral :]
     width, alpha = line_width_and_opacity(decay.shape[1])
@@ -114,7 +126,13 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
-    """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic."""
+    """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic.
+
+    Parameters
+    ----------
+    table : flockana.stability.norms.NormTable
+        From `norms_against_size`.
+    """
     ax = ensure_axes(ax)
     n, (low, high) = table.sizes, table.bounds.T
     ax.fill_between(n, low, high, color=BLUE, alpha=0.15, linewidth=0.0, label="bounds of H₂")

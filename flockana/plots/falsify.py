@@ -23,7 +23,13 @@ _WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarit
 
 @check_kinds
 def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
-    """Draw a search: the margin of its claim in each run, the least margin so far, and refuted runs."""
+    """Draw a search: the margin of its claim in each run, the least margin so far, and refuted runs.
+
+    Parameters
+    ----------
+    found : flockana.falsify.Falsification
+        What the search found.
+    """
     return search_history(
         found.margins[found.claim],
         found.history,

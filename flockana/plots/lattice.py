@@ -128,7 +128,13 @@ def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster
 
 @check_kinds
 def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
-    """Draw the shortest distance of the relaxed flocks over their size and c1γ/c1α, and where agents coincide."""
+    """Draw the shortest distance of the relaxed flocks over their size and c1γ/c1α, and where agents coincide.
+
+    Parameters
+    ----------
+    diagram : CollapseDiagram
+        Shortest distances, sizes and ratios.
+    """
     axes = ensure_axes(ax)
     n, ratio = np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :])
     apart, together, failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
