@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import Any
 
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _COLUMNS = 5
 _SIZE = 3.1  # inches of a panel
@@ -84,18 +81,11 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
     columns = min(_COLUMNS, len(outcomes))
     rows = -(-len(outcomes) // columns)
 
-    def paths(figure: Figure) -> None:
-        from flockana import plots
-
+    def paths(figure: Any) -> None:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for unused in axes[len(outcomes) :]:
             unused.remove()
-        plots.side_by_side(outcomes, ax=axes[: len(outcomes)])
-
-    def together(figure: Figure) -> None:
-        from flockana import plots
-
-        plots.velocity_diameters(outcomes, ax=figure.subplots())
+        plots().side_by_side(outcomes, ax=axes[: len(outcomes)])
 
     names = ", ".join(outcome.entry.name for outcome in outcomes)
     return (
@@ -106,6 +96,6 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
         ),
         Picture(
             f"Greatest difference of two velocities over that at the start: {names}. Flocking is its fall to 0.",
-            svg(together, (8.0, 4.2)),
+            svg(lambda figure: plots().velocity_diameters(outcomes, ax=figure.subplots()), (8.0, 4.2)),
         ),
     )

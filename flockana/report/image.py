@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from html import escape
 from io import StringIO
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -30,14 +31,19 @@ _LONG = 400  # characters of a path; markers, which are small and used often, ha
 IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its place
 
 
+def plots() -> ModuleType:
+    """Return the package of plots, which loads matplotlib, where something is drawn."""
+    from flockana import plots
+
+    return plots
+
+
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
     """Return a figure in flockana's style as an ``<svg>`` element."""
     import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-    from flockana import plots
-
-    with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
         canvas: Any = FigureCanvasSVG(figure)
@@ -49,9 +55,7 @@ def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: flo
     """Return the drawn canvas of a figure in flockana's style."""
     import matplotlib as mpl
 
-    from flockana import plots
-
-    with plots.style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
         canvas = _placed(draw, size, dpi)
         canvas.draw()
     return canvas

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.report.pages import Page
 from flockana.report.section import DECAYS, LINEARISED, MARGINS
 from flockana.scenarios import scenario, scenarios
@@ -24,9 +24,6 @@ from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor
 from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _LONGER = (
     "At n = 30 a longer search than this report's (module flockana.stability.design) gave 1.740 alike and 2.061 per "
@@ -158,14 +155,12 @@ def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture
     return tuple(pictures)
 
 
-def _poles_and_modes(figure: Figure, flock: Linearisation) -> None:
-    from flockana import plots
-
+def _poles_and_modes(figure: Any, flock: Linearisation) -> None:
     axes: Any = figure.subplots(1, 4, width_ratios=(1.25, 1.0, 1.0, 1.0))
-    plots.pole_map(flock.eigenvalues, ax=axes[0])
+    plots().pole_map(flock.eigenvalues, ax=axes[0])
     shapes = [mode for mode in flock.modes if not mode.name.startswith("translation")]
     for ax, mode in zip(axes[1:], shapes, strict=False):
-        plots.mode_shape(flock.q, flock.links, mode.shape, ax=ax, title=plots.mode_title(mode))
+        plots().mode_shape(flock.q, flock.links, mode.shape, ax=ax, title=plots().mode_title(mode))
 
 
 def _range(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -177,11 +172,6 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     }
     bend = claim.witness["σ₁ bends at"]
 
-    def draw(figure: Figure) -> None:
-        from flockana import plots
-
-        plots.linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots())
-
     exponents = ", ".join(f"{curve['exponent']:.3f}" for curve in claim.computed.values())
     text = (
         "How far the linearisation holds: largest distance ever between a run and the linear motion of its slowest "
@@ -189,7 +179,10 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend:.2g} d no longer pulls in "
         "proportion. White marks: a link formed or broke on the way."
     )
-    return Picture(text, svg(draw, (6.5, 4.0)))
+    return Picture(
+        text,
+        svg(lambda figure: plots().linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots()), (6.5, 4.0)),
+    )
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -199,15 +192,10 @@ def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
     steps = {c.name: (c.computed["margin"], c.computed["dt"]) for c in claims}
 
-    def draw(figure: Figure) -> None:
-        from flockana import plots
-
-        plots.step_margins(steps, ax=figure.subplots())
-
     text = (
         "Margins of the sources: the largest step for which the linearised map is stable, over the step of the source."
     )
-    return Picture(text, svg(draw, (6.5, 3.0)))
+    return Picture(text, svg(lambda figure: plots().step_margins(steps, ax=figure.subplots()), (6.5, 3.0)))
 
 
 class _Response(NamedTuple):
@@ -239,14 +227,12 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
         return None
     omegas = np.geomspace(0.3, 30.0, 200)
 
-    def draw(figure: Figure) -> None:
-        from flockana import plots
-
-        axes = plots.bode(
+    def draw(figure: Any) -> None:
+        axes = plots().bode(
             {k: _Response(omegas, c.response(omegas)) for k, c in centres.items()},
             ax=figure.subplots(2, 1, sharex=True),
         )
-        plots.measured_gains(points, ax=axes[0])
+        plots().measured_gains(points, ax=axes[0])
 
     centre = next(iter(centres.values()))
     text = (
