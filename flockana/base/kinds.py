@@ -34,7 +34,7 @@ _EXAMPLES = {
     "Trajectory": "a run, as simulate(...) gives it",
 }
 _ARRAYS = ("ArrayLike", "FloatArray")
-_PROTOCOLS = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence}
+_PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence}
 
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:

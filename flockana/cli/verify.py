@@ -105,8 +105,8 @@ def _planned(
 
     tasks = plan(name, seed=seed, figures=figures)
     many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
-    wanted = {None: (MANY_LAWS, LINEARISED)} | dict.fromkeys((*DECAYS, *MARGINS), (LINEARISED,))
-    sections = (Section(each, seed) for each in wanted.get(name, ()) if figures)
+    linear = (LINEARISED,) if name in (None, *DECAYS, *MARGINS) else ()
+    sections = (Section(each, seed) for each in (*([MANY_LAWS] if name is None else []), *linear) if figures)
     return (*tasks, *sections, *many), many
 
 
