@@ -32,12 +32,12 @@ except SystemExit as end:
     assert python(code).splitlines()[-1] == "0 []"
 
 
-def test_a_run_is_verified_without_loading_what_derives_solves_or_draws():
-    code = """
+def test_a_run_is_verified_and_reported_without_loading_what_derives_solves_or_draws(tmp_path):
+    code = f"""
 import sys
 from flockana.cli.main import main
 try:
-    main(["verify", "hexagon", "--no-report"])
+    main(["verify", "hexagon", "--report", {str(tmp_path)!r}])
 except SystemExit as end:
     print(end.code, [m for m in ("sympy", "casadi", "matplotlib", "control", "xarray") if m in sys.modules])
 """

@@ -11,8 +11,8 @@ import typer
 from flockana.base.errors import ArgumentError
 from flockana.base.files import ensure_target
 from flockana.base.progress import progress_bar
-from flockana.cli.options import Seed, output
-from flockana.cli.show import show_files
+from flockana.cli.options import AsJson, Seed, output
+from flockana.cli.show import show_files, show_json
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
 
@@ -24,6 +24,7 @@ def animate_command(
     fps: Annotated[float, typer.Option(help="Frames per second.")] = 15.0,
     seconds: Annotated[float, typer.Option(help="Length of the film.")] = 10.0,
     ranges: Annotated[bool, typer.Option("--ranges", help="Draw circles at the range of interaction.")] = False,
+    as_json: AsJson = False,
 ) -> int:
     """Simulate a scenario, or read a saved run, and write a film of it: GIF, or MP4 where ffmpeg is installed."""
     from flockana.dynamics.trajectory import Trajectory
@@ -43,6 +44,10 @@ def animate_command(
         animate(
             run, film, seconds=seconds, fps=fps, ranges=ranges, progress=lambda done, total: advance(done, "drawing")
         )
-    typer.echo(f"{file if item is None else item.name}, {run.status}: {run.message}")
-    show_files(written=film)
+    subject = str(file) if item is None else item.name
+    if as_json:
+        show_json({"subject": subject, "status": run.status, "message": run.message, "file": str(film)})
+    else:
+        typer.echo(f"{subject}, {run.status}: {run.message}")
+        show_files(written=film)
     return OK if run.status == "complete" else UNEXPECTED

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 import typer
 
 from flockana.base.errors import ArgumentError
-from flockana.cli.show import show_files
+from flockana.cli.options import AsJson
+from flockana.cli.show import show_files, show_json
 from flockana.cli.status import OK
 
 
@@ -28,6 +29,7 @@ def course_command(
     address: Annotated[
         str, typer.Option(help="Where notebooks install flockana from if it is missing: git+https://HOST/PATH.")
     ] = "",
+    as_json: AsJson = False,
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
@@ -54,6 +56,9 @@ def course_command(
         notebooks = write_for(folder, grader)
     else:
         notebooks = write_slides(folder) if slides else write(folder, version, address=address)
+    if as_json:
+        show_json({"notebooks": [str(path) for path in notebooks]})
+        return OK
     for written in notebooks:
         show_files(notebook=written)
     return OK

@@ -99,13 +99,14 @@ def _planned(
     name: str | None, seeds: int | None, seed: int, *, figures: bool
 ) -> tuple[tuple[Work, ...], tuple[Survey, ...]]:
     """Return all tasks, and the surveys among them."""
-    from flockana.report.section import LINEARISED, MANY_LAWS, Section
+    from flockana.report.section import DECAYS, LINEARISED, MANY_LAWS, MARGINS, Section
     from flockana.report.surveys import surveys
     from flockana.report.work import plan
 
     tasks = plan(name, seed=seed, figures=figures)
     many = surveys(name, seeds, seed=seed) if figures or seeds is not None else ()
-    sections = (Section(MANY_LAWS, seed), Section(LINEARISED)) if name is None and figures else ()
+    linear = (LINEARISED,) if name in (None, *DECAYS, *MARGINS) else ()
+    sections = (Section(each, seed) for each in (*([MANY_LAWS] if name is None else []), *linear) if figures)
     return (*tasks, *sections, *many), many
 
 
@@ -151,8 +152,7 @@ def _written(
         complete=complete,
         statistics=statistics,
         comparison=next((result for result in results if isinstance(result, ComparisonSection)), None),
-        # of the whole catalogue they are a task; where it failed or was not reached they are left out, not made again
-        flocks=next((r for r in results if isinstance(r, LinearisedFlocks)), NO_FLOCKS if name is None else None),
+        flocks=next((r for r in results if isinstance(r, LinearisedFlocks)), NO_FLOCKS),
         of=name,
     )
 

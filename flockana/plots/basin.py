@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, write_title
 from flockana.plots.symbols import typeset
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from flockana.certified.sampling import SampledBasin
 
 
+@check_kinds
 def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None = None) -> Axes:
     """Draw the share of starts that return to the orbit against their distance from it, and the certified radius.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.measures.nets import links
 from flockana.plots.style import (
     BLUE,
@@ -41,6 +42,7 @@ _MARKS = (None, "o", "s", "^")  # one for each time that the looks come round ag
 _FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
 
+@check_kinds
 def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     """Draw the paths of one start under each law, on the same scale: hollow where they start, links at the end.
 
@@ -92,6 +94,7 @@ def _paths(ax: Any, run: Trajectory) -> None:
     ax.scatter(*run.q[-1].T, s=12, color=INK, linewidths=0, zorder=3)
 
 
+@check_kinds
 def velocity_diameters(outcomes: Sequence[Outcome], *, ax: Axes | None = None) -> Axes:
     """Draw the greatest difference of two velocities over that at the start, over time, for each law.
 

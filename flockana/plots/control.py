@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import (
     BLUE,
     FAINT,
@@ -35,6 +36,7 @@ _NAMES = {"c1_alpha": "c1α", "c2_alpha": "c2α", "c1_gamma": "c1γ", "c2_gamma"
 _UNITS = {"c1": "1/time²", "c2": "1/time"}
 
 
+@check_kinds
 def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = None, ax: Any = None) -> Any:
     """Draw magnitude (decibels) and phase of scalar frequency responses, one above the other.
 
@@ -52,8 +54,6 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     -------
     ndarray of matplotlib.axes.Axes, shape (2,)
     """
-    if not isinstance(responses, Mapping):
-        raise ArgumentError(f"responses = {format_value(responses)}: expected frequency responses by label")
     for label, response in responses.items():
         if not (hasattr(response, "omega") and hasattr(response, "complex")):
             raise ArgumentError(
@@ -81,6 +81,7 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     return panels
 
 
+@check_kinds
 def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     """Draw branches of eigenvalues in the complex plane: crosses at the least gain, dots at the greatest.
 
@@ -101,6 +102,7 @@ def root_locus(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     return finish(ax, "Re s (1/time)", "Im s (radians/time)")
 
 
+@check_kinds
 def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     """Draw the real parts of all eigenvalues over the gain, the largest one in front.
 
@@ -122,6 +124,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     return finish(ax, _gain_label(sweep.name), "Re s (1/time)")
 
 
+@check_kinds
 def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
     """Draw H₂, between its closed-form bounds, and H∞ against the number of agents, both logarithmic.
 
@@ -144,6 +147,7 @@ def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
     return finish(ax, "n, agents", "norm from forces to the shape")
 
 
+@check_kinds
 def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) -> Axes:
     """Draw the delay margin against a gain; below its line the flock is stable.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.predicates import ensure_run
+from flockana.base.kinds import check_kinds
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.plots.snapshot import configuration, draw_sample, in_view
 from flockana.plots.style import (
@@ -24,6 +24,7 @@ from flockana.plots.style import (
     finish,
     frame_space,
     in_plane,
+    over_time,
     write_title,
 )
 from flockana.plots.symbols import typeset
@@ -38,6 +39,7 @@ _SAMPLES = 300
 _GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and their agents, again from the first
 
 
+@check_kinds
 def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw F against the distance of a pair (Fig. 2 of the paper); a dot marks the value taken at each jump.
 
@@ -74,28 +76,21 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
 
 
-def dead_zone_energies(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+@over_time("energy (length²/time²)")
+def dead_zone_energies(trajectory: Trajectory, ax: Any) -> None:
     """Draw the saturated energy H̄, which never rises, and the energy of neighbours, which jumps (erratum L5).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of the dead-zone law.
 
     Raises
     ------
     ArgumentError
         If the law measures no energy of neighbours.
     """
-    ensure_run(trajectory)
     metrics = trajectory.metrics()
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")
-    ax = ensure_axes(ax)
     ax.plot(trajectory.t, trajectory.energy(), color=BLUE, linestyle="-", label="H̄, every pair, ψ constant beyond r")
     printed = metrics.literal_energy.values
     ax.plot(trajectory.t, printed, color=VERMILLION, linestyle="--", label="H, neighbours only (printed)")
-    return finish(ax, "t (time)", "energy (length²/time²)")
 
 
 @draw_sample.register(LedDeadZoneFlocking)

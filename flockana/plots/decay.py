@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 _LOOKS = ((BLUE, "o", "-"), (VERMILLION, "s", "--"), (GREEN, "^", "-."), (PURPLE, "D", ":"))
 
 
+@check_kinds
 def linear_range(
     ranges: Mapping[str, tuple[Any, Any, Any]], *, marks: Mapping[str, float] | None = None, ax: Axes | None = None
 ) -> Axes:
@@ -47,6 +49,7 @@ def linear_range(
     return finish(ax, "largest initial displacement / d", "deviation from the linear motion / displacement")
 
 
+@check_kinds
 def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
     """Draw measured ratios of sizes as points on a Bode plot's magnitude.
 

@@ -11,6 +11,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.checks import FloatArray, ensure_known
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, write_title
 from flockana.plots.symbols import typeset
 
@@ -31,6 +32,7 @@ _PHASES = {
 }
 
 
+@check_kinds
 def share_against(
     table: xarray.Dataset,
     parameter: str,
@@ -117,6 +119,7 @@ def _geometric(places: FloatArray) -> bool:
     return bool(even.max() * ratios.min() > ratios.max() * even.min())
 
 
+@check_kinds
 def share_bars(
     table: xarray.Dataset, *, claims: Iterable[str] | None = None, ax: Axes | None = None, title: str = ""
 ) -> Axes:
@@ -163,6 +166,7 @@ def draw_bars(
     return _finish(axes, title)
 
 
+@check_kinds
 def distribution(
     groups: Mapping[str, Any],
     *,
@@ -222,6 +226,7 @@ def distribution(
     return _finish(axes, title)
 
 
+@check_kinds
 def phase_diagram(
     phase: xarray.DataArray,
     x: str,

@@ -9,16 +9,19 @@ from matplotlib.ticker import MaxNLocator
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
 
     from flockana.falsify import Falsification
 
 _WIDE = 1e3  # ratio of the sizes of margins from which on their axis is logarithmic on both sides of 0
 
 
+@check_kinds
 def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
     """Draw a search: the margin of its claim in each run, the least margin so far, and refuted runs.
 
@@ -37,8 +40,9 @@ def falsification(found: Falsification, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@check_kinds
 def search_history(
-    margins: Any, best: Any, *, found: Any = (), label: str = "", ax: Axes | None = None, title: str = ""
+    margins: ArrayLike, best: ArrayLike, *, found: Any = (), label: str = "", ax: Axes | None = None, title: str = ""
 ) -> Axes:
     """Draw a claim's margin in each run of a search, and the least so far; below 0 the claim fails.
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.predicates import ensure_run
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.plots.snapshot import configuration, draw_sample
-from flockana.plots.style import INK, ensure_axes, finish_over_time, line_width_and_opacity
+from flockana.plots.style import INK, line_width_and_opacity, over_time
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,7 +17,8 @@ if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
 
 
-def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+@over_time("heading (radians)")
+def headings(trajectory: Trajectory, ax: Any) -> None:
     """Draw every agent's heading over time, the angle that the law averages.
 
     Raises
@@ -26,13 +26,10 @@ def headings(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
     ArgumentError
         If the run remembers no headings.
     """
-    ensure_run(trajectory)
     if "heading" not in trajectory.extra or trajectory.extra["heading"].ndim != 2:
         raise ArgumentError(f"a run of {type(trajectory.law).__name__} has no headings: expected HeadingAveraging")
-    axes: Any = ensure_axes(ax)
     width, opacity = line_width_and_opacity(trajectory.n)
-    axes.plot(trajectory.t, trajectory.extra["heading"], color=INK, linestyle="-", linewidth=width, alpha=opacity)
-    return finish_over_time(axes, trajectory.t, "heading (radians)")
+    ax.plot(trajectory.t, trajectory.extra["heading"], color=INK, linestyle="-", linewidth=width, alpha=opacity)
 
 
 @draw_sample.register(HeadingAveraging)

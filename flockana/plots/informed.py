@@ -9,6 +9,7 @@ from matplotlib.ticker import PercentFormatter
 
 from flockana.base.binomial import clopper_pearson
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, place_legend, write_title
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _CONFIDENCE = 0.95
 
 
+@check_kinds
 def informed_shares(
     runs: xarray.Dataset, *, agents: int = 60, majority: float = 0.5, ax: Axes | None = None, title: str = ""
 ) -> Axes:

@@ -11,6 +11,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 
 from flockana.base.checks import ensure_links, ensure_points, ensure_series
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import (
     BLUE,
     GREEN,
@@ -125,6 +126,7 @@ def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster
     colour_bar(ax, coloured, "strain of links (length − d)/d", extend=ends)
 
 
+@check_kinds
 def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     """Draw the shortest distance of the relaxed flocks over their size and c1γ/c1α, and where agents coincide.
 
@@ -148,6 +150,7 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
     return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
 
 
+@check_kinds
 def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | None = None) -> Axes:
     """Draw brackets of the ratio c1γ/c1α at which a flock collapses, against its size.
 
@@ -165,6 +168,7 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
     return _over_size(axes, sizes, "c1γ/c1α")
 
 
+@check_kinds
 def barrier(
     together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
 ) -> Axes:

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from flockana.base.checks import FloatArray
+from flockana.base.kinds import check_kinds
 from flockana.environment.obstacles import Obstacle
 from flockana.plots.style import FAINT, MUTED, ensure_axes, finish
 
@@ -25,6 +26,7 @@ _OUTSIDE = 1.001  # the tracing ball must lie outside
 _BEYOND = 4.0  # how far an unbounded obstacle is traced, in radii of the view
 
 
+@check_kinds
 def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = None) -> Axes:
     """Draw obstacles: solid in the plane, as wire meshes in space, as intervals on a line.
 

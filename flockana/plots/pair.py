@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flockana.base.kinds import check_kinds
 from flockana.measures.metrics import deviation_energy
 from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, place_legend
 from flockana.plots.symbols import typeset
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _SAMPLES = 600
 
 
+@check_kinds
 def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     """Draw φ_α over the distance of a pair: negative repels, positive attracts, 0 beyond r."""
     ax = ensure_axes(ax)
@@ -27,6 +29,7 @@ def action(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     return _frame(ax, interaction, "φ_α, the pair's action")
 
 
+@check_kinds
 def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     """Draw ψ_α over the distance of a pair: least at d, constant beyond r, c* at 0."""
     ax = ensure_axes(ax)
@@ -38,6 +41,7 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     return _frame(ax, interaction, "ψ_α, the pair's potential")
 
 
+@check_kinds
 def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     """Draw E and V of a pair against its distance, relative to their values at 0: E jumps at r, V is continuous.
 

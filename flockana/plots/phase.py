@@ -7,18 +7,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, line_width_and_opacity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
 
 _LEVELS = 14
 _ORBITS = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 1.25, 1.75, 2.5, 4.0])  # of the separatrix, from the least energy on
 
 
+@check_kinds
 def phase_portrait(
-    position: Any,
-    velocity: Any,
+    position: ArrayLike,
+    velocity: ArrayLike,
     *,
     energy: tuple[Any, Any, Any] | None = None,
     separatrix: float | None = None,

@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.predicates import ensure_run
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.plots.style import BLUE, INK, LEGEND, VERMILLION, ensure_axes, finish_over_time
+from flockana.plots.style import BLUE, INK, VERMILLION, over_time
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from flockana.dynamics.trajectory import Trajectory
 
 _SAMPLES = 271  # every other of the project's 540 iterations
 
 
-def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
+@over_time("connectivity, three ways")
+def rank_connectivity(trajectory: Trajectory, ax: Any) -> None:
     """Draw rank(A)/n over time, with a zero diagonal and as typeset, and C = rank(L)/(n − 1) (erratum E8).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of a law with an interaction range.
 
     Raises
     ------
     ArgumentError
-        If the law has no such range.
+        If the law has no interaction range.
     """
-    ensure_run(trajectory)
     pair = trajectory.law.pair
     if pair is None or not np.isfinite(pair.range):
         raise ArgumentError(f"law = {trajectory.law!r}: expected one whose agents interact within a range")
-    ax, t = ensure_axes(ax), trajectory.t
+    t = trajectory.t
     shown = np.unique(np.linspace(0, len(t) - 1, min(len(t), _SAMPLES)).round().astype(int))
     nets = [links(trajectory.q[k], pair.range) for k in shown]
     for typeset, colour, name in ((False, BLUE, "rank(A)/n"), (True, VERMILLION, "rank(A)/n as typeset")):
@@ -44,5 +36,3 @@ def rank_connectivity(trajectory: Trajectory, *, ax: Axes | None = None) -> Axes
         ax.plot(t[shown], ranks, color=colour, linewidth=1.0, label=name)
     ax.plot(t, trajectory.metric("connectivity"), color=INK, linestyle="--", label="C = rank(L)/(n − 1)")
     ax.set_ylim(-0.03, 1.05)
-    ax.legend(loc="lower right", **LEGEND)
-    return finish_over_time(ax, t, "connectivity, three ways")

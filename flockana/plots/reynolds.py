@@ -9,6 +9,7 @@ from matplotlib.collections import LineCollection
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.measures.reynolds import Reynolds
 from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, finish, frame_space
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _ARROW = 0.1  # longest arrow as a share of the axes' width
 
 
+@check_kinds
 def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
     """Draw links by the sign of their stress, and the three parts of u as arrows on one scale.
 

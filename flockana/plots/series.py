@@ -30,7 +30,7 @@ from flockana.plots.style import (
     over_time,
     subplots,
 )
-from flockana.scenarios.findings import component_counts
+from flockana.scenarios.findings import PANEL, component_counts, has_metric
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from flockana.dynamics.trajectory import Trajectory
 
 _FEW = 12  # components that a linear scale shows as well
-PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "normalised_velocity_mismatch")
 
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
@@ -85,15 +84,6 @@ def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> Non
     positive = values[values > 0.0]
     if floor > 0.0 and positive.min() < floor:
         ax.axhspan(positive.min(), floor, color=FAINT, alpha=0.6, linewidth=0.0, label="noise floor")
-
-
-def has_metric(trajectory: Trajectory, name: str) -> bool:
-    """Return whether a run has a metric, without computing the others."""
-    try:
-        trajectory.metric(name)
-    except UnknownNameError:
-        return False
-    return True
 
 
 def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:

@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import ensure_links, ensure_points
 from flockana.base.errors import ArgumentError, format_value
+from flockana.base.kinds import check_kinds
 from flockana.plots.animation import animate
 from flockana.plots.style import (
     BLUE,
@@ -60,8 +61,8 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
             f"poles = {format_value(poles)}: expected complex numbers, or groups of them by label"
         ) from None
     whole = np.concatenate([*values.values(), np.empty(0)])
-    if whole.size == 0:
-        raise ArgumentError(f"poles = {format_value(poles)}: expected at least one eigenvalue")
+    if whole.size == 0 or np.isnan(whole).any():
+        raise ArgumentError(f"poles = {format_value(poles)}: expected at least one eigenvalue, and no NaN")
     axes = ensure_axes(ax)
     axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
@@ -156,6 +157,7 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     return frame_space(axes, seen, m)
 
 
+@check_kinds
 def mode_title(mode: Mode) -> str:
     """Return the title of a mode's picture: its name, rate and frequency.
 

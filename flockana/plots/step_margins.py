@@ -10,6 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _HEIGHT, _HATCH = 0.6, "///"  # of a bar; of one that is unstable, to be told in grey
 
 
+@check_kinds
 def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
     """Draw by how much the largest stable step exceeds the step in use, on a logarithmic axis; unstable ones hatched.
 

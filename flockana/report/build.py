@@ -31,7 +31,7 @@ from flockana.report.front import front_findings
 from flockana.report.image import named
 from flockana.report.lattices import lattice_section
 from flockana.report.pages import FixedPage, FixedResult, Page, ScenarioPage, ScenarioResult, page
-from flockana.report.stability import LinearisedFlocks, stability_section
+from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.report.statistics import StatisticsSection
 from flockana.report.text import deciding_claim, markup, show, source_name, tolerance_rows
 from flockana.theorems.errata import FOREWORD, SORTS, errata, erratum_of
@@ -99,7 +99,7 @@ def write_report(
     complete: bool = True,
     statistics: StatisticsSection | None = None,
     comparison: ComparisonSection | None = None,
-    flocks: LinearisedFlocks | None = None,
+    flocks: LinearisedFlocks = NO_FLOCKS,
     of: str | None = None,
 ) -> Path:
     """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
@@ -184,7 +184,7 @@ def _html(
     run: dict[str, Any],
     statistics: StatisticsSection | None,
     comparison: ComparisonSection | None,
-    flocks: LinearisedFlocks | None,
+    flocks: LinearisedFlocks,
 ) -> str:
     findings = [finding for page in pages for finding in page.findings]
     counts: Counter[str] = Counter(finding.verdict.status for finding in findings)

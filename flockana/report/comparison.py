@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
-from matplotlib.figure import Figure
-
-from flockana import plots
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
 from flockana.theorems.theorem import Verdict, unmet
@@ -83,14 +81,11 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
     columns = min(_COLUMNS, len(outcomes))
     rows = -(-len(outcomes) // columns)
 
-    def paths(figure: Figure) -> None:
+    def paths(figure: Any) -> None:
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for unused in axes[len(outcomes) :]:
             unused.remove()
-        plots.side_by_side(outcomes, ax=axes[: len(outcomes)])
-
-    def together(figure: Figure) -> None:
-        plots.velocity_diameters(outcomes, ax=figure.subplots())
+        plots().side_by_side(outcomes, ax=axes[: len(outcomes)])
 
     names = ", ".join(outcome.entry.name for outcome in outcomes)
     return (
@@ -101,6 +96,6 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
         ),
         Picture(
             f"Greatest difference of two velocities over that at the start: {names}. Flocking is its fall to 0.",
-            svg(together, (8.0, 4.2)),
+            svg(lambda figure: plots().velocity_diameters(outcomes, ax=figure.subplots()), (8.0, 4.2)),
         ),
     )

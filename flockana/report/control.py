@@ -6,16 +6,15 @@ import base64
 import json
 from dataclasses import dataclass
 from math import pi
+from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from flockana import plots
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.stability import Linearisation
 from flockana.stability.norms import norms_against_size
 from flockana.stability.sweeps import centre_locus
@@ -47,10 +46,10 @@ def control_pictures() -> tuple[Picture, ...]:
     locus, _ = centre_locus(gains, "c1_gamma", np.linspace(0.0, 3.0 * gains.c1_gamma, 61))
     table = norms_against_size(Algorithm1(), _SIZES)
 
-    def roots(figure: Figure) -> None:
+    def roots(figure: Any) -> None:
         axes = figure.subplots(1, 2)
-        plots.root_locus(locus, ax=axes[0])
-        plots.norms(table, ax=axes[1])
+        plots().root_locus(locus, ax=axes[0])
+        plots().norms(table, ax=axes[1])
 
     rows = "; ".join(
         f"n = {n}: H₂ {h2:.4g}, H∞ {hinf:.4g} at ω = {peak:.3g}"

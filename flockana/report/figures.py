@@ -12,11 +12,9 @@ from flockana.base.checks import FloatArray
 from flockana.base.modules import modules
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
-from flockana.plots.series import PANEL, has_metric
-from flockana.plots.snapshot import drawn_law
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.stills import stills
-from flockana.scenarios.findings import component_counts
+from flockana.scenarios.findings import PANEL, component_counts, has_metric
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ def pictures_of_laws() -> tuple[tuple[tuple[type, ...], Callable[[Trajectory], t
 
 def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Picture, ...]:
     """Draw a run with its law's own ``*_figures`` module, or as any flock."""
-    drawn = trajectory.law, drawn_law(trajectory)  # of a map that steps another law, that one's figures will do
+    drawn = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
     owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
     draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
     return (*((_captures(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
@@ -52,7 +50,7 @@ _WORDS = "Links shorter than desired by more than a tenth are blue, longer ones 
 def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the flock at its start, middle and end; its measures; energy, distances, speeds and control effort."""
     run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
-    blocked = bool(drawn_law(run).obstacles)
+    blocked = bool((run.law.continuous or run.law).obstacles)
     middle = "middle (of a flock that splits: where it is most split)" if blocked else "middle"
     drawn = [
         Picture(f"Start, {middle} and end. {_WORDS}", stills(run, times)),
@@ -127,7 +125,7 @@ def _distances(run: Trajectory) -> Chart:
 
 
 def _clearances(run: Trajectory) -> list[Chart]:
-    law = drawn_law(run)
+    law = run.law.continuous or run.law
     flat = run.q.reshape(-1, run.m)
     apart = [solid.clearance(flat).reshape(run.q.shape[:2]).min(axis=1) for solid in law.obstacles]
     levels = [(run.clearance().lower, "lower bound for all times")]

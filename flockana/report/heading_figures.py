@@ -7,10 +7,10 @@ import numpy as np
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import windows_of
-from flockana.plots.series import has_metric
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, measured
 from flockana.report.stills import stills
+from flockana.scenarios.findings import has_metric
 
 LAWS = (HeadingAveraging,)
 _SETTLED = 1e-3  # of the first span of headings: until it falls below there is something to see

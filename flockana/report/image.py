@@ -6,16 +6,11 @@ import re
 from collections.abc import Callable
 from html import escape
 from io import StringIO
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
-
-from flockana import plots
-from flockana.plots.scales import plain_scales
-from flockana.report.layout import place_axes
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MEASURED_DPI = 72  # that of SVG: texts are as long where they are measured as where they are drawn
 _COLOURS = {
@@ -36,9 +31,19 @@ _LONG = 400  # characters of a path; markers, which are small and used often, ha
 IDS = "FIGURE-"  # begins every id of a figure; the page puts a number in its place
 
 
+def plots() -> ModuleType:
+    """Return the package of plots, which loads matplotlib, where something is drawn."""
+    from flockana import plots
+
+    return plots
+
+
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
     """Return a figure in flockana's style as an ``<svg>`` element."""
-    with plots.style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
+    import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
         figure = _placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
         canvas: Any = FigureCanvasSVG(figure)
@@ -48,13 +53,21 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
 
 def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
     """Return the drawn canvas of a figure in flockana's style."""
-    with plots.style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
+    import matplotlib as mpl
+
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
         canvas = _placed(draw, size, dpi)
         canvas.draw()
     return canvas
 
 
 def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: float) -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from flockana.plots.scales import plain_scales
+    from flockana.report.layout import place_axes
+
     figure = Figure(figsize=size, dpi=dpi)  # not pyplot's: nothing to close, safe in any process
     figure.set_layout_engine("none")
     canvas: Any = FigureCanvasAgg(figure)

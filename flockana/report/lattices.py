@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from flockana import plots
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.lattice import harborth, hexagonal_spiral
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.report.pages import Page
 from flockana.theorems import Verdict
 
@@ -86,14 +84,11 @@ def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
     if brackets is None:
         return None
 
-    def draw(figure: Figure) -> None:
-        plots.collapse_brackets(brackets, ax=figure.subplots())
-
     text = (
         "Algorithm 2 on hexagonal patches (E11): up to the lower mark all agents stay apart, from the upper on some "
         "coincide for good. The larger the flock, the smaller the ratio of the gains that it bears."
     )
-    return Picture(text, svg(draw, (6.5, 3.4)))
+    return Picture(text, svg(lambda figure: plots().collapse_brackets(brackets, ax=figure.subplots()), (6.5, 3.4)))
 
 
 def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -103,11 +98,10 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
     together, ground = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
 
-    def draw(figure: Figure) -> None:
-        plots.barrier(together, ground, witness["c*"], ax=figure.subplots())
-
     text = (
         "The barrier against collisions (E4), found numerically: V < c* excludes them, but the least V of all rises "
         "with n until no state is left below c*; the barrier, V where two agents meet less the least V, stays near c*."
     )
-    return Picture(text, svg(draw, (6.5, 3.4)))
+    return Picture(
+        text, svg(lambda figure: plots().barrier(together, ground, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
+    )

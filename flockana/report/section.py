@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+# theorems that the section on linearised stability shows: measured decay, and margins
+DECAYS = ("linearised-decay", "linearised-decay-terminal")
+MARGINS = ("delay-margin", "sampling-margins", "heterogeneous-gains")
 MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 

@@ -9,26 +9,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.figure import Figure
 
-from flockana import plots
 from flockana.environment.targets import CircleTarget, SineTarget, StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.report.control import Download, control_pictures, state_space
 from flockana.report.figures import Picture
-from flockana.report.image import svg
+from flockana.report.image import plots, svg
 from flockana.report.pages import Page
-from flockana.report.section import LINEARISED
+from flockana.report.section import DECAYS, LINEARISED, MARGINS
 from flockana.scenarios import scenario, scenarios
 from flockana.stability import Linearisation, linearise
 from flockana.stability.centre_path import path_and_factor
 from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
 
-_DECAYS = ("linearised-decay", "linearised-decay-terminal")
-_MARGINS = ("delay-margin", "sampling-margins", "heterogeneous-gains")
 _LONGER = (
     "At n = 30 a longer search than this report's (module flockana.stability.design) gave 1.740 alike and 2.061 per "
     "agent with the rotation counted, 18 % faster, and 2.236 and 2.247 with it apart, 0.5 %"
@@ -79,11 +75,11 @@ class StabilitySection:
     margins: tuple[str, ...]  # findings on delays and gains
 
 
-def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = None) -> StabilitySection | None:
+def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks = NO_FLOCKS) -> StabilitySection | None:
     """Return the section on linearised stability from the verdicts; None without any."""
     verdicts = [(page.name, finding.verdict) for page in pages for finding in page.findings]
-    decays = [(name, v) for name, v in verdicts if v.theorem in _DECAYS]
-    margins = [v for _, v in verdicts if v.theorem in _MARGINS]
+    decays = [(name, v) for name, v in verdicts if v.theorem in DECAYS]
+    margins = [v for _, v in verdicts if v.theorem in MARGINS]
     if not decays and not margins:
         return None
     pictures = (_range([v for _, v in decays]), bode_picture(verdicts), _steps(margins))
@@ -91,7 +87,7 @@ def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks | None = N
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
     return StabilitySection(
-        flocks or linearised_flocks(),
+        flocks,
         tuple(row for name, v in decays for row in _rows(name, v)),
         tuple(picture for picture in pictures if picture is not None),
         tuple(margin_texts),
@@ -114,7 +110,7 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
     claim = next((c for c in verdict.claims if c.name == "decay" and c.computed), None)
     if claim is None:
         return []
-    terminal = verdict.theorem == _DECAYS[1]
+    terminal = verdict.theorem == DECAYS[1]
     return [
         Row(
             f"{name}, last state" if terminal else label,
@@ -159,12 +155,12 @@ def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture
     return tuple(pictures)
 
 
-def _poles_and_modes(figure: Figure, flock: Linearisation) -> None:
+def _poles_and_modes(figure: Any, flock: Linearisation) -> None:
     axes: Any = figure.subplots(1, 4, width_ratios=(1.25, 1.0, 1.0, 1.0))
-    plots.pole_map(flock.eigenvalues, ax=axes[0])
+    plots().pole_map(flock.eigenvalues, ax=axes[0])
     shapes = [mode for mode in flock.modes if not mode.name.startswith("translation")]
     for ax, mode in zip(axes[1:], shapes, strict=False):
-        plots.mode_shape(flock.q, flock.links, mode.shape, ax=ax, title=plots.mode_title(mode))
+        plots().mode_shape(flock.q, flock.links, mode.shape, ax=ax, title=plots().mode_title(mode))
 
 
 def _range(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -176,9 +172,6 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     }
     bend = claim.witness["σ₁ bends at"]
 
-    def draw(figure: Figure) -> None:
-        plots.linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots())
-
     exponents = ", ".join(f"{curve['exponent']:.3f}" for curve in claim.computed.values())
     text = (
         "How far the linearisation holds: largest distance ever between a run and the linear motion of its slowest "
@@ -186,7 +179,10 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend:.2g} d no longer pulls in "
         "proportion. White marks: a link formed or broke on the way."
     )
-    return Picture(text, svg(draw, (6.5, 4.0)))
+    return Picture(
+        text,
+        svg(lambda figure: plots().linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots()), (6.5, 4.0)),
+    )
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -196,13 +192,10 @@ def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
     steps = {c.name: (c.computed["margin"], c.computed["dt"]) for c in claims}
 
-    def draw(figure: Figure) -> None:
-        plots.step_margins(steps, ax=figure.subplots())
-
     text = (
         "Margins of the sources: the largest step for which the linearised map is stable, over the step of the source."
     )
-    return Picture(text, svg(draw, (6.5, 3.0)))
+    return Picture(text, svg(lambda figure: plots().step_margins(steps, ax=figure.subplots()), (6.5, 3.0)))
 
 
 class _Response(NamedTuple):
@@ -234,12 +227,12 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
         return None
     omegas = np.geomspace(0.3, 30.0, 200)
 
-    def draw(figure: Figure) -> None:
-        axes = plots.bode(
+    def draw(figure: Any) -> None:
+        axes = plots().bode(
             {k: _Response(omegas, c.response(omegas)) for k, c in centres.items()},
             ax=figure.subplots(2, 1, sharex=True),
         )
-        plots.measured_gains(points, ax=axes[0])
+        plots().measured_gains(points, ax=axes[0])
 
     centre = next(iter(centres.values()))
     text = (

@@ -7,11 +7,10 @@ import numpy as np
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.profiles import pair_distance_profile
-from flockana.plots.series import has_metric
 from flockana.report.charts import Chart, Curve, panels
 from flockana.report.figures import Picture, effort, measured, speeds
 from flockana.report.stills import stills
-from flockana.scenarios.findings import component_counts
+from flockana.scenarios.findings import component_counts, has_metric
 
 LAWS = (ZoneFlocking,)
 _DANGERS = (("obstacle_clearance_bound", "obstacle"), ("wall_distance", "wall"), ("alien_distance", "alien"))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from flockana.base.errors import UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale
 from flockana.dynamics.trajectory import Trajectory
@@ -21,6 +22,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 
 Check = Callable[[Trajectory, Tolerances], Claim]
 ROUNDING = 1e-12  # relative, of what a report measures
+PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "normalised_velocity_mismatch")
 
 
 def finding(
@@ -90,3 +92,12 @@ def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:
     """Return the number of components of the net at each sample of a run, shape (T,)."""
     counts: npt.NDArray[np.int64] = np.rint(run.n - run.metric("connectivity") * (run.n - 1)).astype(np.int64)
     return counts
+
+
+def has_metric(run: Trajectory, name: str) -> bool:
+    """Return whether a run has a metric, without computing the others."""
+    try:
+        run.metric(name)
+    except UnknownNameError:
+        return False
+    return True

@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import RESIDUAL
 from flockana.equilibria.terminal import rigid_motions
@@ -96,6 +97,7 @@ def complement(basis: FloatArray) -> FloatArray:
     return rest
 
 
+@check_kinds
 def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     """Classify a flock's rigid motions by the forces that hold them.
 

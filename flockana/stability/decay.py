@@ -11,6 +11,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
 from flockana.measures.frame import moving_frame
@@ -95,6 +96,7 @@ def slowest_seen(flock: Linearisation) -> Mode:
     raise ArgumentError(f"n = {len(flock.q)}: expected a mode of the shape; this flock has none")
 
 
+@check_kinds
 def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
     """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one.
 
@@ -137,6 +139,7 @@ def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
     )
 
 
+@check_kinds
 def decay_table(
     flocks: Mapping[str, Linearisation], *, amplitude: float = AMPLITUDE, seed: int = 0
 ) -> tuple[Decay, ...]:
@@ -222,6 +225,7 @@ class LinearRange:
         return float(np.exp(np.interp(log(deviation), np.log(self.deviations[pair]), np.log(self.amplitudes[pair]))))
 
 
+@check_kinds
 def linear_range(
     flock: Linearisation, *, name: str = "", amplitudes: Sequence[float] = tuple(np.geomspace(1e-4, 0.3, 15).tolist())
 ) -> LinearRange:

@@ -18,6 +18,7 @@ from flockana.base.checks import (
     ensure_positive,
 )
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
@@ -115,6 +116,7 @@ def _covariance(system: StateSpace) -> FloatArray:
     return np.asarray(system.C @ solve_continuous_lyapunov(system.A, -system.B @ system.B.T) @ system.C.T)
 
 
+@check_kinds
 def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatArray:
     """Covariance of the outputs under white noise of one intensity in every input, from the Lyapunov equation.
 
@@ -257,6 +259,7 @@ class NormTable:
     bounds: FloatArray  # shape (N, 2): closed-form bounds of `h2`
 
 
+@check_kinds
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> NormTable:
     """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
 

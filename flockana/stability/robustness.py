@@ -15,6 +15,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.laws.law import Law
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
@@ -105,6 +106,7 @@ class RobustnessMargins:
         return min(self.loops, key=lambda one: one.disk)
 
 
+@check_kinds
 def open_loop(flock: Linearisation, agent: int, axis: int = 0) -> StateSpace:
     """Return the loop broken at one component of an agent's input, as a `control.StateSpace`.
 

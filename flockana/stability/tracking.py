@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, SineTarget
@@ -87,6 +88,7 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     return left
 
 
+@check_kinds
 def response_ratio(run: Trajectory) -> tuple[float, float]:
     """Return the ratio of the centre's swing to the γ-agent's over the last whole periods, and its error.
 

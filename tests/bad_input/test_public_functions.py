@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.errors import FlockanaError
+from flockana.base.errors import FlockanaError, format_value
 
 STRANGE = {
     "matrix": np.zeros((2, 5)),
@@ -69,3 +69,23 @@ def test_what_is_strange_is_refused_in_words(name, usual):
                     function(**given)
             except Exception as other:  # whatever it is, it is not ours
                 pytest.fail(f"{name}({parameter.name}: {kind}) raises {type(other).__name__}: {other}")
+
+
+def of_rooms():
+    """Functions of the package and of its rooms that have arguments without defaults."""
+    rooms = {"": fl} | {f"{room}.": getattr(fl, room) for room in ("plots", "stability", "lattice", "reynolds")}
+    for prefix, room in rooms.items():
+        for name in getattr(room, "__all__", None) or [name for name in vars(room) if not name.startswith("_")]:
+            function = getattr(room, name)
+            own = hasattr(room, "__all__") or getattr(function, "__module__", "") == room.__name__
+            if inspect.isfunction(function) and own and name not in {"explore", "falsify"} and required(function):
+                yield pytest.param(function, id=prefix + name)
+
+
+@pytest.mark.parametrize("value", [None, object()], ids=["none", "a thing"])
+@pytest.mark.parametrize("function", list(of_rooms()))
+def test_none_and_foreign_objects_are_refused_by_name(function, value):
+    names = required(function)
+    with pytest.raises(FlockanaError) as refused:
+        function(**dict.fromkeys(names, value))
+    assert any(word in str(refused.value) for word in (*names, format_value(value)))

@@ -1,5 +1,6 @@
 """`flockana course`."""
 
+import json
 import sys
 
 import pytest
@@ -28,6 +29,7 @@ def test_notebooks_are_written_for_students_and_with_solutions(call, tmp_path):
         code, said, _ = call(*arguments)
         assert code == 0
         assert f"notebook: {arguments[0]}/01_pair_potentials.ipynb" in said
+        assert f"{arguments[0]}/01_pair_potentials.ipynb" in json.loads(call(*arguments, "--json")[1])["notebooks"]
         text = (tmp_path / arguments[0] / "01_pair_potentials.ipynb").read_text()
         assert has in text
         assert lacks not in text

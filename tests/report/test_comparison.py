@@ -53,6 +53,8 @@ def test_it_is_made_among_the_tasks_of_the_catalogue_where_there_is_a_report(sec
     assert 'id="one-start"' in (tmp_path / "index.html").read_text(encoding="utf-8")
     assert verify_command(no_report=True, jobs=1) == verify_command(name="E8", report=tmp_path / "E8", jobs=1) == 0
     assert made == [5, "flocks"]
+    assert verify_command(name="delay-margin", report=tmp_path / "margin", jobs=1) == 0
+    assert made == [5, "flocks", "flocks"], "a theorem of the section has the section's pictures"
 
 
 def test_linearised_flocks_of_the_tasks_are_in_the_page_and_their_failure_loses_nothing(

@@ -8,7 +8,7 @@ from flockana.report.build import write_report
 from flockana.report.control import Download
 from flockana.report.figures import Picture
 from flockana.report.pages import Finding, FixedPage
-from flockana.report.stability import LinearisedFlocks, stability_section
+from flockana.report.stability import NO_FLOCKS, LinearisedFlocks, stability_section
 from flockana.theorems import Claim, Verdict
 
 
@@ -69,8 +69,9 @@ def test_the_section_shows_what_the_verdicts_hold(pages, tmp_path):
     assert "2.00040" in text
 
 
-def test_flocks_made_before_are_not_made_again(pages, tmp_path, monkeypatch):
+def test_flocks_are_those_given_and_are_never_made_with_the_page(pages, tmp_path, monkeypatch):
     monkeypatch.setattr(stability, "linearised_flocks", None)  # a call would raise
+    assert stability_section(pages).flocks is NO_FLOCKS
     given = LinearisedFlocks(
         (Picture("Poles of 19", "<svg></svg>"),), (), (Download("19.json", "19 agents", "data:,1"),)
     )
@@ -100,7 +101,7 @@ def test_measured_points_stand_on_the_bode_plot(pages, monkeypatch):
     claims = (Claim("predicted", "verified", computed=0.8518, stated=0.8518),)
     claims += (Claim("consistent", "verified", computed=1.1093, stated=1.1093),)
     drawn = {}
-    monkeypatch.setattr(stability.plots, "measured_gains", lambda points, ax: drawn.update(points))
+    monkeypatch.setattr("flockana.plots.measured_gains", lambda points, ax: drawn.update(points))
     picture = stability.bode_picture([("msn-case4", Verdict("E12", (), claims))])
     omega = 2.0 * np.pi * 0.025 / 0.045
     assert drawn["msn-case4, p_r as handed over"] == (pytest.approx(omega), 0.8518)

@@ -20,6 +20,7 @@ from tools.site.cache import ROOT
 
 SOURCE, SITE = ROOT / "docs", ROOT / "site"
 GENERATED = SOURCE / "generated"
+_STARTED = time.monotonic()
 
 
 def generate(report: Path | None) -> None:
@@ -44,7 +45,7 @@ def generate(report: Path | None) -> None:
 
 def _tell(text: str) -> None:
     """Print what comes next, with the time since the start."""
-    sys.stdout.write(f"{time.process_time():6.0f} s  {text}\n")
+    sys.stdout.write(f"{time.monotonic() - _STARTED:6.0f} s  {text}\n")
     sys.stdout.flush()
 
 
@@ -53,7 +54,7 @@ def build(builder: str, folder: Path, *, draft: bool = False) -> int:
     # kernels import the checkout: lecture 11 has a proof
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, [os.getenv("PYTHONPATH")])])}
     options = ["-D", "nb_execution_mode=off"] if draft else []
-    options += ["-W", "--keep-going", "-q", "-d", str(SITE / "cache" / "doctrees")]
+    options += ["-W", "--keep-going", "-d", str(SITE / "cache" / "doctrees")]
     command = [sys.executable, "-m", "sphinx", "-b", builder, *options, str(SOURCE), str(folder)]
     return subprocess.call(command, env=environment)
 
@@ -65,6 +66,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--draft", action="store_true")
     parser.add_argument("--external", action="store_true")
     chosen = parser.parse_args(arguments)
+    _tell("proofs whose code has changed")
     false = [name for name, found in proofs.outcomes().items() if found["status"] != "proved"]
     if false:
         sys.stdout.write(f"not proved: {', '.join(false)}; run python -m proofs {' '.join(false)}\n")

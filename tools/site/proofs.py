@@ -7,6 +7,7 @@ import os
 from functools import cache
 from typing import Any
 
+from flockana.base.progress import progress_bar
 from proofs.proof import Proof, proofs
 from proofs.run import Outcome, check
 from tools.site.cache import place, write
@@ -29,10 +30,13 @@ def outcomes() -> dict[str, dict[str, Any]]:
     """Those of all proofs; they run, on all cores, whose code has changed since they were last proved."""
     files = {proof.id: place("proofs", proof.id, _CODE) for proof in proofs()}
     found = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
-    for each in check([name for name in files if name not in found], jobs=os.cpu_count() or 1):
-        found[each.id] = plain_data(each)
-        if each.status == "proved":  # what failed for want of time may succeed in the next build
-            write(files[each.id], found[each.id])
+    missing = [name for name in files if name not in found]
+    with progress_bar(len(missing)) as advance:
+        for each in check(missing, jobs=os.cpu_count() or 1):
+            found[each.id] = plain_data(each)
+            if each.status == "proved":  # what failed for want of time may succeed in the next build
+                write(files[each.id], found[each.id])
+            advance(sum(name in found for name in missing), f"{each.id}: {each.status}")
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from flockana.base.progress import progress_bar
 from flockana.report.coverage.anchors import verdict_id
 from flockana.scenarios import Scenario, scenario, scenarios
 from tools.site.runs import ran
@@ -75,17 +76,14 @@ def write(folder: Path, extra: Path, verdicts: Verdicts, *, images: bool, report
     (folder / "images").mkdir(parents=True)
     (extra / "runs").mkdir(parents=True)
     rows = []
-    for name in scenarios():
-        case = scenario(name)
-        if images:
-            told = ran(name)
-            for k, (_, svg) in enumerate(told["stills"]):
-                (folder / "images" / f"{name}-{k}.svg").write_text(svg, encoding="utf-8")
-            (folder / "images" / f"{name}-end.svg").write_text(told["end"], encoding="utf-8")
-            if told["play"]:
-                (extra / "runs" / f"{name}.html").write_text(told["play"], encoding="utf-8")
-        (folder / f"{name}.md").write_text(page(case, verdicts, images=images, report=report), encoding="utf-8")
-        rows.append((*([thumbnail(name)] if images else []), f"[{plain(name)}]({name}.md)", plain(case.title)))
+    with progress_bar(len(scenarios())) as advance:
+        for done, name in enumerate(scenarios()):
+            advance(done, name)
+            case = scenario(name)
+            if images:
+                _write_run(name, folder / "images", extra / "runs")
+            (folder / f"{name}.md").write_text(page(case, verdicts, images=images, report=report), encoding="utf-8")
+            rows.append((*([thumbnail(name)] if images else []), f"[{plain(name)}]({name}.md)", plain(case.title)))
     opening = (
         "# Scenarios\n\nPublished simulations, and cases that decide a theorem: each page plays the run and lists what "
         "was found."
@@ -95,6 +93,15 @@ def write(folder: Path, extra: Path, verdicts: Verdicts, *, images: bool, report
     listed = contents(f"{name} <{name}>" for name in scenarios()).replace(":maxdepth: 1", ":hidden:")
     header = (*(["at the end"] if images else []), "scenario", "title")
     (folder / "index.md").write_text(f"{opening}\n\n{table(header, rows)}\n\n{listed}\n", encoding="utf-8")
+
+
+def _write_run(name: str, images: Path, runs: Path) -> None:
+    told = ran(name)
+    for k, (_, svg) in enumerate(told["stills"]):
+        (images / f"{name}-{k}.svg").write_text(svg, encoding="utf-8")
+    (images / f"{name}-end.svg").write_text(told["end"], encoding="utf-8")
+    if told["play"]:
+        (runs / f"{name}.html").write_text(told["play"], encoding="utf-8")
 
 
 def thumbnail(name: str, *, folder: str = "images") -> str:

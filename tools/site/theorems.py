@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
@@ -32,6 +33,7 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
     """The page of one."""
     parts = [
         f"# {plain(item.id)}: {plain(item.title)}",
+        _index_entry(item),
         f"*{plain(item.source)}*",
         *([] if item.erratum is None else [plain(f"{item.erratum} ({item.erratum.sort})")]),
         "## Statement",
@@ -49,6 +51,12 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
         *(f"```bibtex\n{cite(key)}\n```" for key in item.references),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _index_entry(item: Theorem) -> str:
+    """Return the entry of the index by which a search for a printed name, such as Theorem 3, finds the page first."""
+    printed = re.match(r"(?!ours)[^;(]*, (Theorem \d+)(?!\d|\()", item.source)
+    return f"```{{index}} ! {printed[1]}\n```" if printed and item.id[0].islower() else ""
 
 
 def _hypotheses(item: Theorem, verdicts: Verdicts) -> str:

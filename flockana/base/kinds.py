@@ -1,0 +1,78 @@
+"""Checks that arguments are of the classes that their annotations name, where a public function begins."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar
+
+from flockana.base.checks import ensure_kind, real_array
+from flockana.base.errors import ArgumentError, format_value
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+# what messages ask for, by the class in an annotation; classes that are not listed are not checked
+_EXAMPLES = {
+    "AlphaInteraction": "the pair interaction of a law, as Algorithm2().alpha",
+    "CollapseDiagram": "what equilibria.collapse_diagram(...) gives",
+    "DataArray": "an xarray.DataArray, as phases(...) gives it",
+    "Dataset": "an xarray.Dataset, as ensemble(...) gives it",
+    "DeadZoneInteraction": "the pair interaction of DeadZoneFlocking",
+    "Falsification": "what falsify(...) gives",
+    "Iterable": "a sequence",
+    "Linearisation": "what linearise(...) gives",
+    "Mapping": "a mapping, such as a dict of values by label",
+    "Mode": "one of the modes of linearise(...)",
+    "NormTable": "what stability.norms_against_size(...) gives",
+    "Reynolds": "what reynolds.reynolds(...) gives",
+    "SampledBasin": "what sample_basin(...) gives",
+    "Sequence": "a sequence",
+    "StateSpace": "a control.StateSpace, as disturbance_system(...) gives it",
+    "Sweep": "what stability.gain_sweep(...) gives",
+    "Trajectory": "a run, as simulate(...) gives it",
+}
+_ARRAYS = ("ArrayLike", "FloatArray")
+_PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence}
+
+
+def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Decorate a function so that it refuses, by name, an argument of another class than its annotation.
+
+    Annotations are read as text, so that no library is imported for a check.
+
+    Examples
+    --------
+    >>> @check_kinds
+    ... def first(responses: "Mapping[str, float]") -> str:
+    ...     return next(iter(responses))
+    >>> first({"x": 1.0})
+    'x'
+    >>> first(None)
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: responses = None: expected a mapping, such as a dict of values by label
+    """
+    called = inspect.signature(function)
+    kinds = {name: str(p.annotation).partition("[")[0].rpartition(".")[2] for name, p in called.parameters.items()}
+    kinds = {name: kind for name, kind in kinds.items() if kind in _EXAMPLES or kind in _ARRAYS}
+
+    @functools.wraps(function)
+    def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+        given: dict[str, Any] = called.bind(*args, **kwargs).arguments
+        for name, kind in kinds.items():
+            if name in given and kind in _ARRAYS:
+                _ensure_numbers(name, given[name])
+            elif name in given:
+                ensure_kind(name, given[name], _PROTOCOLS.get(kind, kind), _EXAMPLES[kind])
+        return function(*args, **kwargs)
+
+    return checked
+
+
+def _ensure_numbers(name: str, value: Any) -> None:
+    """Raise unless a value is an array of real numbers."""
+    try:
+        real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected an array of real numbers") from None
