@@ -44,7 +44,7 @@ class Engine:
         reach, own = (form.reach, SKIN * form.reach), np.arange(n, dtype=np.uint64)
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         self._system = System(*form.functions, form.numbers, frame.view, form.moving, reach, own, *room)
-        given = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
+        given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
         rtol, floor, longest = plan.control
         self._method = Method(*given, float(rtol), tuple(map(float, floor)), float(longest))

@@ -6,16 +6,15 @@ import numpy as np
 
 from flockana.jit import njit
 from flockana.kernels.runge_kutta import rate_of
-from flockana.kernels.verlet import empty_list
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def march(t, h, y, kicks, wanted, system, out):
+def march(t, h, y, kicks, wanted, system, pairs, out):
     """Write (q, p, u) after the steps wanted, numbered from 1; returns whether the pairs fit into a list.
 
     `kicks` has a row of changes of the velocities for each step. y is overwritten; once it is not finite it stays so.
     """
-    (n, m), row, pairs = (system.order.size, system.frame.shape[1]), 0, empty_list(system.order.size)
+    (n, m), row = (system.order.size, system.frame.shape[1]), 0
     size, f = n * m, np.empty(y.size)
     for k in range(kicks.shape[0]):
         finite = True
@@ -23,7 +22,7 @@ def march(t, h, y, kicks, wanted, system, out):
             finite = finite and np.isfinite(y[i])
         if finite:
             pairs = rate_of(t + k * h, y, f, system, pairs)
-            if pairs[2] < 0:
+            if pairs.count < 0:
                 return False
         else:
             f[:] = np.nan

@@ -16,7 +16,7 @@ from flockana.base.errors import ArgumentError
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.euler_maruyama import march
 from flockana.kernels.runge_kutta import System
-from flockana.kernels.verlet import SKIN
+from flockana.kernels.verlet import SKIN, no_pairs
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import IndexArray
 from flockana.laws.disturbed import Disturbed
@@ -174,7 +174,7 @@ class Stepped(Scheme):
         pushing = [one for one in self._wrappers if isinstance(one, Disturbed)]
         if not isinstance(law, Disturbed) or len(pushing) < len(self._wrappers):
             return None
-        if (form := law.compiled_push(m)) is None or any(term.guard is not None for term in form.terms):
+        if (form := law.compiled_push(m)) is None or law.obstacle_field is not None:
             return None
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         still, own = (t, np.zeros(m), np.zeros(m)), np.arange(n, dtype=np.uint64)
@@ -182,7 +182,7 @@ class Stepped(Scheme):
         system = System(*form.functions, form.numbers, still, form.moving, reach, own, *room)
         kicks = sum((one._kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
         y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
-        if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, out):
+        if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, no_pairs(n, m), out):
             return None
         held, past = np.full((1, len(self._wrappers), n, m), np.nan), np.empty((1, 0, 4, n, m))
         return out[0], out[1], out[2], {"step": np.array([float(first + steps)]), "held": held, "past": past}
