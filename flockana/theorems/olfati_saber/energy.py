@@ -78,6 +78,17 @@ def cancelling(run: Trajectory) -> FloatArray:
     return size
 
 
+def _damps_only(run: Trajectory) -> bool:
+    """Whether dH/dt is a sum of squares outside of walls and spheres, the γ-agent being at rest or absent.
+
+    ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
+    """
+    target, known = run.law.target, all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
+    return known and (
+        target is None or not any(np.any(target.state(t)[1]) or np.any(target.rate(t)) for t in run.t.tolist())
+    )
+
+
 def falling_share(
     seen: Observed, rate: Callable[[Trajectory], FloatArray], cancels: Callable[[Trajectory], FloatArray]
 ) -> Enclosure:
@@ -91,6 +102,8 @@ def falling_share(
     rounding = (seen.n**2 + 64) * EPS
     if not cancels(seen.run).any():  # a sum of terms of one sign keeps it whatever the state
         return Enclosure.around(share(seen.run), 0.0)
+    if cancels is cancelling and _damps_only(seen.run):  # the terms cancel in their computation alone
+        return Enclosure.around(share(seen.run), rounding)
     return seen.series(share, floor=rounding)
 
 
@@ -113,7 +126,7 @@ def never_rises(
     cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
     share = falling_share(seen, rate, cancels)
     stop, until = len(seen.t), ""
-    if cancels(seen.run).any():
+    if cancels(seen.run).any() and not (cancels is cancelling and _damps_only(seen.run)):
         speeds = Enclosure.around(lengths(seen.run.p), seen.speed_error + seen.drift_error[:, None])
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
         until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
