@@ -47,7 +47,8 @@ class Engine:
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
         rtol, floor, longest = plan.control
-        self._method = Method(*given, float(rtol), tuple(map(float, floor)), float(longest))
+        given += [float(rtol), tuple(map(float, floor)), float(longest)]
+        self._method = Method(*given)
 
     @property
     def order(self) -> Any:
