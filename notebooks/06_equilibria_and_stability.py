@@ -242,34 +242,34 @@ assert late(1.1 * alone) > 5.0
 #
 # ## Sampled and noisy
 #
-# A drone's computer reads the state every $h$ and holds its input until the next time. What is late by $\tau$ is
-# held here: on average the input is $\tfrac12h$ old. So a guess is that the flock bears a period of twice its delay
-# margin. The linear model says more than a guess.
+# A drone's computer reads the state every $\Delta t$ and holds its input until the next time. What is late by $\tau$
+# is held here: on average the input is $\tfrac12\Delta t$ old. So a guess is that the flock bears a period of twice its
+# delay margin. The linear model says more than a guess.
 #
 # Between two samples $u$ is constant and each agent moves on a parabola. With $u = -S\tilde x - D\tilde v$ the state
 # at the next sample is
 #
-# $$\tilde x^+ = \tilde x + h\tilde v + \tfrac12h^2u, \qquad \tilde v^+ = \tilde v + hu .$$
+# $$\tilde x^+ = \tilde x + \Delta t\,\tilde v + \tfrac12\Delta t^2u, \qquad \tilde v^+ = \tilde v + \Delta t u .$$
 #
 # This is a *map*, and a map is stable if all its eigenvalues, the *multipliers* $z$, lie inside the unit circle:
 # after $k$ samples a mode has the size $|z|^k$. Suppose first that $S$ and $D$ have their modes in common, and let one
-# of them have the stiffness $\omega'^2$ and the damping $d'$. Then $z = 1 + hw$, where
+# of them have the stiffness $\omega'^2$ and the damping $d'$. Then $z = 1 + \Delta t s$, where
 #
-# $$w^2 + \bigl(d' + \tfrac12h\omega'^2\bigr)w + \omega'^2 = 0 .$$
+# $$s^2 + \bigl(d' + \tfrac12\Delta t\,\omega'^2\bigr)s + \omega'^2 = 0 .$$
 #
-# *Derivation.* Call the multiplier $z = 1 + hw$ and look for $\tilde x_k = z^k\nu$.
+# *Derivation.* Call the multiplier $z = 1 + \Delta t s$ and look for $\tilde x_k = z^k\nu$.
 #
-# 1. The second equation gives $w\tilde v = u$, the first $w\tilde x = \tilde v + \tfrac12hu$.
-# 2. Multiply the first by $w$: $w^2\tilde x = u + \tfrac12hwu$.
-# 3. $u = -\omega'^2\tilde x - d'\tilde v$, and by 1 again $\tilde v = w\tilde x - \tfrac12hu$. Put this into $u$:
-#    $u\,(1 - \tfrac12hd') = -(\omega'^2 + d'w)\tilde x$.
-# 4. With 2: $w^2(1 - \tfrac12hd') = -(1 + \tfrac12hw)(\omega'^2 + d'w)$. The terms $\tfrac12hd'w^2$ cancel, and the
-#    equation above is left.
+# 1. The second equation gives $s\tilde v = u$, the first $s\tilde x = \tilde v + \tfrac12\Delta t u$.
+# 2. Multiply the first by $s$: $s^2\tilde x = u + \tfrac12\Delta t su$.
+# 3. $u = -\omega'^2\tilde x - d'\tilde v$, and by 1 again $\tilde v = s\tilde x - \tfrac12\Delta t u$. Put this
+#    into $u$: $u\,(1 - \tfrac12\Delta t d') = -(\omega'^2 + d's)\tilde x$.
+# 4. With 2: $s^2(1 - \tfrac12\Delta t d') = -(1 + \tfrac12\Delta t s)(\omega'^2 + d's)$. The terms
+#    $\tfrac12\Delta t d's^2$ cancel, and the equation above is left.
 #
-# It is the equation of a flow whose damping has *grown*, by $\tfrac12h\omega'^2$, and yet sampling destabilises. For
-# the circle is not the half-plane: $|z|^2$ is the product of the two roots, $1 - hd' + \tfrac12h^2\omega'^2$, so a mode
-# that swings decays exactly if $h < 2d'/\omega'^2$. The stiffer the mode and the weaker its damping, the shorter the
-# period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
+# It is the equation of a flow whose damping has *grown*, by $\tfrac12\Delta t\,\omega'^2$, and yet sampling destabilises.
+# For the circle is not the half-plane: $|z|^2$ is the product of the two roots,
+# $1 - \Delta t d' + \tfrac12\Delta t^2\omega'^2$, so a mode that swings decays exactly if $\Delta t < 2d'/\omega'^2$. The
+# stiffer the mode and the weaker its damping, the shorter the period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
 
 # %%
 held = stability.sampling_margin(law, rest)
@@ -290,10 +290,10 @@ for share in (0.95, 1.05):
 #
 # Now the gust. Push every agent by white noise of intensity $g$: in a time $\Delta t$ it adds to each component of its
 # velocity a random number of variance $g^2\Delta t$. A stable linear flock then neither rests nor grows. It reaches a
-# *stationary covariance* $\Sigma$ of its state $y = (\tilde x, \tilde v)$: with $\dot y = Ay$ and $B = (0, I)$ the
-# covariance changes by
+# *stationary covariance* $\Sigma$ of its state $y = (\tilde x, \tilde v)$: with $\dot y = Ay$ the covariance
+# changes by
 #
-# $$\dot\Sigma = A\Sigma + \Sigma A^T + g^2BB^T ,$$
+# $$\dot\Sigma = A\Sigma + \Sigma A^T + g^2\operatorname{diag}(0, I) ,$$
 #
 # the first two terms from the motion, the third from the noise, and in the long run $\dot\Sigma = 0$. This is a linear
 # equation for $\Sigma$, *Lyapunov's*. For one mode it is solved by hand: its coordinate has the variance

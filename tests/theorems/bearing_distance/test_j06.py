@@ -37,7 +37,7 @@ def test_one_claim_stands_for_all(monkeypatch, statuses, status, modes):
 
     def noted(*given):
         runs.append(given)
-        return SimpleNamespace(doubt="")
+        return SimpleNamespace(doubt="", unresolved="")
 
     monkeypatch.setattr(j06, "observed", noted)
     monkeypatch.setattr(j06, "zone_1_corrected", SimpleNamespace(THEOREM=corrected(statuses, modes)))
