@@ -266,10 +266,11 @@ assert late(1.1 * alone) > 5.0
 # 4. With 2: $s^2(1 - \tfrac12\Delta t d') = -(1 + \tfrac12\Delta t s)(\omega'^2 + d's)$. The terms
 #    $\tfrac12\Delta t d's^2$ cancel, and the equation above is left.
 #
-# It is the equation of a flow whose damping has *grown*, by $\tfrac12\Delta t\,\omega'^2$, and yet sampling destabilises.
-# For the circle is not the half-plane: $|z|^2$ is the product of the two roots,
-# $1 - \Delta t d' + \tfrac12\Delta t^2\omega'^2$, so a mode that swings decays exactly if $\Delta t < 2d'/\omega'^2$. The
-# stiffer the mode and the weaker its damping, the shorter the period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
+# It is the equation of a flow whose damping has *grown*, by $\tfrac12\Delta t\,\omega'^2$, and yet sampling
+# destabilises. For the circle is not the half-plane: $|z|^2$ is the product of the two roots,
+# $1 - \Delta t d' + \tfrac12\Delta t^2\omega'^2$, so a mode that swings decays exactly if
+# $\Delta t < 2d'/\omega'^2$. The stiffer the mode and the weaker its damping, the shorter the period. For the whole
+# flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
 
 # %%
 held = stability.sampling_margin(law, rest)
