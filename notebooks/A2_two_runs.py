@@ -133,7 +133,7 @@ grade(share, 1.0, hint="add up the inputs of all agents")
 # %% [markdown] tags=["solution"]
 # Inside each component velocities come together, as the energy identity suggests, and distances come near d. But the
 # group has four components at the start and three at the end of the film. A longer film does show more: the components
-# happen to drift towards each other, meet, and form one component from $t = 7.14$ on. Nothing in Algorithm 1 guarantees
+# happen to drift towards each other, meet, and form one component from $t = 7.12$ on. Nothing in Algorithm 1 guarantees
 # that. A component that feels no other keeps its momentum, so whether two of them meet is decided by their starts; with
 # other starts they part for ever.
 #

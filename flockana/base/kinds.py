@@ -54,7 +54,8 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     flockana.base.errors.ArgumentError: responses = None: expected a mapping, such as a dict of values by label
     """
     called = inspect.signature(function)
-    kinds = {name: str(p.annotation).partition("[")[0].rpartition(".")[2] for name, p in called.parameters.items()}
+    texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
+    kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in _EXAMPLES or kind in _ARRAYS}
 
     @functools.wraps(function)

@@ -52,7 +52,9 @@ def pair_law(
     ((), (2.0, 3.0))
     """
     if (potential is None) == (force is None):
-        raise ArgumentError("expected a potential or a force, one of the two")
+        raise ArgumentError(
+            f"potential = {potential!r}, force = {force!r}: expected a potential or a force, one of the two"
+        )
     for name, table in (("parameters", parameters), ("units", units)):
         if not isinstance(table, Mapping | None):
             raise ArgumentError(f"{name} = {format_value(table)}: expected a dictionary by the parameters' names")

@@ -88,4 +88,4 @@ def test_none_and_foreign_objects_are_refused_by_name(function, value):
     names = required(function)
     with pytest.raises(FlockanaError) as refused:
         function(**dict.fromkeys(names, value))
-    assert any(word in str(refused.value) for word in (*names, format_value(value)))
+    assert any(word in str(refused.value) for word in (*inspect.signature(function).parameters, format_value(value)))

@@ -87,7 +87,7 @@ def test_the_delay_chart_shades_what_is_stable():
 
 @pytest.mark.parametrize(
     ("responses", "message"),
-    [(3, "responses = 3: expected frequency"), ({"a": 3}, r"responses\['a'\] = 3: expected a frequency response")],
+    [(3, "responses = 3: expected a mapping"), ({"a": 3}, r"responses\['a'\] = 3: expected a frequency response")],
 )
 def test_a_bode_plot_is_of_responses(responses, message):
     with pytest.raises(ArgumentError, match=message):
