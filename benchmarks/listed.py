@@ -12,7 +12,7 @@ from flockana.base.checks import FloatArray
 from flockana.jit import njit
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.listed import Listed
-from flockana.kernels.verlet import SKIN, empty_list, list_pairs, listed_anew, outdated, spatial_order
+from flockana.kernels.verlet import SKIN, covers, list_pairs, listed_anew, no_pairs, spatial_order
 from flockana.laws.olfati_saber import Algorithm2
 
 REACH = (1.0 + SKIN) * R
@@ -64,10 +64,10 @@ def flight(law: Algorithm2, q: FloatArray, p: FloatArray, dt: float, evaluations
 
     def turn() -> FloatArray:
         order = spatial_order(moved, REACH)
-        x, v, u, pairs = moved[order], p[order], np.empty(q.shape), empty_list(len(q))
+        x, v, u, pairs = moved[order], p[order], np.empty(q.shape), no_pairs(*q.shape)
         for _ in range(evaluations):
             x += dt * v
-            if outdated(x, R, SKIN * R, pairs):
+            if not covers(pairs, x, R):
                 pairs = listed_anew(x, REACH, pairs)
             rate(x, v, u, *pairs[:3], own)
         moved[order], felt[order] = x, u

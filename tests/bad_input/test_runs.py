@@ -81,7 +81,7 @@ def cases():
     methods = {"none": None, "unknown": "x", "a number": 3, "another case": "rk4", "a list": ["RK4"], "no dt": "RK4"}
     yield "simulate method", methods, lambda v: simulated(method=v)
     yield "simulate rtol", POSITIVE, lambda v: simulated(rtol=v)
-    yield "simulate atol", without(POSITIVE, "none"), lambda v: simulated(atol=v)
+    yield "simulate atol", without(POSITIVE, "none", "two numbers"), lambda v: simulated(atol=v)
     steps = POSITIVE | {"beyond memory": 1e-13, "beyond all": 1e-300}
     yield "simulate dt", steps, lambda v: simulated((0.0, 1.0), method="RK4", dt=v)
     yield "simulate t_eval", TIMES, lambda v: simulated((0.0, 1.0), t_eval=v)

@@ -11,6 +11,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
+from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
@@ -79,11 +80,11 @@ def cancelling(run: Trajectory) -> FloatArray:
 
 
 def _damps_only(run: Trajectory) -> bool:
-    """Whether dH/dt is a sum of squares outside of walls and spheres, the γ-agent being at rest or absent.
+    """Whether dH/dt is a sum of squares outside of walls, spheres and capsules, the γ-agent being at rest or absent.
 
     ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
     """
-    target, known = run.law.target, all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
+    target, known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
     return known and (
         target is None or not any(np.any(target.state(t)[1]) or np.any(target.rate(t)) for t in run.t.tolist())
     )
