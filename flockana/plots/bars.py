@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import ensure_finite_scalar
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, finish, subplots
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ Cell = float | tuple[float, float]
 _HEIGHT = 0.6  # of a bar
 
 
+@check_kinds
 def bars(
     table: Mapping[str, Mapping[str, Cell]], *, limits: Mapping[str, float] | None = None, ax: Any = None
 ) -> npt.NDArray[Any]:

@@ -12,6 +12,7 @@ from flint import arb, arb_mat, ctx
 
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.certified import check_net
+from flockana.certified.balls import hull
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError
 from flockana.certified.check_net import Net
@@ -76,7 +77,7 @@ def test_a_pair_at_its_range_is_looked_at_and_one_beyond_is_not():
 
 
 def test_one_ball_holds_all_lengths_of_a_bond():
-    total = NET.hull([arb(2), arb(1), arb(3, 0.5)])
+    total = hull(arb(2), arb(1), arb(3, 0.5))
     assert total.contains(arb(1))
     assert total.contains(arb(3.5))
 
