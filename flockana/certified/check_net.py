@@ -137,7 +137,7 @@ class Net:
         gaps: Mapping[Pair, list[arb]],
         floors: Mapping[Pair, tuple[Fraction, Fraction]],
     ) -> arb_mat:
-        """Return the matrix of the pairs' bounds, with the rigid motions shifted far up."""
+        """Return a lower bound of the Hessian from bounds of its pairs, with large eigenvalues for rigid motions."""
         blocks = {}
         for pair, (along, across) in floors.items():
             gap = gaps[pair]

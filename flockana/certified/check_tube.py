@@ -157,7 +157,7 @@ class Run(Motion):
         return error + self.norm([a - b for a, b in zip(state, self.at(path, arb(0)), strict=True)])
 
     def grown(self, t: arb, h: arb, path: Sequence[Vector], error: arb, bound: arb) -> tuple[arb, Vector]:
-        """Return the error at the end of a step, and a box of all states within a bound of its path."""
+        """Return a bound of the error after a step, and a box that holds all states within `bound` of its path."""
         span = arb(0).union(h)
         reach = self.at(path, span)
         half, size = bound / self.weight, self.n * self.m

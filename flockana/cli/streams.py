@@ -16,7 +16,7 @@ class _Outlet(io.FileIO):
     gone = False
 
     def write(self, data: Any) -> int:
-        """Write bytes, or drop them."""
+        """Write bytes; drop them once the reader has closed the pipe."""
         if not self.gone:
             try:
                 return super().write(data) or 0

@@ -9,11 +9,11 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.stepper import Stepper
 from flockana.jit import thawed
-from flockana.kernels.advance import advance, recorded, reordered
-from flockana.kernels.blocks import BLOCK
+from flockana.kernels.advance import advance, reordered
 from flockana.kernels.march import CROWDED, RUNNING, SINGULAR, TOO_SMALL, Block, Room
-from flockana.kernels.runge_kutta import Method, System
+from flockana.kernels.runge_kutta import Method
 from flockana.kernels.tableaus import tableau
 from flockana.kernels.verlet import SKIN, list_pairs, no_pairs, spatial_order
 from flockana.laws.law import Law
@@ -26,7 +26,7 @@ _UNLISTED = "scipy-DOP853"  # which looks at pairs in blocks
 _SMALL = "Required step size is less than spacing between numbers."  # scipy's words
 
 
-class Engine:
+class Engine(Stepper):
     """A law and a method, compiled, on their way through a run.
 
     Agents are sorted by cell, so that a pair's are close in memory: `order` has every agent's own number.
@@ -35,25 +35,19 @@ class Engine:
     def __init__(self, form: Compiled, frame: Frame, plan: Plan, y: FloatArray, f: FloatArray) -> None:
         self.frame, self.plan, (n, m) = frame, plan, frame.shape
         self.failure, self.evaluations, self.redone = "", 1, 0
-        self.stops, self._due = plan.stops[plan.stops > frame.t0], plan.due[plan.due > frame.t0]
+        self.stops, self.due = plan.stops[plan.stops > frame.t0], plan.due[plan.due > frame.t0]
         self.pairs, self._sorted, self._h = no_pairs(n, m), -_LISTS, 0.0
         rows = int(np.clip(_NUMBERS // (4 * frame.size), 1, _STEPS)) + 1
         self.block = Block(*(np.empty((rows, *shape)) for shape in ((), y.shape, y.shape, ())))
         for each, value in zip(self.block, (frame.t0, y, f, np.nan), strict=True):
             each[0] = value
-        reach, own = (form.reach, SKIN * form.reach), np.arange(n, dtype=np.uint64)
-        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
-        self._system = System(*form.functions, form.numbers, frame.view, form.moving, reach, own, *room)
+        self._system = form.system(frame.view, n, m)
+        self.order = self._system.order
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
         rtol, floor, longest = plan.control
         given += [float(rtol), tuple(map(float, floor)), float(longest)]
         self._method = Method(*given)
-
-    @property
-    def order(self) -> Any:
-        """Every agent's own number, in the order of the vectors."""
-        return self._system.order
 
     def advance(self, checks: StepChecks) -> int:
         """Make steps that stand; `failure` says why the run ends with them, if it does."""
@@ -62,7 +56,7 @@ class Engine:
         judged = checks.judged(self.order)
         made = advance(
             self._system, self._method, self.block, self._room, self._h, (self.pairs, checks.near), self.stops,
-            self._due, judged,
+            self.due, judged,
         )  # fmt: skip
         self._h, self.pairs, checks.near, self._samples = made.h, made.pairs, made.near, (made.states, made.work)
         self.evaluations, self.redone = self.evaluations + made.evaluations, self.redone + made.redone
@@ -82,26 +76,15 @@ class Engine:
         order = spatial_order(self.block.y[0, : n * m].reshape(n, m), reach)
         for rows in (self.block.y, self.block.f):
             rows[:1] = reordered(rows[:1], order, m)
-        self._system = self._system._replace(order=self.order[order])
+        self.order = self.order[order]
+        self._system = self._system._replace(order=self.order)
         self.pairs = self.pairs._replace(places=np.empty((0, m)))
         self._sorted = self.pairs.made
-
-    def go_on(self, good: int) -> None:
-        """Go on from the end of the last step."""
-        for rows in self.block:
-            rows[0] = rows[good]
-        t = float(self.block.t[0])
-        self.stops, self._due = self.stops[self.stops > t], self._due[self._due > t]
-
-    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
-        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-        found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
-        return found
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(times, states, work) of the samples due within the steps; NaN where a step ended."""
         states, work = self._samples
-        return self._due[: len(work)], states, work
+        return self.due[: len(work)], states, work
 
 
 def engine_of(law: Law, q0: FloatArray, p0: FloatArray, t0: float, plan: Plan) -> Engine | None:

@@ -7,7 +7,6 @@ Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any la
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,34 +17,10 @@ from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.sample import Sample, Samples, Tally, has_energy
 from flockana.dynamics.solvers import Solver
+from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.switches import Switches, switched
-from flockana.kernels.march import Block
 from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
-
-
-class Stepper(Protocol):
-    """An integrator that makes steps into a block, from its first row."""
-
-    frame: Frame
-    plan: Plan
-    block: Block
-    stops: FloatArray  # times to come at which a step must end
-    evaluations: int
-    redone: int  # steps made again
-    failure: str  # why it gave up, if it did
-
-    def advance(self, checks: StepChecks) -> int:
-        """Make steps that stand; `failure` says why the run ends with them, if it does."""
-
-    def go_on(self, good: int) -> None:
-        """Go on from the end of the last step."""
-
-    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
-        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-
-    def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(times, states, work) of the samples due within the steps."""
 
 
 def integrated(

@@ -96,7 +96,7 @@ def _file_seal(run: Any, made_by: str) -> dict[str, str]:
 
 
 def _ensure_whole(source: Path) -> None:
-    """Raise if the file ends in the digest of its bytes, or in a part of that line, and they are others."""
+    """Raise if a file ends in a digest line, or a part of one, that is not the digest of the bytes before it."""
     size = source.stat().st_size
     with source.open("rb") as file:
         file.seek(max(0, size - 2 * _LENGTH))

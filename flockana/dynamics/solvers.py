@@ -16,7 +16,7 @@ from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import ONE_STEP, StepChecks, at_a_pole
 from flockana.dynamics.frame import Flow, Frame, Plan
 from flockana.dynamics.sample import finite
-from flockana.kernels.advance import recorded
+from flockana.dynamics.stepper import Stepper
 from flockana.kernels.march import GROWTH, Block
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.law import Law
@@ -45,13 +45,13 @@ class Classical:
         self.status, self.f = "finished" if h == left else "running", self.fun(self.t, self.y)
 
 
-class Solver:
+class Solver(Stepper):
     """A law, or another flow, stepped by one of scipy's solvers or by the classical Runge-Kutta method."""
 
     def __init__(self, law: Law, frame: Frame, plan: Plan, y: FloatArray, flow: Flow | None = None) -> None:
         self.law, self.frame, self.plan, self.method = law, frame, plan, plan.method.removeprefix(SCIPY)
         self.failure, self.evaluations, self.redone = "", 0, 0
-        self.stops, self._due = plan.stops, plan.due[plan.due > frame.t0]
+        self.stops, self.due = plan.stops, plan.due[plan.due > frame.t0]
         self.order, self.pairs = np.arange(frame.shape[0], dtype=np.uint64), no_pairs(0, frame.shape[1])
         self.block = Block(np.zeros(2), np.empty((2, y.size)), np.empty((2, y.size)), np.full(2, np.nan))
         self.begin(law.flow if flow is None else flow, frame.t0, y)
@@ -142,21 +142,9 @@ class Solver:
         self.failure = self.plan.gave_up(float(self._solver.t), why)
         return False
 
-    def go_on(self, good: int) -> None:
-        """Go on from the end of the last step."""
-        for rows in self.block:
-            rows[0] = rows[good]
-        t = float(self.block.t[0])
-        self.stops, self._due = self.stops[self.stops > t], self._due[self._due > t]
-
-    def states(self, good: int) -> tuple[FloatArray, FloatArray]:
-        """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-        found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
-        return found
-
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(times, states, work) of the samples due within the step."""
-        due = self._due[self._due < self.block.t[1]]
+        due = self.due[self.due < self.block.t[1]]
         states, work = np.empty((due.size, 3, *self.frame.shape)), np.full(due.size, np.nan)
         for k, t in enumerate(due.tolist()):
             y = self.course(t)

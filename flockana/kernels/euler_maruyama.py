@@ -9,7 +9,7 @@ from flockana.kernels.runge_kutta import rate_of
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def march(t, h, y, kicks, wanted, system, pairs, out):
+def euler_maruyama_steps(t, h, y, kicks, wanted, system, pairs, out):
     """Write (q, p, u) after the steps wanted, numbered from 1; returns whether the pairs fit into a list.
 
     `kicks` has a row of changes of the velocities for each step. y is overwritten; once it is not finite it stays so.

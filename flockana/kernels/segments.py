@@ -38,7 +38,7 @@ def turn(a0, a1, b0, b1, c0, c1):
 
 @njit(cache=True)
 def _volume(a, b, c, d):
-    """Sign of the volume of a tetrahedron, likewise."""
+    """Return the sign of the volume of a tetrahedron abcd: 1, −1 or 0, or UNSURE within rounding."""
     u, v, w = a - d, b - d, c - d
     for k in range(3):
         if u[k] == 0.0 and v[k] == 0.0 and w[k] == 0.0:

@@ -309,7 +309,7 @@ def compose(
 
 
 def _ensure_parts(part: str, value: Any, **belonging: Any) -> None:
-    """Raise if something is given that belongs to a part that is not."""
+    """Raise if an option is given without the part of the law that it belongs to."""
     for name, gain in belonging.items():
         if value is None and gain is not None and gain is not False:
             raise ArgumentError(f"{name} = {gain!r} without its part: give {part}=..., or leave {name} out")

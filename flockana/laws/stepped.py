@@ -13,10 +13,8 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
-from flockana.kernels.blocks import BLOCK
-from flockana.kernels.euler_maruyama import march
-from flockana.kernels.runge_kutta import System
-from flockana.kernels.verlet import SKIN, no_pairs
+from flockana.kernels.euler_maruyama import euler_maruyama_steps
+from flockana.kernels.verlet import no_pairs
 from flockana.laws.delayed import Delayed
 from flockana.laws.discrete import IndexArray
 from flockana.laws.disturbed import Disturbed
@@ -176,13 +174,12 @@ class Stepped(Scheme):
             return None
         if (form := law.compiled_push(m)) is None or law.obstacle_field is not None:
             return None
-        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
-        still, own = (t, np.zeros(m), np.zeros(m)), np.arange(n, dtype=np.uint64)
-        reach = (form.reach, SKIN * form.reach)
-        system = System(*form.functions, form.numbers, still, form.moving, reach, own, *room)
+        system = form.system((t, np.zeros(m), np.zeros(m)), n, m)
         kicks = sum((one._kicks(first, steps, self.dt, (n, m)) for one in pushing), np.zeros((steps, n, m)))
         y, out = np.concatenate([q.ravel(), p.ravel(), [0.0]]), np.empty((3, len(wanted), n, m))
-        if not march(t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, no_pairs(n, m), out):
+        if not euler_maruyama_steps(
+            t, self.dt, y, kicks.reshape(steps, n * m), np.asarray(wanted), system, no_pairs(n, m), out
+        ):
             return None
         held, past = np.full((1, len(self._wrappers), n, m), np.nan), np.empty((1, 0, 4, n, m))
         return out[0], out[1], out[2], {"step": np.array([float(first + steps)]), "held": held, "past": past}

@@ -13,7 +13,7 @@ from .delay import rightmost_roots as rightmost_roots
 from .delay import scalar_margin as scalar_margin
 from .design import GainDesign as GainDesign
 from .design import design_gains as design_gains
-from .design import gain_problem as gain_problem
+from .gain_problems import gain_problem as gain_problem
 from .linearisation import Linearisation as Linearisation
 from .linearise import linearise as linearise
 from .maps import MapLinearisation as MapLinearisation

@@ -46,7 +46,7 @@ class Crossing(NamedTuple):
 
 
 def modal_crossing(four: Four, neutral: float) -> Crossing | None:
-    """The least crossing of K₀, D₀, K₁, D₁ with common modes, mode by mode; None of others.
+    """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes.
 
     |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
     Stiffness up to `neutral` is 0.

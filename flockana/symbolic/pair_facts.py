@@ -155,7 +155,7 @@ class _Decided:
                 yield from self._vanishes(gap, scale, place, f"{name} jumps at s = {place:g}")
 
     def _end(self) -> Iterator[Fact]:
-        """Yield what does not vanish at the range."""
+        """Yield a fault if the force or the adjacency does not vanish at the range."""
         main, place = self._mains[-1], self.place(self.cut.end)
         force = main if self.cut.formula.forces else sp.diff(main, self._y)
         for what, name, scale in ((force, "force", self.strength), (self._weights[-1], "adjacency", self.tallest)):

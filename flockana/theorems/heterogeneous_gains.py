@@ -8,7 +8,8 @@ import numpy as np
 
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.stability.design import GainDesign, design_gains, gain_problem
+from flockana.stability.design import GainDesign, design_gains
+from flockana.stability.gain_problems import gain_problem
 from flockana.stability.rounding import eigen
 from flockana.theorems.claims import spectral, undecided
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances

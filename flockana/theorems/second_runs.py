@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flockana.base import units
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import centres, lengths
@@ -107,20 +108,13 @@ def integrated(
     if "rtol" in stats:
         method = stats.get("method", "DOP853")
         options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
-        options["atol"] = _scaled(stats.get("atol"), factor)
+        options["atol"] = units.times(stats.get("atol"), factor)
     elif own_step and "dt" in stats:
         options = {"method": "RK4", "dt": stats["dt"]}
     longest = stats.get("max_step") if max_step is None else max_step
     if longest is not None:
         options["max_step"] = longest
     return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
-
-
-def _scaled(atol: Any, factor: float) -> Any:
-    """Return an absolute tolerance, or several, times a factor; None stays None."""
-    return (
-        None if atol is None else tuple(factor * x for x in atol) if isinstance(atol, tuple | list) else factor * atol
-    )
 
 
 def doubt_of(run: Trajectory) -> str:

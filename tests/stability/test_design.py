@@ -16,7 +16,8 @@ from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system
-from flockana.stability.design import GainProblem, design_gains, gain_problem
+from flockana.stability.design import design_gains
+from flockana.stability.gain_problems import GainProblem, gain_problem
 from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_norm
 from flockana.stability.specifications import Specifications

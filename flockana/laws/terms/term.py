@@ -5,9 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal, NamedTuple
 
+import numpy as np
+
 from flockana.base.checks import FloatArray
 from flockana.jit import Kernel
+from flockana.kernels.blocks import BLOCK
 from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
+from flockana.kernels.runge_kutta import System
+from flockana.kernels.verlet import SKIN
 
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
@@ -54,6 +59,12 @@ class Compiled(NamedTuple):
     def numbers(self) -> LawNumbers:
         """What they read."""
         return law_numbers(self.terms)
+
+    def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:
+        """Return the law as steps take it, its agents in their own order, seen from a frame (start, origin, drift)."""
+        reach, own = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
+        room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
+        return System(*self.functions, self.numbers, view, self.moving, reach, own, *room)
 
 
 class Term(ABC):

@@ -91,9 +91,16 @@ def _damps_only(run: Trajectory) -> bool:
 
 
 def falling_share(
-    seen: Observed, rate: Callable[[Trajectory], FloatArray], cancels: Callable[[Trajectory], FloatArray]
+    seen: Observed,
+    rate: Callable[[Trajectory], FloatArray],
+    cancels: Callable[[Trajectory], FloatArray],
+    *,
+    one_sign: bool = False,
 ) -> Enclosure:
-    """Return −rate over the magnitude of its terms, from 1 (all of them fall) to −1, at each sample."""
+    """Return −rate over the magnitude of its terms, from 1 (all of them fall) to −1, at each sample.
+
+    Terms that have one sign in exact arithmetic cancel in their computation alone, whatever the error of the state.
+    """
 
     def share(run: Trajectory) -> FloatArray:
         falls = -rate(run)
@@ -101,11 +108,9 @@ def falling_share(
         return np.divide(falls, size, out=np.ones_like(falls), where=size > 0.0)
 
     rounding = (seen.n**2 + 64) * EPS
-    if not cancels(seen.run).any():  # a sum of terms of one sign keeps it whatever the state
+    if not cancels(seen.run).any():  # a sum of terms of one sign keeps it in floating point
         return Enclosure.around(share(seen.run), 0.0)
-    if cancels is cancelling and _damps_only(seen.run):  # the terms cancel in their computation alone
-        return Enclosure.around(share(seen.run), rounding)
-    return seen.series(share, floor=rounding)
+    return Enclosure.around(share(seen.run), rounding) if one_sign else seen.series(share, floor=rounding)
 
 
 def never_rises(
@@ -125,9 +130,10 @@ def never_rises(
     Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
     """
     cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
-    share = falling_share(seen, rate, cancels)
+    one_sign = cancels is cancelling and _damps_only(seen.run)
+    share = falling_share(seen, rate, cancels, one_sign=one_sign)
     stop, until = len(seen.t), ""
-    if cancels(seen.run).any() and not (cancels is cancelling and _damps_only(seen.run)):
+    if cancels(seen.run).any() and not one_sign:
         speeds = Enclosure.around(lengths(seen.run.p), seen.speed_error + seen.drift_error[:, None])
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
         until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"

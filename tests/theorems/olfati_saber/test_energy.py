@@ -18,6 +18,7 @@ from flockana.laws.terms.pairs import PairTerm
 from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises, stays_outside
+from flockana.theorems.second_runs import Errors
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 from tests.toys.laws.toy_swarm import ToyDrag, ToySwarm
 
@@ -109,6 +110,16 @@ class TestTheSign:
         law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)), obstacles=())
         seen = observed(law, [[5.0, 5.0]], [[0.1 * (1.0 + 1e-16), 0.7]], (0.0, 0.5))
         assert never_rises(seen, []).status == "inconclusive"
+
+    @pytest.mark.parametrize(("told", "status"), [((0.0, 0.0), "verified"), ((0.5, 0.0), "inconclusive")])
+    def test_a_sum_of_squares_keeps_its_sign_whatever_the_error_of_the_state(self, told, status):
+        """Beside a sphere and a γ-agent at rest; with one that tells a velocity the terms may cancel."""
+        law = Algorithm3(target=StaticTarget((0.0, 0.0), told), obstacles=(Sphere((12.0, 0.0), 2.0),))
+        run = simulate(law, [[8.0, 0.5]], [[-1.0, 0.1]], (0.0, 0.1))
+        other = simulate(law, [[8.0, 0.5]], [[0.25, 0.0]], (0.0, 0.1), t_eval=run.t)
+        errors = [np.full((len(run.t), 1), 1.0)] * 2 + [np.full(len(run.t), 1.0)] * 2
+        seen = Observed(run, run, other, Errors(run.t, *errors))
+        assert never_rises(seen, []).status == status
 
     def test_the_margin_is_the_share_of_the_terms_that_is_left(self):
         """One agent towards a γ-agent that tells p_d: the rate is -c2γ p (p - p_d), its terms c2γ p (p + p_d)."""

@@ -1,0 +1,139 @@
+"""The state matrix of a flock as a function of its gains on the γ-agent, at a configuration.
+
+The question is that of Montanari, Barioni, Duan and Motter ("Optimal flock formation induced by agent heterogeneity"):
+minimise the largest real part among the eigenvalues of [[0, I], [−diag(c1γ) − c1α∇²V, −diag(c2γ) − c2α L̂]] at a given
+quasi-lattice, gains between bounds. Their simplified form drops ∇²V.
+
+Which modes are set apart. Translation is no zero mode here: c1γ holds it, and how fast it dies is what the γ-agent is
+for; it counts. Rotation about the γ-agent is neutral at every equilibrium of the law, for any gains, because the stress
+in the pressed links cancels what c1γ seems to hold. At a lattice that is no equilibrium of the law, an unstressed one
+above all, the printed matrix does hold it, which no flock at rest does. So rotation="counted" reads the matrix as
+printed; rotation="neutral" divides the angle of the rotation about the centre out, as `blocks.Blocks.quotient` does,
+so that the speed of turning is still to die out, as it is in a flock at rest; and rotation="apart" projects out angle
+and speed alike: what is rated is the flock's shape and its centre, and nothing of how it turns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flockana.base.checks import FloatArray, ensure_known, ensure_points
+from flockana.environment.targets import StaticTarget
+from flockana.equilibria.terminal import rigid_motions
+from flockana.interactions import Gains
+from flockana.interactions.alpha import AlphaInteraction
+from flockana.laws.olfati_saber import Algorithm2
+from flockana.stability.blocks import complement, reduced
+
+ComplexArray = npt.NDArray[np.complex128]
+
+FORMS = ("full", "simplified")
+ROTATIONS = ("apart", "neutral", "counted")
+
+
+@dataclass(frozen=True)
+class GainProblem:
+    """State matrix of the gain design problem, and its eigenvalues as functions of the gains.
+
+    Examples
+    --------
+    One agent, c1γ = 2 and c2γ = 3, has the roots −1 and −2:
+
+    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
+    >>> round(alone.abscissa(np.array([2.0, 3.0])), 12)
+    -1.0
+    """
+
+    stiffness: FloatArray  # shape (N, N): c1α ∇²V, or zero in the simplified form
+    damping: FloatArray  # shape (N, N): c2α L̂
+    apart: FloatArray  # shape (N, k): orthonormal motions that are projected out
+    agents: int  # n; each has N/n coordinates
+    speeds: bool = True  # whether their velocities are projected out too, or their positions alone
+    law: Algorithm2 | None = None  # law and configuration (n, m) that the matrices are of
+    q: FloatArray | None = None
+
+    @property
+    def _kept(self) -> tuple[FloatArray, FloatArray]:
+        """Bases of the positions and of the velocities that are left."""
+        kept = complement(self.apart)
+        return kept, kept if self.speeds else np.eye(len(self.stiffness))
+
+    def matrix(self, gains: FloatArray) -> FloatArray:
+        """Return the state matrix for gains (c1γ_1 … c1γ_n, c2γ_1 … c2γ_n), projected motions removed."""
+        each = len(self.stiffness) // self.agents
+        pull, drag = np.repeat(gains, each).reshape(2, -1)
+        return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)
+
+    def eigenvalues(self, gains: FloatArray) -> ComplexArray:
+        """Return the eigenvalues of `matrix`, largest real part first."""
+        values: ComplexArray = np.linalg.eigvals(self.matrix(gains)).astype(np.complex128)
+        return values[np.lexsort((values.imag, -values.real))]
+
+    def abscissa(self, gains: FloatArray) -> float:
+        """Return the largest real part, minus the decay rate of the slowest mode."""
+        return float(np.linalg.eigvals(self.matrix(gains)).real.max())
+
+    def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n).
+
+        dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
+        """
+        from scipy.linalg import eig
+
+        values, left, right = eig(self.matrix(gains), left=True, right=True)  # type: ignore[misc]
+        positions, velocities = self._kept
+        k = positions.shape[1]
+        force = velocities @ left[k:].conj()
+        scale = np.einsum("ij,ij->j", left.conj(), right)
+        scale = np.where(np.abs(scale) > 1e-14, scale, 1e-14)
+        moved = np.vstack([positions @ right[:k], velocities @ right[k:]]).reshape(2, self.agents, -1, values.size)
+        slope = -np.einsum("aim,gaim->gam", force.reshape(self.agents, -1, values.size), moved)
+        return values, (slope.reshape(2 * self.agents, -1) / scale).real.T
+
+
+def gain_problem(
+    q: Any, *, alpha: AlphaInteraction, gains: Gains, form: str = "full", rotation: str = "apart"
+) -> GainProblem:
+    """Return the gain design problem at a configuration.
+
+    Parameters
+    ----------
+    gains : Gains
+        c1α and c2α are used.
+    form : {"full", "simplified"}
+        With c1α ∇²V or without. Without it coordinates decouple into m copies of one problem of n, and nothing knows
+        of rotations.
+    rotation : {"apart", "neutral", "counted"}
+        Whether the rotation about the centre is projected out, angle and speed; or its angle alone, as where it is
+        neutral; or neither. No matter in the simplified form.
+
+    Raises
+    ------
+    UnknownNameError
+        On another form or rotation.
+
+    Examples
+    --------
+    >>> problem = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=AlphaInteraction(), gains=Gains(), form="simplified")
+    >>> problem.damping.shape, problem.apart.shape
+    ((2, 2), (2, 0))
+    """
+    q = ensure_points("q", q)
+    n, m = q.shape
+    for name, value, known in (("form", form, FORMS), ("rotation", rotation, ROTATIONS)):
+        ensure_known(name, value, known)
+    damping = gains.c2_alpha * alpha.laplacian(q).toarray()
+    of = {"law": Algorithm2(alpha, gains, StaticTarget(q.mean(axis=0))), "q": q}
+    if form == "simplified":
+        return GainProblem(np.zeros((n, n)), damping[::m, ::m], np.zeros((n, 0)), n, **of)
+    rigid = rigid_motions(q)
+    translations = np.tile(np.eye(m), (n, 1)) / sqrt(n)
+    inside = rigid - translations @ (translations.T @ rigid)
+    basis, sizes, _ = np.linalg.svd(inside, full_matrices=False)
+    turns = basis[:, sizes > 0.5] if rotation != "counted" else np.zeros((q.size, 0))
+    return GainProblem(gains.c1_alpha * alpha.hessian(q).toarray(), damping, turns, n, rotation == "apart", **of)
