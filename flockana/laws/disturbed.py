@@ -31,7 +31,7 @@ class Disturbed(Wrapper):
     """u + w: agents are pushed by w(t) = force + swing sin(2π frequency t + phase) + table, and by white noise.
 
     A force that is a function of time cannot be saved to a file; a table can. An integrator with steps of its own may
-    step over a push that is shorter than these: then take method RK4 with a step shorter than the push.
+    step over a push that is shorter than these: then give `simulate` a `max_step` shorter than the push.
 
     White noise of intensity s gives a velocity of variance s² t in each coordinate after the time t. Without noise the
     law stays a continuous one, which every method integrates; with noise it is stepped (`simulate(..., dt=)`).
