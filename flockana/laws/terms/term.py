@@ -61,7 +61,13 @@ class Compiled(NamedTuple):
         return law_numbers(self.terms)
 
     def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:
-        """Return the law as steps take it, its agents in their own order, seen from a frame (start, origin, drift)."""
+        """Return the law as steps take it, its agents in their own order.
+
+        Parameters
+        ----------
+        view
+            The frame (start, origin, drift) that forces are seen from.
+        """
         reach, own = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
         return System(*self.functions, self.numbers, view, self.moving, reach, own, *room)
