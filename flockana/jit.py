@@ -144,13 +144,26 @@ def register_jitable(function: Callable[..., Any]) -> Inlined:
     return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
 
 
+@cache
 def callback(kernel: Kernel, signature: Any) -> Any:
-    """Return a kernel as a function that compiled code may be handed, compiled for one signature."""
+    """Return a kernel as a function that compiled code may be handed, compiled for one signature.
+
+    Code that calls it does not contain it, as it contains each kernel that it calls by name: what large functions
+    share is compiled once.
+    """
     if load_numba().config.DISABLE_JIT:
         return kernel.function
     with compiling(_mark(kernel.function, signature)):
         options = {"error_model": "numpy", "nogil": True}
         return _with_cache(kernel.function, True, lambda numba, cache: numba.cfunc(signature, cache=cache, **options))
+
+
+def callback_like(kernel: Kernel, result: tuple[Any, ...], *arguments: Any) -> Any:
+    """Return `callback` for the types of these examples of what a kernel returns and is given."""
+    numba = load_numba()
+    if numba.config.DISABLE_JIT:
+        return kernel.function
+    return callback(kernel, numba.typeof(result)(*map(numba.typeof, arguments)))
 
 
 def thawed(array: Any) -> Any:

@@ -26,14 +26,14 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.dynamics.frame import Frame, Plan
 from flockana.environment.beta import ObstacleField
-from flockana.jit import thawed
+from flockana.jit import callback_like, thawed
 from flockana.kernels.alpha import BETA_AREA
 from flockana.kernels.bodies import body_numbers
 from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger, share_of_step
 from flockana.kernels.encounters import Around, Ends
 from flockana.kernels.laws import guard_of
 from flockana.kernels.march import Block
-from flockana.kernels.verlet import Pairs, no_pairs
+from flockana.kernels.verlet import Pairs, lister, no_pairs
 from flockana.laws.law import Law
 
 SHARE = 0.5  # of the law's length: as far may two agents go within each other's range between two evaluations
@@ -110,7 +110,7 @@ class Encounters:
     def rules(self, energetic: bool, balance: tuple[float, float], *, fixed: bool) -> Rules:
         """Return how steps are judged, as compiled code reads it."""
         pairs = self.radii.size > 0 or self.poles.size > 0
-        return Rules(self.bodies is not None, bool(pairs), energetic, balance, fixed)
+        return Rules(self.bodies is not None, bool(pairs), energetic, balance, fixed, lister())
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
         """Return what compiled code reads, of agents in an order of its own."""
@@ -155,7 +155,10 @@ class StepChecks:
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
             around = self._encounters.around(order, self._toward)
-            self._judged = Judged(around, self._rules, self._ledger)
+            none = np.empty((0, self._shape[1]))
+            step = 0.0, Ends(0.0, *6 * (none,)), around, self._rules, self._view, self.near, self.near
+            share = callback_like(share_of_step, (0.0, self.near), *step)
+            self._judged = Judged(around, self._rules, self._ledger, share)
         return self._judged
 
     def look(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:

@@ -98,7 +98,8 @@ def advance(system, method, block, room, h, lists, stops, due, judged):
     pairs, near = lists
     n, m, energetic = system.order.size, system.frame.shape[1], judged.rules.energetic
     states, work = np.empty((0, 3, n, m)), np.empty(due.size)
-    made, evaluations, redone, status, stop, sampled = 0, 0, 0, RUNNING, 0, 0
+    evaluations, redone, status, stop, sampled = 0, 0, RUNNING, 0, 0
+    made = np.int64(0)  # typed: of a literal, all that is called would be compiled once more
     while made + 1 < block.t.size and stop < stops.size and status == RUNNING:
         now = march(block, made, h, (stops[stop], stops[-1]), system, method, room, pairs)
         status, pairs, evaluations, at = now.status, now.pairs, evaluations + now.evaluations, block.t[made + 1]

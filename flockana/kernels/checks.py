@@ -16,7 +16,7 @@ from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _s
 from flockana.kernels.paths import bernstein
 from flockana.kernels.poles import crossing_listed
 from flockana.kernels.runge_kutta import frame_at
-from flockana.kernels.verlet import SKIN, covers, listed_anew
+from flockana.kernels.verlet import SKIN, covers
 
 ROUNDINGS = 64.0  # of the time: a step of so few is not made again
 HALVINGS, FALLS = 4, 0.04  # a residual that so many halvings leave above so much is not the integrator's to mend
@@ -35,14 +35,16 @@ class Rules(NamedTuple):
     energetic: Any  # whether energies are looked at
     balance: Any  # share of the energy, and energy, that the balance of a step may be off by
     fixed: Any  # whether the method's steps are of fixed length
+    listed: Any  # how pairs are listed: `flockana.kernels.verlet.listed_anew`
 
 
 class Judged(NamedTuple):
-    """What steps are held against: `flockana.kernels.encounters.Around`, rules, and the ledger of the balance."""
+    """What steps are held against."""
 
-    around: Any
+    around: Any  # `flockana.kernels.encounters.Around`
     rules: Any
-    ledger: Any
+    ledger: Any  # of the balance
+    share: Any  # `share_of_step`
 
 
 def empty_ledger() -> Any:
@@ -121,7 +123,7 @@ def share_of_step(t, ends, around, rules, view, kept, near):
     held = kept
     if not covers(kept, ends.q0, between[1]):
         if not covers(near, ends.q0, between[1]):
-            near = listed_anew(ends.q0, (1.0 + SKIN) * between[1], near)
+            near = rules.listed(ends.q0, (1.0 + SKIN) * between[1], near)
         held = near
     whole = common, ways, between
     if held.count < 0:
@@ -171,12 +173,12 @@ def ends_of(block, k, n, m):
 @njit(cache=True, error_model="numpy", nogil=True)
 def checked(block, k, judged, view, kept, near):
     """(length of step k if it is to be made again, 0 if it stands; whether it is lost at a pole; the checks' list)."""
-    around, rules, ledger = judged
+    around, rules, ledger, share_allowed = judged
     t, at, share = block.t[k], block.t[k + 1], 1.0
     h = at - t
     if rules.bodies or rules.pairs:
         ends = ends_of(block, k, around.radii.shape[0], view[1].size)
-        share, near = share_of_step(t, ends, around, rules, view, kept, near)
+        share, near = share_allowed(t, ends, around, rules, view, kept, near)
     if share == 1.0 and rules.energetic and ledger[IN_VAIN] < PATIENCE:
         work = block.y[k + 1, -1] - block.y[k, -1]
         share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)

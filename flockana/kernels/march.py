@@ -74,7 +74,7 @@ def march(block, k, h, ends, system, method, room, pairs):
     The step has the length h, if its error allows it, or, if h is 0, one that is chosen here.
     """
     y, t, stop, fixed, tried = block.y, block.t[k], ends[0], method.exponent == 0.0, 0
-    first, past = np.int64(1), np.int64(method.stages + 1)  # typed: a literal would be compiled once more
+    first, past = np.int64(1), np.int64(method.stages + 1)  # typed, as in `advance`
     put(block.f[k], room.rates[0])
     if h == 0.0 and fixed:
         h = np.inf

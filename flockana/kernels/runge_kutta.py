@@ -14,7 +14,7 @@ import numpy as np
 
 from flockana.jit import njit
 from flockana.kernels.sums import column_squares, squared_deviations
-from flockana.kernels.verlet import covers, listed_anew
+from flockana.kernels.verlet import covers
 
 
 class Method(NamedTuple):
@@ -52,6 +52,7 @@ class System(NamedTuple):
     seen_from: Any  # start, origin and drift of the frame that vectors are seen from
     moving: Any  # whether the energy is that in the moving frame
     reach: Any  # within which all pairs are needed, and the skin of a list
+    listed: Any  # `flockana.kernels.verlet.listed_anew`
     order: Any  # (n,), uint64: every agent's own number
     frame: Any  # room (`flockana.kernels.listed.Listed`)
     near: Any
@@ -99,7 +100,7 @@ def _kept_up(y, system, pairs):
     """The list itself while it holds every pair within reach, or else a new one."""
     (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
     q = y[: n * m].reshape(n, m)
-    return listed_anew(q, reach + skin, pairs) if reach > 0.0 and not covers(pairs, q, reach) else pairs
+    return system.listed(q, reach + skin, pairs) if reach > 0.0 and not covers(pairs, q, reach) else pairs
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

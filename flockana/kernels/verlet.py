@@ -6,11 +6,12 @@ memory.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import callback_like, njit, register_jitable
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
 from flockana.kernels.sums import put, slope_along
@@ -173,6 +174,13 @@ def listed_anew(q, reach, pairs):
     """A new list in the room of an old one."""
     first, second, count = list_pairs(q, reach, pairs.first, pairs.second)
     return Pairs(first, second, count, q.copy(), reach, pairs.made + 1)
+
+
+@cache
+def lister() -> Any:
+    """Return `listed_anew` for compiled code to be handed."""
+    pairs = no_pairs(1, 1)
+    return callback_like(listed_anew, pairs, np.empty((1, 1)), 0.0, pairs)
 
 
 def no_pairs(n: int, m: int) -> Pairs:

@@ -18,7 +18,7 @@ from flockana.kernels.encounters import (
 )
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.paths import bernstein, centred
-from flockana.kernels.verlet import Pairs, no_pairs
+from flockana.kernels.verlet import Pairs, listed_anew, no_pairs
 
 H, R, FAR = 0.7, 8.4, 3.5
 
@@ -137,18 +137,17 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
     """Pairs are searched for unless the list holds all that may meet; of too many to list, some at a time."""
     states, radii, view = ends(40, m, 12.0), np.full((40, 2), [R / 2, R]), (0.0, np.zeros(m), np.zeros(m))
     i, j = (each.astype(np.uint32) for each in pair_list(states.q0, 1e6))
-    searched, search = [], checks.listed_anew.py_func
+    searched, search = [], listed_anew.py_func
 
     def found(q, within, near):
         searched.append(within)
         return search(q, within, near)._replace(**({"count": -1} if listed == "too many for memory" else {}))
 
-    monkeypatch.setattr(checks, "listed_anew", found)
     monkeypatch.setattr(checks, "_BLOCK", 50)
     kept = no_pairs(40, m)
     if listed in ("all", "too few"):
         kept = Pairs(i, j, i.size if listed == "all" else 0, states.q0, 1e6 if listed == "all" else R, 1)
-    rules = Rules(False, True, False, (0.0, 0.0), False)
+    rules = Rules(False, True, False, (0.0, 0.0), False, found)
     share, near = share_of_step.py_func(0.0, states, around(radii), rules, view, kept, no_pairs(40, m))
     assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)
     assert share < 1.0

@@ -12,7 +12,7 @@ from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
 from flockana.kernels.runge_kutta import System
-from flockana.kernels.verlet import SKIN
+from flockana.kernels.verlet import SKIN, lister
 
 Invariance = Literal["rigid motions", "rotations about the target", "none"]
 
@@ -70,7 +70,7 @@ class Compiled(NamedTuple):
         """
         reach, own = (self.reach, SKIN * self.reach), np.arange(n, dtype=np.uint64)
         room = np.empty((2, m)), np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK))
-        return System(*self.functions, self.numbers, view, self.moving, reach, own, *room)
+        return System(*self.functions, self.numbers, view, self.moving, reach, lister(), own, *room)
 
 
 class Term(ABC):
