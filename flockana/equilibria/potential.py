@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
+from flockana.base.overrides import ensure_consistent
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions.pair import PairInteraction
@@ -35,6 +36,7 @@ def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
         raise ArgumentError(
             "ramp = 0: contacts sit where the force jumps and never vanishes; give the interaction a ramp"
         )
+    ensure_consistent(law)
     law.check_dimension(m)
     return law
 

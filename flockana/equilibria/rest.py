@@ -8,6 +8,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
+from flockana.laws.discrete import ensure_law
 from flockana.laws.law import Law
 
 _STEPS = 40
@@ -21,7 +22,7 @@ def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
 
     Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
     """
-    if not isinstance(law, Law):
+    if not isinstance(ensure_law(law), Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")
     q, t = ensure_points("q0", q0), ensure_finite_scalar("t", t)
     law.check_dimension(q.shape[1])

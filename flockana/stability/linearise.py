@@ -18,7 +18,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray
@@ -110,11 +110,9 @@ def linearise(
     >>> [round(value.real, 6) for value in one.eigenvalues.tolist()] == [-1.048809, -1.048809]
     True
     """
-    if isinstance(law, DiscreteLaw):
+    if isinstance(ensure_law(law), DiscreteLaw):
         how = {"t": t, "force_tolerance": force_tolerance, "allow_residual": allow_residual, "zero": zero}
         return _linearised_map(law, equilibrium, p, how)
-    if not isinstance(law, Law):
-        raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(...), or a map such as TaylorStep(...)")
     if isinstance(equilibrium, Equilibrium):
         ensure_unedited_equilibrium("equilibrium", equilibrium)
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))

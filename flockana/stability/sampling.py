@@ -26,7 +26,6 @@ from flockana.base.checks import FloatArray, ensure_fits, ensure_known, ensure_n
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.stability.maps import stepped_equation
@@ -197,8 +196,6 @@ def sampling_margin(
         name = "hold" if scheme is None else scheme
         ensure_known("scheme", name, tuple(SCHEMES))
         factor, in_place = SCHEMES[name], name == "msn-in-place"
-    if not isinstance(law, Law):
-        raise ArgumentError(f"law = {law!r}: expected a law such as Algorithm2(...)")
     flow = linearise(law, equilibrium, p, t=t)
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
     return _margin(name, flow, factor, in_place=in_place)

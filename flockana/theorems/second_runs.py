@@ -65,7 +65,7 @@ def paired(run: Trajectory) -> Pair:
         return Pair(run, run, _nothing_known(run), doubt)
     steps, states = _steps_in_common(run)
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
-    again = integrated(run, 0, steps, TIGHTER if tight else 1.0 / TIGHTER, max_step=_longest_step(run))
+    again = second_run(run, steps, TIGHTER if tight else 1.0 / TIGHTER, _longest_step(run))
     if again.status != "complete" or len(again.t) != len(steps):
         kind = "tighter" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
@@ -90,18 +90,10 @@ def _longest_step(run: Trajectory) -> float | None:
     return bound if np.isfinite(bound) else None
 
 
-def integrated(
-    run: Trajectory,
-    first: int,
-    times: FloatArray,
-    factor: float,
-    *,
-    own_step: bool = False,
-    max_step: float | None = None,
-) -> Trajectory:
-    """Return the law integrated from a sample of a run through some times, its tolerances multiplied by a factor.
+def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float | None) -> Trajectory:
+    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor.
 
-    A run with a fixed step is followed by an adaptive method, or with `own_step` by its own.
+    A run with a fixed step is followed by an adaptive method.
     """
     stats, span = run.stats, (float(times[0]), float(times[-1]))
     options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
@@ -109,12 +101,11 @@ def integrated(
         method = stats.get("method", "DOP853")
         options = {"method": "DOP853" if method in _LOW_ORDER else method, "rtol": max(factor * stats["rtol"], FINEST)}
         options["atol"] = units.times(stats.get("atol"), factor)
-    elif own_step and "dt" in stats:
-        options = {"method": "RK4", "dt": stats["dt"]}
-    longest = stats.get("max_step") if max_step is None else max_step
+    if longest is None:
+        longest = stats.get("max_step")
     if longest is not None:
         options["max_step"] = longest
-    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
+    return simulate(run.law, run.q[0], run.p[0], span, t_eval=times, **options)
 
 
 def doubt_of(run: Trajectory) -> str:

@@ -10,6 +10,7 @@ import flockana.interactions.dead_zone
 import flockana.laws.bearing_distance
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
+from flockana.equilibria.rest import resting_state
 from flockana.interactions.weights import RationalWeight
 
 
@@ -115,6 +116,12 @@ def test_a_method_that_the_integrators_would_ignore_is_refused(name):
         fl.simulate(law, [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
     with pytest.raises(ArgumentError, match=message):
         fl.Trajectory([0.0], *np.zeros((3, 1, 2, 1)), law)
+
+
+@pytest.mark.parametrize("ask", [fl.linearise, fl.find_equilibrium, resting_state], ids=lambda ask: ask.__name__)
+def test_what_follows_from_the_law_alone_refuses_it_too(ask):
+    with pytest.raises(ArgumentError, match="Noisy defines acceleration, but not flow"):
+        ask(Noisy(), [[0.0], [7.0]])
 
 
 def test_what_an_instance_was_given_of_its_own_is_refused():

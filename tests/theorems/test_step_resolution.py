@@ -8,7 +8,7 @@ import pytest
 import flockana as fl
 from flockana.theorems import Claim
 from flockana.theorems.observed import Observed, as_known
-from flockana.theorems.second_runs import integrated
+from flockana.theorems.second_runs import second_run
 from flockana.theorems.step_resolution import NAME, demand_of, steps_of
 
 FLAT, CUT = "0.1*(r - s)**2*(s - 1)**2", "(1 - s/r)**2"
@@ -29,7 +29,7 @@ def meeting(potential, adjacency=CUT, width=700.0, until=0.6, **options):
 @pytest.mark.parametrize(("potential", "adjacency"), [(BARRIER, CUT), (FLAT, BRAKE)], ids=["force", "adjacency"])
 def test_a_spike_that_tighter_tolerances_alone_leap_over_too_is_noticed(potential, adjacency, dense):
     run = meeting(potential, adjacency, t_eval=np.linspace(0.0, 0.6, 301) if dense else None)
-    alone = integrated(run, 0, run.path.t, 1e-2)
+    alone = second_run(run, run.path.t, 1e-2, None)
     assert np.abs(alone.p[-1] - run.p[-1]).max() < 1e-6  # both alike, and both wrong
     seen = Observed.of(run)
     assert np.abs(seen.run.p[-1] - run.p[-1]).max() > 1e-4
