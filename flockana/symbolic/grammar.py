@@ -183,9 +183,8 @@ class _Reader:
             return sp.Integer(value)
         if isinstance(value, float) and isfinite(value):
             return sp.Float(value, 17)
-        raise ArgumentError(
-            f"{self.where}: {_short(repr(type(value)))} is no number of a formula; expected a finite one"
-        )
+        given = value if isinstance(value, float) else type(value).__name__
+        raise ArgumentError(f"{self.where}: {given} is no number of a formula; expected a finite one")
 
     def _operation(self, node: ast.BinOp, depth: int) -> sp.Expr:
         left, right = self._value(node.left, depth), self._value(node.right, depth)

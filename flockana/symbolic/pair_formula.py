@@ -216,7 +216,9 @@ class Cut:
         expression = expression.subs(ROOT, 1 + EPS * Z)
         symbols = list(self.numbers)
         bounded = expression.replace(lambda e: e.is_Pow and not e.exp.is_number, lambda e: _POWER(*e.args))
-        compiled = sp.lambdify([y, *symbols], bounded, [_BOUNDED, "mpmath"], dummify=True)
+        given = [sp.Dummy() for _ in symbols]  # a parameter may have the name of a function of mpmath
+        nameless = bounded.xreplace(dict(zip(symbols, given, strict=True)))
+        compiled = sp.lambdify([y, *given], nameless, [_BOUNDED, "mpmath"], dummify=True)
         values = [mpmath.mpf(self.numbers[symbol]) for symbol in symbols]
 
         def at(distance: Any) -> Any:

@@ -173,6 +173,7 @@ def test_short_formulas_that_grow_are_refused_by_counts(formula):
 
 @pytest.mark.parametrize("name", ["mpf", "lambda_", "mpmath", "x0", "inf", "nan", "par", "root_", "max"])
 def test_a_parameter_may_have_any_name(name):
+    assert fl.pair_law(f"{name}*s", adjacency=0, range=3.0, length=1.0, parameters={name: 2.0}).force(1.0) == 2.0
     law = fl.pair_law(f"{name}*s**2", adjacency=0, range=3.0, length=1.0, parameters={name: 2.0})
     assert law.force(1.0) == 4.0
     assert law.facts.least[0] == 0.0
