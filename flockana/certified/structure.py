@@ -25,7 +25,7 @@ Balls = Sequence[arb]
 
 
 def in_lengths_of_unit(law: Any) -> Any:
-    """Return a law in lengths of ℓ, the unit of σ₁, where ℓ = 1: the printed law, rounded; unchanged if it is."""
+    """Return a law with ℓ, the unit of σ₁, as its unit of length; unchanged where ℓ = 1."""
     unit = getattr(law.alpha, "unit", 1.0)
     if unit == 1.0:
         return law

@@ -113,7 +113,7 @@ class Disturbed(Wrapper):
         return self.intensity > 0.0
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
-        """Names and pushes at one time, shape (m,) or (n, m), of all that pushes."""
+        """Yield the name and value of each push at one time, of shape (m,) or (n, m)."""
         given = {
             "force": self._called(0.0),
             "swing": self.swing,

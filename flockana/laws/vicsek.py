@@ -233,5 +233,5 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:
-    """How many agents each averages over, itself included."""
+    """Return the number of agents that each agent averages over, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0

@@ -142,7 +142,7 @@ class MapLinearisation:
 
     @cached_property
     def _dense(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """Multipliers, vectors and errors of A; what errors part from 1 is 1."""
+        """Multipliers, vectors and errors of A; multipliers within their error of 1 are set to 1."""
         values, vectors, errors = eigen(self.A, self.off)
         return np.where(np.abs(values - 1.0) <= errors, 1.0, values), vectors, errors
 

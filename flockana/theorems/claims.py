@@ -89,7 +89,7 @@ def concluded(
     detail: str = "",
     **fields: Any,
 ) -> Claim:
-    """Return a claim from what numbers or certificates say, its hypotheses and its proof.
+    """Return a claim from its status by numbers or certificates, its hypotheses and its proof.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def concluded(
 
 
 def _status_of(margin: Enclosure, about: About) -> Status:
-    """Status by the sign of the margin alone."""
+    """Return a status by the sign of a margin alone."""
     if about == "limit":
         return "inconclusive"
     if (margin.hi < 0.0).any():
@@ -153,7 +153,7 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
 
 
 def _finite(margin: Enclosure) -> float:
-    """The best value of a margin, or what is nearest to it and finite, so that a search can compare margins."""
+    """Return a margin's best value, or a finite substitute, so that a search can compare margins."""
     ends = (float(margin.mid), float(margin.lo), float(margin.hi))
     return next((end for end in ends if np.isfinite(end)), 0.0)
 
@@ -161,7 +161,7 @@ def _finite(margin: Enclosure) -> float:
 def counted(
     name: str, most: int, certain: int, possible: int, needs: Iterable[Hypothesis] = (), **fields: Any
 ) -> Claim:
-    """Return a claim that at most so many things happen, of which some certainly do and some may.
+    """Return a claim that at most `most` things happen, from counts of certain and of possible ones.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis]
 
 
 def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about stored numbers, such as one configuration, whose margin is off by rounding alone.
+    """Return a claim about stored numbers, such as a configuration, whose margin has only rounding errors.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothes
 
 
 def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about the orbit of a map in floating point, which is its subject: no second run is nearer to it.
+    """Return a claim about the orbit of a map in floating point, which has rounding but no integration error.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def erratum(
     corrected: tuple[str, ...] = (),
     ours: tuple[str, ...] = (),
 ) -> Theorem:
-    """A statement that is checked by itself, on no run of the user's: an erratum, with what is expected of its claims.
+    """Return an erratum: a theorem checked without a user's run, with expected statuses of its claims.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Hypotheses that several theorems share: which law a run is of, which gains it has, what lies below what."""
+"""Hypotheses that several theorems share: on laws, gains, pair laws and inequalities."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hy
 
 
 def by_fact(name: str, fact: Fact) -> Hypothesis:
-    """Return a hypothesis about a function, with the status of what is decided about it.
+    """Return a hypothesis about a function, with the status of a fact about it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Certificates of limits, and the claim that the best of them makes.
+"""Certificates of limits, and claims that rest on the best of several.
 
 A claim about t → ∞ is verified by a certificate alone: a state in the basin of a strict minimum
 (`flockana.theorems.basin`), an exact solution, or a proof. It is refuted by an escape: something that is certain at all

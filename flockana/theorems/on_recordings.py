@@ -166,7 +166,7 @@ def _names(item: Theorem) -> tuple[str, ...]:
 def _of_samples(
     item: Theorem, rec: Recording, tolerances: Tolerances, d: float | None, r: float | None, subject: str
 ) -> Verdict:
-    """A definition about samples, with nothing known between them."""
+    """Return the verdict of a definition about samples, with nothing assumed between them."""
     if item.id not in DEFINITIONS:
         raise ArgumentError(
             f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "

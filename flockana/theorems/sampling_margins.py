@@ -39,7 +39,7 @@ class Step:
 
 
 def sources_steps() -> tuple[Step, ...]:
-    """Return the sources' maps with the equilibria at which they are looked at.
+    """Return the sources' maps with the equilibria at which they are linearised.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def _check(tolerances: Tolerances) -> Checked:
 
 
 def _claim(step: Step) -> Claim:
-    """Compare the step with the margin; where that is but an upper bound, judge the multipliers at the step."""
+    """Compare the step with the margin; where the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.law.continuous
     rest = step.q if isinstance(law, MinimalFlocking) else find_equilibrium(law, step.q).q
     found, dt = sampling_margin(step.law, rest), step.law.dt

@@ -122,7 +122,7 @@ class Claim:
 
     @property
     def account(self) -> str:
-        """The detail, of a vacuous claim after the need that does not hold."""
+        """Detail; for a vacuous claim with the unmet hypothesis in front."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
         if missed is None or self.detail.startswith(missed.name):
             return self.detail
@@ -346,7 +346,7 @@ class Theorem:
 
 
 def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
-    """The first hypothesis that is not met, if any is not.
+    """Return the first unmet hypothesis; None if no hypothesis is unmet.
 
     Parameters
     ----------

@@ -122,7 +122,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _delimiter(line: str) -> str:
-    """Tab, semicolon or comma: the one that the first line has most of."""
+    """Return the delimiter most frequent in the first line: tab, semicolon or comma."""
     return max("\t,;", key=line.count)
 
 

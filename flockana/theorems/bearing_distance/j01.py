@@ -21,7 +21,7 @@ _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most;
 
 
 def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
-    """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all."""
+    """Return (law, q, p) of many independent random out-trees of 2 to 8 agents, simulated in one run."""
     rng = np.random.default_rng(seed)
     edges: list[tuple[int, int]] = []
     agents = 0
@@ -34,7 +34,7 @@ def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFl
 
 
 def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
-    """Each tree of a forest, with its state at the end of the run."""
+    """Yield each tree of a forest, with its state at the end of the run."""
     edges: Edges = seen.law.edges
     label = components(seen.n, np.array(edges, dtype=np.int32))
     trees = []

@@ -24,7 +24,7 @@ _NEAR = 0.05  # a mean speed this close, relative, is "about" the desired one
 
 
 def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
-    """(speeds over time of two agents side by side of whom so many are informed, the same by x' = M x in steps)."""
+    """Return speeds over time of two agents side by side, some of them informed: simulated, and by x' = M x."""
     drives = tuple(_DRIVE if k < informed else 0.0 for k in range(2))
     weights = ZoneWeights(speed=drives, cohesion_gain=0.0, alignment_gain=_GAIN)
     law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, v_max=_UNBOUNDED, desired_speed=_DESIRED)
@@ -68,7 +68,7 @@ def _told_and_not() -> list[Claim]:
 
 
 def _speeds(informed: int) -> list[float]:
-    """Mean speed over the second half of runs of ten agents of whom so many are informed, by seed."""
+    """Return mean speeds, by seed, over the second half of runs of ten agents, some of them informed."""
     weights = ZoneWeights(speed=tuple([5.0] * informed + [0.0] * (_AGENTS - informed)))
     runs = (observed(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)).run for k in range(_SEEDS))
     return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs]

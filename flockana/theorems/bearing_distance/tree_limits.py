@@ -1,4 +1,4 @@
-"""Certificates, from one state, of how a flock on a frozen tree ends: the limit in Theorem 1.
+"""Certificates, from one state, of the limit of a flock on a frozen tree (Theorem 1).
 
 *Undirected, reciprocal forces.* H never rises. While H < ½μρ² on every edge, no edge comes to length 0; then velocities
 match and every |x_e| goes to ρ_e, by LaSalle's principle, as on a tree nothing else is at rest.
@@ -35,7 +35,7 @@ _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
 
 def state(q: FloatArray, p: FloatArray) -> End:
-    """Return a stored state as an end that is exact."""
+    """Return a stored state as an exact final state."""
     return End(q, p, np.zeros(len(q)), np.zeros(len(q)))
 
 

@@ -29,7 +29,7 @@ _EVERY = 1e-6  # of a step: samples that are one step apart
 
 
 def _plain(law: HeadingAveraging) -> Hypothesis:
-    """The mean of the headings themselves, and no noise."""
+    """Return the hypothesis that headings are averaged as numbers, without noise."""
     plain = law.average == "headings" and law.noise == 0.0
     return condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}")
 
@@ -41,7 +41,7 @@ def _every_step(run: Trajectory) -> Hypothesis:
 
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
-    """Joint connectivity over windows without end: shown, shown to fail, or seen so far."""
+    """Return the hypothesis of joint connectivity over all later windows: proved, disproved or assumed from the run."""
     name = "the nets are jointly connected over contiguous bounded windows, for ever"
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
@@ -53,7 +53,7 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
 
 
 def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
-    """No heading leaves the span of those before: means are kept in it to the bit, so that no rounding counts."""
+    """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
     least, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
     return by_count(
@@ -69,7 +69,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
 
 
 def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hypothesis]) -> Claim:
-    """Over each block of n − 1 windows the span shrinks by what its nets guarantee, but for rounding."""
+    """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]

@@ -34,7 +34,7 @@ def _turned() -> Claim:
 
 
 def _clear() -> Claim:
-    """Headings that the turn takes through no direction 0: each is counted as it was, and the turn added."""
+    """Return the claim that the mean turns with the flock as long as no heading passes the direction of angle 0."""
     import sympy as sp
 
     n, turn, k = sp.Symbol("n", positive=True, integer=True), sp.Symbol("t", real=True), sp.Symbol("k", integer=True)
@@ -50,7 +50,7 @@ def _clear() -> Claim:
 
 
 def _vectors() -> Claim:
-    """Vicsek's angle of the mean unit vector, of any pair and turn."""
+    """Return the claim that the mean unit vector (Vicsek's rule) turns with the flock, whatever the turn."""
     import sympy as sp
 
     a, b, turn = sp.symbols("a b t", real=True)

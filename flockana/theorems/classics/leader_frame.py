@@ -1,4 +1,4 @@
-"""A run as seen from its virtual leader: who is informed, whose links last, and what of the motion dies out."""
+"""Run in the frame of its virtual leader: informed agents, lasting links, velocities that decay."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Erratum: what the flock tends to is extremal, and need not minimise any agent's potential."""
+"""Erratum: a flock's limit is a critical point of each agent's potential, not always a minimum."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _printed() -> Claim:
-    """Two agents that have different leaders, under (9): it has none, and bonds them."""
+    """Return the claim that (9), which has no leaders, bonds two agents that should follow different ones."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
     return limit_claim(
@@ -113,7 +113,7 @@ def _fraction() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """What (9) does, the energy of a law with leaders, and that law with one leader, two, and one that turns."""
+    """Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one."""
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]

@@ -30,7 +30,7 @@ def wild_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
 
 
 def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
-    """H̄ over (n − 1) ψ̄(r): a connected flock stays so for ever if it is below 1."""
+    """Return H̄ over (n − 1) ψ̄(r); if it is below 1, a connected flock stays connected."""
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
@@ -62,7 +62,7 @@ def _necessary() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """The paper's condition on a pair that parts, and that of an energy, sufficient but not necessary."""
+    """Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary."""
     law, q, p = parting_pair()
     away = final_components(observed(law, q, p, (0.0, 10.0)), law)
     wild, x, v = wild_pair()

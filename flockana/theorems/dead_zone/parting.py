@@ -39,7 +39,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A component of the net at one instant, and what is certain of it while it meets no other."""
+    """A component of the net at one instant, with certificates that hold while it meets no other."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -51,7 +51,7 @@ class Component:
 
     @property
     def size(self) -> int:
-        """Number of its agents."""
+        """Number of the component's agents."""
         return len(self.q)
 
     @cached_property
@@ -66,14 +66,14 @@ class Component:
 
     @cached_property
     def _out_of_range(self) -> float:
-        """H̄/ψ̄(r), the number of pairs that its energy can put out of range, at most."""
+        """H̄/ψ̄(r), an upper bound of the number of pairs that the energy can put out of range."""
         far = self.law.interaction.far_potential
         energy: float = self.law.hamiltonian(0.0, self.q, self.p) + self.energy_off
         return energy / far if far > 0.0 else inf
 
     @property
     def bond(self) -> Certificate:
-        """Its energy is too small to break it up, and damping makes its velocities match: of the flow alone."""
+        """Certificate that a component cannot break up and its velocities match, by its energy; for flows only."""
         if self.size == 1:
             return Certificate(1.0, "one agent has one velocity")
         if self.dt is not None or self.law.k2 == 0.0:
@@ -85,7 +85,7 @@ class Component:
 
     @property
     def settles(self) -> Certificate:
-        """Its velocities will match: by the better of the two certificates."""
+        """Certificate that the component's velocities will match, the better of two."""
         return self.bond if self.bond.certain else self.basin.certificate
 
     @cached_property

@@ -52,7 +52,7 @@ def lattice_equilibria() -> dict[str, Linearisation]:
 
 
 def row(rates: Decay) -> dict[str, Any]:
-    """A line of the decay table as plain data."""
+    """Return a row of the decay table as plain data."""
     return {
         "law": rates.law,
         "n": rates.n,

@@ -30,7 +30,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 @dataclass(frozen=True)
 class _Window:
-    """A part of a run, with the sample before it if it begins between two: bounds between samples begin there.
+    """Part of a run, with the sample before it so that bounds between samples cover its beginning.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Theorems 1 and 3 for every pair potential that has what their proofs use; that of the paper is a special case.
+"""Theorems 1 and 3 for every pair potential with the properties that their proofs use.
 
 They ask for a potential that is C¹ up to its range and at least L, and an adjacency that is nowhere negative. All is
 said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
@@ -50,12 +50,12 @@ def is_paper(seen: Observed) -> bool:
 
 
 def said_by(seen: Observed, claims: list[Claim]) -> list[Claim]:
-    """Return claims of the paper's theorems; of another pair law than the paper's they are extensions of ours."""
+    """Return claims as the paper's; under another pair law than the paper's, as flockana's extensions."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
 
 def potential_needs(seen: Observed) -> list[Hypothesis]:
-    """Return what the theorems ask of a pair potential and its adjacency, as far as it is not proved."""
+    """Return the theorems' hypotheses on the pair potential and its adjacency, without those that are proved."""
     low = meeting(seen).floor > -inf
     needs = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
     return [need for need in [*needs, *least_is_known(seen)] if need.status != "met"]

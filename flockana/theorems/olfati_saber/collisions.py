@@ -42,7 +42,7 @@ def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
-    """Return pairs that certainly met, and how far they go past each other: on a line both keep to, they change places.
+    """Return pairs that certainly met, as they changed places on a line that both keep to, and by how much.
 
     How far they go past is known to the error of the run.
     """
@@ -63,7 +63,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 
 
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
-    """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
+    """Return pairs whose paths, error included, may come within contact, by interval between samples."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
     return seen.cached(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
@@ -88,7 +88,7 @@ def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
 
 
 def _intervals(run: Trajectory, distance: FloatArray | float) -> tuple[IndexArray, IndexArray]:
-    """Intervals of the path in which a pair may come so near; and between which samples each of its intervals lies."""
+    """Return path intervals in which a pair may come within contact, and the samples around each interval."""
     lower = run.closest_approach().lower_by_interval
     of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
     return np.flatnonzero(~(lower > distance)[of_sample]), of_sample
@@ -242,7 +242,7 @@ def _instant_text(together: int, allowed: float) -> str:
 
 
 def _at_one_place(q: FloatArray) -> IndexArray:
-    """Pairs at one place to the last bit, at each instant: none where all first components differ, as nearly always."""
+    """Return the number of exactly coincident pairs at each instant."""
     pairs = np.zeros(len(q), dtype=np.intp)
     ties = (np.diff(np.sort(q[:, :, 0], axis=1), axis=1) == 0.0).any(axis=1)
     for k in np.flatnonzero(ties):

@@ -52,7 +52,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
 
 
 def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list[Claim]:
-    """Return what is proved of claim (ii), of every start and of almost every one."""
+    """Return the proved parts of claim (ii), for every start and for almost every start."""
     pieces = Hypothesis("ψ is C², analytic in finitely many pieces", "assumed", detail="proved of the paper's law")
     needs = needs if is_paper(seen) else [*needs, pieces]
     rests = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"

@@ -66,13 +66,13 @@ class Net:
 
     @property
     def crossing_count(self) -> int | str:
-        """How many pairs of links cross, or that there are more than are listed."""
+        """Number of pairs of links that cross, or a text if there are more than are listed."""
         count = len(self.crossings)
         return f"at least {count}" if count >= LISTED else count
 
     @property
     def crossing_text(self) -> str:
-        """That count in words."""
+        """Number of crossings in words."""
         return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
 
 
@@ -233,7 +233,7 @@ def holds_exactly(net: Net, two: LinkArray) -> bool:
 
 
 def _unless_open(net: Net, claim: Claim) -> Claim:
-    """The claim, inconclusive if it is refuted for positions that may be off: of the links counted some may be none."""
+    """Return the claim, inconclusive instead of refuted where inexact positions leave the links uncertain."""
     if not net.off or claim.status != "refuted":
         return claim
     return replace(claim, status="inconclusive", detail=f"{claim.detail}; positions are known to {net.off:.3g}")

@@ -1,4 +1,4 @@
-"""Directed nets, which the slides allow for and leave: what of Algorithms 1 to 3 still holds, and what fails."""
+"""Directed nets, which the slides allow but do not treat: properties of Algorithms 1 to 3 that hold, and that fail."""
 
 from __future__ import annotations
 

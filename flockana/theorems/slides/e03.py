@@ -41,7 +41,7 @@ def rhombus_with_double_agent(d: float) -> FloatArray:
 
 
 class _Limit(NamedTuple):
-    """Where a random start flows to: each component of its net, its state, and its strain as far as that is certain."""
+    """Limit of a random start: each component of its net, its state, and its strain where that is certain."""
 
     parts: tuple[tuple[FloatArray, TerminalState, Enclosure], ...]
     converged: bool

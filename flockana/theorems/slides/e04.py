@@ -1,4 +1,4 @@
-"""E4: c < c* excludes collisions, as said, and soon no state is below c*; a barrier that does not go vacuous."""
+"""E4: H < c* excludes collisions, but for large flocks no state is below c*; a barrier without this defect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Erratum E15: what the MSN project lays the smaller circle of its case 4 to: the start, and the speed."""
+"""Erratum E15: two causes that the MSN project gives for the smaller circle of its case 4, start and speed."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def circle_law(speed: float, factor: float) -> Algorithm2:
 
 
 def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclosure:
-    """Return the ratio of the circle of 19 agents that start so many radii from the circle's centre."""
+    """Return the ratio of the circles for 19 agents that start a number of radii from the circle's centre."""
     path: Any = law.target
     start: FloatArray = hexagonal_patch(2, _ALPHA.d) + np.array(_CENTRE) + (away * _RADIUS, 0.0)
     end = max(_PERIODS / path.target.frequency, _LASTING)
@@ -98,7 +98,7 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
 
 
 def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> list[Claim]:
-    """Return what the project holds: that from outside, or at another speed, the circle is not smaller."""
+    """Return the project's claim that a start outside the circle, or another speed, makes the circle not smaller."""
     largest = stacked(others).max()
     return [
         judged(
