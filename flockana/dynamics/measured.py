@@ -1,4 +1,4 @@
-"""What a run measures: energies, metrics over time, and bounds at all times from its steps."""
+"""Quantities that a run gives: energies, metrics over time, and bounds at all times from its steps."""
 
 from __future__ import annotations
 

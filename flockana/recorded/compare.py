@@ -65,7 +65,7 @@ class Comparison:
 
     @property
     def caution(self) -> str:
-        """What noise does to this comparison, in words; empty if the accelerations are known well enough."""
+        """Effect of noise on the comparison, in words; empty if the accelerations are known well enough."""
         usual = float(np.nanmedian(lengths(self.recorded)))  # the ends of splines can be far off
         if self.noise <= _ROUGH * usual:
             return ""

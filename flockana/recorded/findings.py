@@ -21,7 +21,7 @@ _EXACT = 1e-12  # share of the squares below which nothing more is sought
 
 
 class Share(NamedTuple):
-    """What a part of the law contributes: its gain in the law and in the recording, and its share of the motion."""
+    """Contribution of a part of the law: its gain in the law and in the recording, and its share of the motion."""
 
     symbol: str
     text: str

@@ -160,7 +160,7 @@ class MapLinearisation:
 
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
-        """All other modes, slowest first; one for each real multiplier or conjugate pair."""
+        """Modes other than the neutral motions, slowest first; one for each real multiplier or conjugate pair."""
         if self.second_order is None:
             values, vectors, errors = self._dense
             kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
@@ -272,7 +272,7 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
-    """Linearisation of a map of headings about parallel motion: its net then stays as it is."""
+    """Linearisation of a map of headings about parallel motion, under which its net is constant."""
     heading = np.arctan2(p[:, 1], p[:, 0])
     off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
     if off > _PARALLEL:

@@ -222,7 +222,7 @@ def verify(
 
 
 def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
-    """Return a run from a start, at rest and over 20 time units unless told otherwise."""
+    """Return a run from a start; without p0 at rest, without t_span over 20 time units."""
     if law is None or q0 is None:
         raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
     return simulate(law, q0, np.zeros(np.shape(q0)) if p0 is None else p0, T_SPAN if t_span is None else t_span)

@@ -77,5 +77,5 @@ def _listed(claims: Iterable[Claim]) -> str:
 
 
 def _short(claim: Claim) -> str:
-    """What a claim states where that is short, else its name."""
+    """Return a claim's statement where that is short, else its name."""
     return claim.stated if isinstance(claim.stated, str) and len(claim.stated) <= _SHORT else claim.name

@@ -130,7 +130,7 @@ class Claim:
 
     @property
     def cited(self) -> str:
-        """What its proof takes from the literature, in words, or an empty text."""
+        """Results of the literature that the claim's proof cites, in words, or an empty text."""
         return f" [proof cites {', '.join(self.cites)}]" if self.cites else ""
 
 
@@ -166,7 +166,7 @@ class Verdict:
 
     @property
     def further_claims(self) -> tuple[Claim, ...]:
-        """Corrections and extensions, which leave the status as it is."""
+        """Corrections and extensions, which do not change the verdict's status."""
         return tuple(claim for claim in self.claims if claim.by != self.author)
 
     @property
@@ -306,7 +306,7 @@ class Theorem:
 
     @property
     def erratum(self) -> Erratum | None:
-        """What the source prints and what is right, if the theorem checks an erratum."""
+        """Erratum that the theorem checks (what is printed and what is right), or None."""
         return erratum_of(self.id)
 
     def by(self, claim: str) -> By:

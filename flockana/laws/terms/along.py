@@ -1,4 +1,4 @@
-"""What acts along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
+"""Forces along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def _separation_only(speed: float, weight: float) -> ZoneFlocking:
 
 
 def _stand_offs() -> tuple[float, dict[str, list[float]]]:
-    """(largest error, [predicted, measured] by case) of the stand-off before a wall and before another agent."""
+    """Return (largest error, [predicted, measured] by case) of the distance kept from a wall and from another agent."""
     rows = {f"wall, w^ga = {g:g}, w^oa = {w:g}": [3.0 - 3.0 * g / w, _at_wall(g, w)] for g, w in _AT_WALLS}
     rows |= {
         f"agents, w^ga = {g:g}, w^ls = {w:g}": [3.0 - 3.0 * g / w, _head_on(_separation_only(g, w))[0]]

@@ -1,4 +1,4 @@
-"""What the linearisation says of a flock near its equilibrium, against nonlinear runs."""
+"""Predictions of the linearisation for a flock near its equilibrium, compared with nonlinear runs."""
 
 from __future__ import annotations
 

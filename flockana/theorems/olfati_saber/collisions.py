@@ -235,7 +235,7 @@ def pairs_at_one_instant(
 
 
 def _instant_text(together: int, allowed: float) -> str:
-    """How many pairs may coincide at one time, in words."""
+    """Return in words how many pairs may coincide at one time."""
     if not together:
         return "no two agents can coincide at any time"
     return f"at most {together} pairs may coincide at one time; the energy allows {allowed:g} or more at every time"

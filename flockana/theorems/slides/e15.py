@@ -33,7 +33,7 @@ _LASTING = 4.5  # time units at least, after half of which what is left of the s
 
 
 def circle_law(speed: float, factor: float) -> Algorithm2:
-    """Algorithm 2 with the project's parameters behind its γ-agent at so many times its speed, p_r = factor dq_r/dt."""
+    """Return Algorithm 2 with the project's parameters, its γ-agent `speed` times as fast, and p_r = factor dq_r/dt."""
     circle = CircleTarget(_CENTRE, _RADIUS, frequency=speed * _FREQUENCY)
     return Algorithm2(_ALPHA, _GAINS, RescaledVelocity(circle, factor))
 
