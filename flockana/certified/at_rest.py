@@ -32,7 +32,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     radius = ball(half_width(u))
     centre = [arb(y) for y in x]
     if not regular(u, x, radius):
-        raise SolverError("the equilibrium's turns are not certainly independent: it is too nearly on one line")
+        raise SolverError("the equilibrium's rotations may be dependent: its agents are nearly on one line")
     equations, slope = system(u, x)
     found = enclose_zero(equations, slope, [*centre, *[arb(0)] * (len(u.rotation_tangents(centre)) + u.m)], radius)
     if found is None:

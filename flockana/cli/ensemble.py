@@ -59,7 +59,7 @@ def ensemble_command(
     from flockana.ensemble import ensemble, shares
 
     if retry and store is None:
-        raise ArgumentError("--retry: without a store no run is held as failed; give --store FILE too, or leave it out")
+        raise ArgumentError("--retry: without a store no failed runs are known; give --store FILE too, or leave it out")
     parameters = read_options(options or [])
     axes = [name for name, values in parameters.items() if isinstance(values, list)]
     ensure_level(level)

@@ -200,7 +200,7 @@ def _positions_by_header(
         return lines
     layout = layout_of(header, str(path))
     if layout.time is not None or "q" not in layout.long:
-        raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; a recording is for observe")
+        raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; observe reads recordings")
     kept = [header.index(name) for name in layout.long["q"]]
     for k, row in lines:
         if len(row) != len(header):

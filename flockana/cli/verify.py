@@ -187,7 +187,7 @@ def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> 
     if seeds:
         raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
     if seed is not None:
-        raise ArgumentError(f"--seed {seed}: a saved run was started already; leave out --seed or --on")
+        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
     if name == ERRATA:

@@ -330,7 +330,7 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
             "state within its zones and bounds, not at the edge of one"
         )
     if np.abs(later - matrix).max() > _KINK * size:
-        raise ArgumentError(f"{name} is another map further along this motion: expected none that meets an obstacle")
+        raise ArgumentError(f"{name} changes further along this motion: expected one that meets no obstacle")
     units = np.repeat(list(sizes.values()), np.diff(ends))
     off = (float(np.linalg.norm(wide - matrix)) + len(start) * 4.0 * EPS / _WIDTH) / size
     beside = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]

@@ -240,7 +240,7 @@ def _is_recording(run: Any) -> TypeGuard[Recording]:
 def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
     """Return the vacuous verdict on a run of a wrapped law, which a theorem about the bare law does not cover."""
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
-    detail = f"the run is of the law within {around}; the theorem is about the law itself"
+    detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
     claims = tuple(vacuous(name, missed, by=item.by(name)) for name in item.claims)
     return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)

@@ -14,6 +14,7 @@ import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
+from flockana.theorems.headline import does_not_hold
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
@@ -306,11 +307,12 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
     Examples
     --------
     >>> vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail
-    'c1α > 0: c1α = 0'
+    'c1α > 0 does not hold: c1α = 0'
     """
-    unmet = isinstance(reason, Hypothesis)
-    detail = f"{reason.name}: {reason.detail}" if isinstance(reason, Hypothesis) else reason
-    return Claim(name, "vacuous", detail=detail, needs=(reason,) if unmet else (), **fields)  # type: ignore[arg-type]
+    if isinstance(reason, Hypothesis):
+        why = f"{does_not_hold(reason.name)}: {reason.detail}".removesuffix(": ")
+        return Claim(name, "vacuous", detail=why, needs=(reason,), **fields)
+    return Claim(name, "vacuous", detail=reason, **fields)
 
 
 def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:

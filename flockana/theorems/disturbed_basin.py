@@ -81,7 +81,7 @@ def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
         return
     largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
     margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
-    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could leave{rounded}"
+    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{rounded}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
         yield Hypothesis(name, "unmet", margin=margin, detail=text)

@@ -175,7 +175,7 @@ def converges(
 ) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]
-    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
+    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""
     return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught, proof=proof)
 
 

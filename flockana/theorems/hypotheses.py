@@ -260,4 +260,4 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
     margin, error = float(room.mid), float(room.half_width)
     if room.lo > 0.0 or room.hi <= 0.0:
         return condition(name, bool(room.lo > 0.0), margin, detail, error=error)
-    return Hypothesis(name, "assumed", margin, f"{detail}; equal but for its error", error)
+    return Hypothesis(name, "assumed", margin, f"{detail}; equal within the error", error)

@@ -63,5 +63,5 @@ def least_is_known(run: Trajectory | Observed) -> list[Hypothesis]:
     facts = run.law.alpha.facts
     if np.isfinite(facts.least[0]) and facts.contact[0] > -np.inf:
         return []
-    detail = f"{type(run.law.alpha).__name__}: no bound is proved; seen at contact, at the length and at the range"
+    detail = f"{type(run.law.alpha).__name__}: no lower bound is proved; values at contact, length, range"
     return [Hypothesis("no pair has less potential energy than the least seen", "assumed", detail=detail)]

@@ -340,7 +340,7 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     error = (best.error or 0.0) + (DOUBT * apart if best.margin != other.margin else 0.0)
     if other.status == best.status and abs(best.margin) > error:
         return replace(best, error=error)
-    detail = f"{best.detail}; the second run reads {other.status}, and differs by {apart:.2g}"
+    detail = f"{best.detail}; by the second run it is {other.status}, with a margin that differs by {apart:.2g}"
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
 
 

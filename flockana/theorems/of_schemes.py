@@ -35,10 +35,10 @@ def says_of_schemes(item: Theorem) -> str:
     if item.kind != "trajectory":
         return ""
     if item.id in ON_STEPS:
-        return f"Of a scheme: {ON_STEPS[item.id]}."
+        return f"For the run of a scheme: {ON_STEPS[item.id]}."
     if item.law is None:
-        return "Of a scheme: the same, as it speaks of samples or states its law among its hypotheses."
-    return "Of a scheme: nothing, as it is about the law's flow, unless its first hypothesis names the scheme."
+        return "For the run of a scheme: the same, as the theorem is about samples or has its law among its hypotheses."
+    return "For the run of a scheme: nothing, as the theorem is about the law's flow, unless it names the scheme."
 
 
 def is_about_steps(item: Theorem, seen: Observed) -> bool:
@@ -52,7 +52,7 @@ def is_about_steps(item: Theorem, seen: Observed) -> bool:
 def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
     """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
     law: Scheme = seen.law
-    detail = f"{type(law).__name__} steps {type(law.law).__name__} by {law.dt:g}. {says_of_schemes(item)}"
+    detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
     claims = [vacuous(name, missed, by=item.by(name)) for name in item.claims]
     if item.id not in ON_STEPS or len(seen.t) < 2:

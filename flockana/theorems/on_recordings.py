@@ -240,6 +240,6 @@ def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
     if claim.status not in ("verified", "refuted"):
         return claim
     if first.status != "met":
-        detail = f"{claim.detail}; {first.name}: {first.detail}, which decides nothing"
+        detail = f"{claim.detail}; nothing is decided, as it is only assumed that {first.name}: {first.detail}"
         return replace(claim, status="inconclusive", detail=detail.lstrip("; "))
     return replace(claim, rigour="statistical" if rec.accuracy.kind == "sd" else "numeric")

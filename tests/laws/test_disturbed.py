@@ -137,7 +137,7 @@ def test_it_is_saved_and_its_theorems_are_vacuous(tmp_path):
     np.testing.assert_array_equal(simulate(again.law, run.q[0], run.p[0], (0.0, 1.0)).q, run.q)
     verdict = verify("os-3", again)
     assert verdict.status == "vacuous"
-    assert "the run is of the law within Disturbed" in verdict.claims[0].detail
+    assert "wrapped in Disturbed" in verdict.claims[0].detail
     assert verify("energy", simulate(Disturbed(LAW, force=(0.1, 0.0)), Q, 0.0 * Q, (0.0, 1.0))).status == "vacuous"
 
 

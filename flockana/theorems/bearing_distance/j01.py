@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="|x_e| -> 0 on every edge of every spanning tree",
             witness=case | {"shortest edge at the end": float(lengths.min())},
             disproof="bearing-distance-printed",
-            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
+            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge longer than 0 for good; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
         limit_claim(
@@ -75,8 +75,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"trees": settled, "interval": [least, most]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
-            detail=f"{settled} of {_TREES} random directed trees go to every edge at αr and equal velocities; share "
-            f"{least:.3f} or more ({CONFIDENCE:.0%}, Clopper-Pearson)",
+            detail=f"{settled} of {_TREES} random trees tend to edges of length αr and equal velocities; share "
+            f"at least {least:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]
 

@@ -62,7 +62,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
             disproof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
-            "finer steps less still",
+            "finer steps the limit is lower",
         ),
         always(
             "speed",

@@ -52,7 +52,7 @@ def _told_and_not() -> list[Claim]:
             computed=told[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
-            detail=f"of two at 1 m/s one is told v^d = {_DESIRED:g}: both take it over, as x' = M x has it, whose "
+            detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as by x' = M x, whose "
             f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
         of_map(
@@ -62,7 +62,7 @@ def _told_and_not() -> list[Claim]:
             computed=alone[-1].tolist(),
             stated=1.5,
             witness={"informed": "none", "p(0)": (1.0, 2.0)},
-            detail="two of whom none is informed, at 1 and at 2 m/s, agree on 1.5: alignment alone keeps a mean",
+            detail="two uninformed agents at 1 and 2 m/s agree on 1.5 m/s: alignment alone preserves the mean",
         ),
     ]
 

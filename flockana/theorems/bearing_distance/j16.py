@@ -75,7 +75,7 @@ def _circling() -> Claim:
         stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
         detail=f"from {met} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
-        f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which decides nothing about later",
+        f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which leaves later times open",
     )
 
 
@@ -90,8 +90,8 @@ def _lone() -> Claim:
         computed={f"distance after two minutes, growth {growth:g} m/s": d for growth, d in gap.items()},
         stated="lone agents part, unless their radii of attraction grow faster than they do so",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
-        detail=f"two lone agents that fly apart are {gap[0.0]:.3g} m apart after two minutes, with radii that grow by "
-        f"{_SLOWER:g} m/s {gap[_SLOWER]:.3g} m (they part by 6 m/s), and by {_GROWTH:g} m/s {gap[_GROWTH]:.3g} m",
+        detail=f"two lone agents that fly apart at 6 m/s are {gap[0.0]:.3g} m apart after two minutes; "
+        f"{gap[_SLOWER]:.3g} m if radii grow by {_SLOWER:g} m/s, {gap[_GROWTH]:.3g} m if by {_GROWTH:g} m/s",
     )
 
 
@@ -116,7 +116,7 @@ def _pairs() -> Claim:
         stated="growing radii of attraction keep the flock one",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {parted:.4g} m "
-        f"apart after a minute, as straight on ({straight:g})",
+        f"apart after a minute, as in straight flight ({straight:g})",
     )
 
 

@@ -46,7 +46,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=delay,
             stated=predicted,
             witness={"s": _SHORT, "detection": _DETECTION, "approach": _SPEED + _PURSUIT},
-            detail=f"head on, an agent that sees {_SHORT:g} m heeds the alien {delay:.2g} s after it was detected: "
+            detail=f"head on, an agent that sees {_SHORT:g} m reacts {delay:.2g} s after it was detected: "
             f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
         ),
         of_map(

@@ -78,17 +78,17 @@ def _sides(
         "bounded",
         [*needs, slow],
         computed=float(x.mid[-1]),
-        stated="the two match, at a distance that is known",
+        stated="the two match, and their distance tends to a known one",
         proof="cucker-smale",
-        detail=f"{slow.detail}: they end {far:.6g} apart, and got to {x.mid[-1]:.6g}",
+        detail=f"{slow.detail}: their distance tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
     )
     parts = limit_claim(
         "parts",
         [*needs, fast],
         computed=float(w.mid[-1]),
-        stated="the two part for ever",
+        stated="the two never match and separate",
         proof="cucker-smale",
-        detail=f"{fast.detail}: their relative speed never falls below {least:.6g}, and ended at {w.mid[-1]:.6g}",
+        detail=f"{fast.detail}: their relative speed is {w.mid[-1]:.6g} at the end and never below {least:.6g}",
     )
     return [
         vacuous("bounded", slow) if slow.status == "unmet" else bounded,

@@ -19,6 +19,7 @@ from flockana.theorems.classics.averaging import (
     permanently_connected,
     permanently_separated,
 )
+from flockana.theorems.headline import does_not_hold
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.observed import Observed
@@ -48,7 +49,7 @@ def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificat
     if connected.certain:
         return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}")
     if parted.certain:
-        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, and no more: {parted.text}")
+        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, none can follow: {parted.text}")
     return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
 
 
@@ -90,7 +91,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
         proof=_PROOF,
         detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
         if found
-        else f"{enough.name}: {enough.detail}",
+        else does_not_hold(enough.name),
     )
 
 

@@ -29,7 +29,7 @@ def _turned() -> Claim:
         stated="turning the whole flock need not turn the mean headings with it",
         witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
         detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_round} of a turn: "
-        "they turn round; turned by 1/24 or more they go straight on",
+        "they turn round; with the flock turned by 1/24 or more they keep straight on",
     )
 
 

@@ -43,7 +43,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=radius,
             stated="no agent farther than r from the leader",
             disproof=PROOF,
-            detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
+            detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} separate: at t = 10 "
             f"they are {radius:.4g} from their centre",
         ),
         of_map(

@@ -107,8 +107,8 @@ def _fraction() -> Claim:
         about="all",
         stated="to pin a fraction of the agents makes all follow",
         witness={"force": force, "distance": float(q[1, 0])},
-        detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, feels nothing "
-        f"and never will: r = {r:g}. What counts is that each has a path in the net to a pinned one",
+        detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, never feels a "
+        f"force, as r = {r:g}: each agent needs a path in the net to a pinned one",
     )
 
 
@@ -124,8 +124,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "energy",
             residuals,
             stated="dH/dt = -k₂ pᵀL̂p within groups - c₂ Σ h_i ‖p_i - p_l‖² - Σ f_i·p_l, in the frames of the leaders",
-            detail="in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; of different leaders "
-            "neighbours feed or drain it",
+            detail="in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
+            "different leaders add or remove energy",
         ),
         _follow(
             "one-leader",
@@ -144,7 +144,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING,
             computed=deaf,
             stated="at those times they do not, if its acceleration is not known",
-            detail=f"without it some velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and "
+            detail=f"without it a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and "
             f"{late[1]:g}",
         ),
     ]

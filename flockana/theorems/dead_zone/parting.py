@@ -79,7 +79,7 @@ class Component:
         if self.dt is not None or self.law.k2 == 0.0:
             return Certificate(-1.0, "no energy holds it together")
         margin = max(-1.0, 1.0 - self._out_of_range / (self.size - 1.0))
-        able = "too few ever to break it up" if margin > 0.0 else "which might break it up"
+        able = "too few to break it up" if margin > 0.0 else "which might break it up"
         text = f"its energy can put {self._out_of_range:.3g} pairs out of range, {able}"
         return Certificate(margin, text, _WHOLE + self.size**2 * EPS)
 
@@ -129,7 +129,7 @@ class Components:
         """Certificate that no two components ever meet, with the clearance of their paths as margin."""
         margin, error = self._clearance
         clear = margin > error
-        return Certificate(float(np.clip(margin, -1.0, 1.0)), f"parts {'never' if clear else 'may'} meet", error)
+        return Certificate(float(np.clip(margin, -1.0, 1.0)), f"components {'never' if clear else 'may'} meet", error)
 
     @cached_property
     def _clearance(self) -> tuple[float, float]:
@@ -164,7 +164,7 @@ class Components:
         The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         """
         if self.count == 1:
-            return Certificate(-1.0, "the flock is in one part")
+            return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed
         blur, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
         slip = 4.0 * blur * (sqrt(drift) + blur) + 64.0 * EPS * drift

@@ -81,7 +81,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             stated="K̃ falls at twice the decay rate of the slowest mode, along which the flock was displaced",
             witness=worst.name,
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
-            f"{worst.measured:.6g} for {worst.predicted:.6g})",
+            f"measured {worst.measured:.6g}, predicted {worst.predicted:.6g})",
         ),
         spectral(
             "random",
@@ -90,9 +90,9 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             computed=other.random_measured,
             stated=other.random_linear,
             witness=other.name,
-            detail="from a random start all modes die out together: late in the run K̃ falls as the linear system's, "
-            f"to {other.random_difference:.2g} at worst ({other.name}: {other.random_measured:.6g} for "
-            f"{other.random_linear:.6g}; its slowest mode has {other.predicted:.6g})",
+            detail="from random starts K̃ falls late in the run at the linear system's rate, up to "
+            f"{other.random_difference:.2g} ({other.name}: measured {other.random_measured:.6g}, predicted "
+            f"{other.random_linear:.6g}; the slowest mode alone decays at {other.predicted:.6g})",
         ),
     ]
 

@@ -99,7 +99,7 @@ def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, 
         computed=int(least[worst]),
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
-        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where {most} may be"
+        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"
         + (f"; {near}" if open_ else ""),
     )
 

@@ -132,7 +132,7 @@ def stays_together(seen: Observed) -> Hypothesis:
         if (height := above_least(seen, height)).hi < parted:  # limits are those of the start at that time
             detail = f"at t = {t:.4g} {what} = {height.mid:.5g}: a disconnected state has (n-1) c1α {of} = {parted:.5g}"
             return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
-    return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
+    return Hypothesis(name, "assumed", detail="this run is connected at every sample; other solutions are not known")
 
 
 def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
@@ -154,7 +154,7 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
         proof=proof,
-        detail=f"cohesive: R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
+        detail=f"cohesion radius R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
 

@@ -139,7 +139,7 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
         low, high = sum(meeting(seen)), np.inf
     status: HypothesisStatus = "met" if energy.hi < low else "unmet" if energy.lo >= high else "assumed"
     detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}"
-    detail += f", and a state of {high:.5g} is known" if np.isfinite(high) else ""
+    detail += f" and at most {high:.5g}" if np.isfinite(high) else ""
     bound = high if status == "unmet" else low
     margin = float(bound - energy.mid)
     return Hypothesis("H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width))
@@ -165,7 +165,7 @@ def no_collision(
         if certain := passed(seen, tolerances):
             pair = max(certain, key=lambda each: certain[each])
             margin = Enclosure.of(-certain[pair])
-            text = f"a collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
+            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
     return judged(
         name,
         margin,

@@ -55,7 +55,7 @@ def balance(
         witness={"time": float(seen.t[worst]), "residual": residual},
         proof=proof,
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by "
-        f"{abs(residual) / unit:.2g} of it at most",
+        f"{abs(residual) / unit:.2g} of the largest |H| at most",
     )
 
 
@@ -149,8 +149,8 @@ def never_rises(
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
         witness={"time": float(seen.t[since + worst])},
         proof=proof,
-        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; what falls is at least "
-        f"{share.mid.min():.2g} of the magnitude of its terms{until}",
+        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; -rate is at least "
+        f"{share.mid.min():.2g} of the sum of its terms' sizes{until}",
     )
 
 

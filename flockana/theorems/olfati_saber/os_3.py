@@ -38,8 +38,8 @@ _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolerances: Tolerances) -> Claim:
     """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
-    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
-    links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"
+    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
+    links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
     return limit_claim(
         "ii",
         needs,
@@ -47,7 +47,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
         computed=end.curvature,
         stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
-        detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; as a lattice: {kind}, {links}",
+        detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; {kind}, {links}",
     )
 
 

@@ -134,7 +134,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
         disproof="strained-thirteen",
         detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
         f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
-        f"agents it takes {least_with_coincidence(known.law.alpha)} at least",
+        f"agents at least {least_with_coincidence(known.law.alpha)} are needed",
     )
 
 

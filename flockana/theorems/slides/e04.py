@@ -105,8 +105,8 @@ def _none(alpha: AlphaInteraction) -> Claim:
         stated="for n >= 23 no configuration in the plane has V < c*",
         witness={"[largest n of a lattice below c*, least n without any state], by set and dimension": table},
         proof="n-max",
-        detail=f"what lowers V is {shortest:.4g} to {longest:.4g} long, a ratio of {longest / shortest:.4g} < √2; "
-        f"no four agents are pairwise such, so by Turán V > c* from n = {n} on",
+        detail=f"only pairs {shortest:.4g} to {longest:.4g} apart lower V, a ratio of {longest / shortest:.4g} < √2; "
+        f"no four agents have such distances, so by Turán V > c* from n = {n} on",
     )
 
 

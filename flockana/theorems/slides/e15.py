@@ -109,8 +109,8 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
             stated="from outside the circle the flock's is not smaller",
             witness={"inside": float(inside.mid), "outside": float(outside.mid)},
             disproof=_PROOF,
-            detail=f"from {_AWAY:g} radii away it describes {outside.mid:.4f} of the γ-agent's circle, from the centre "
-            f"{inside.mid:.4f}: smaller wherever it starts",
+            detail=f"the flock describes {outside.mid:.4f} of the γ-agent's circle from {_AWAY:g} radii away, "
+            f"{inside.mid:.4f} from its centre: smaller from both starts",
         ),
         judged(
             "printed-speed",
@@ -119,8 +119,8 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
             computed=_values(others),
             stated="at some other speed the flock's circle is not smaller",
             disproof=_PROOF,
-            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed it is {largest.mid:.4f} of the γ-agent's "
-            "at most: no speed is just great enough",
+            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed the circle is "
+            f"{largest.mid:.4f} of the γ-agent's at most: smaller at each speed",
         ),
     ]
 
