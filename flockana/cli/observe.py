@@ -19,19 +19,19 @@ if TYPE_CHECKING:
 def observe_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS.")],
     law: Annotated[
-        str | None, typer.Option("--law", metavar="NAME", help="A scenario whose law it may follow, or algorithm-1.")
+        str | None, typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, or algorithm-1.")
     ] = None,
     formula: Annotated[
         str | None,
-        typer.Option(metavar="ψ(s)", help="Instead: Algorithm 1 with this pair potential; needs --d and --r."),
+        typer.Option(metavar="ψ(s)", help="Pair potential of Algorithm 1, instead of --law; needs --d, --r."),
     ] = None,
     fit: Annotated[bool, typer.Option("--fit", help="Fit the law's gains.")] = False,
     bound: Annotated[float | None, typer.Option(help="Largest error of a recorded position.")] = None,
-    sd: Annotated[float | None, typer.Option(help="Instead: standard deviation of each coordinate.")] = None,
+    sd: Annotated[float | None, typer.Option(help="Standard deviation, instead of --bound.")] = None,
     d: Annotated[float | None, typer.Option("--d", help="Scale of nets and lattices; by default the law's.")] = None,
-    r: Annotated[float | None, typer.Option("--r", help="Range, likewise; by default 1.2 d.")] = None,
-    dt: Annotated[float | None, typer.Option(help="Time of a frame, where there are no times.")] = None,
-    clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, where times are dates.")] = None,
+    r: Annotated[float | None, typer.Option("--r", help="Range of nets; by default 1.2 d.")] = None,
+    dt: Annotated[float | None, typer.Option(help="Time between frames, if the file has no times.")] = None,
+    clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
     page: Annotated[Path | None, output("HTML page to write, with a player.")] = None,
     as_json: AsJson = False,
 ) -> int:

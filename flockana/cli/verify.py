@@ -40,7 +40,7 @@ def verify_command(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Folder of the report, by default report; a folder NAME within where it has a report on all.",
+            help="Folder of the report; by default report, or report/NAME to keep one on the catalogue.",
             show_default=False,
         ),
     ] = None,
@@ -50,8 +50,8 @@ def verify_command(
         int | None,
         typer.Option(
             min=0,
-            help="From how many seeds to tell shares of runs; 0 for no shares. By default as many as scenarios ask "
-            "for, in a report on the whole catalogue only.",
+            help="Seeds for success rates; 0 = none. By default as many as scenarios ask for, in a report on the "
+            "whole catalogue only.",
             show_default=False,
         ),
     ] = None,
