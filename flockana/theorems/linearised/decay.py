@@ -164,7 +164,7 @@ _STATEMENT = (
 THEOREM = (
     erratum(
         "linearised-decay",
-        title="The linearisation tells the truth near lattices",
+        title="The linearisation is accurate near lattices",
         statement=_STATEMENT
         + ", and the distance from the linear prediction grows as the square of the perturbation. Checked on hexagonal "
         "patches, an FCC site, and a hexagon at a wall.",
@@ -175,7 +175,7 @@ THEOREM = (
     ),
     Theorem(
         id="linearised-decay-terminal",
-        title="The linearisation tells the truth where a run ends",
+        title="The linearisation is accurate where a run ends",
         statement=_STATEMENT + ". Checked at the equilibrium that the run's last state is near to.",
         source="ours; the statement is textbook knowledge",
         kind="trajectory",
