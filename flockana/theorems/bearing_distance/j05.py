@@ -57,7 +57,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",
             witness={"graph": "frozen undirected path of three"},
             disproof=_PROOF,
-            detail=f"an edge between agents of different degree is wanted at two lengths at once: whatever its length, "
+            detail=f"the two agents of an edge want different lengths if their degrees differ: whatever its length, "
             f"it is off one of them by {0.5 * abs(wanted[1] - wanted[0]):g} or more",
         ),
         judged(

@@ -74,7 +74,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         mostly(
             "clip",
             [abs(v - law.desired_speed) <= near for v in clipped],
-            "with v min(1, v^max/|v|) it is about 3",
+            "with v min(1, v^max/|v|) the mean speed is about 3",
             "a plain clip lets the flock keep 3 m/s",
             witness={"mean speed over seeds": float(np.mean(clipped))},
         ),

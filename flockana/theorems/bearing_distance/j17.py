@@ -56,7 +56,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=none,
             stated=0.0,
             witness={"s": _DETECTION, "detection": _DETECTION},
-            detail=f"with s = {_DETECTION:g}, the alien's own range, it reacts within {abs(none):.2g} s: the next step",
+            detail=f"with s = {_DETECTION:g}, the alien's range, agents react within {abs(none):.2g} s: the next step",
         ),
         of_map(
             "nearer",

@@ -143,9 +143,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             deaf - _CLOSE,
             _ROUNDING,
             computed=deaf,
-            stated="at those times they do not, if its acceleration is not known",
-            detail=f"without it a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and "
-            f"{late[1]:g}",
+            stated="not all follow a leader that turns if its acceleration is not known",
+            detail=f"without feedforward a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} "
+            f"and {late[1]:g}",
         ),
     ]
 

@@ -56,7 +56,7 @@ def _necessary() -> Claim:
         return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
     detail = (
         "a pair's potential is finite at every distance > 0: every start from distinct places meets it, so that as a "
-        "necessary condition it says nothing. No other is stated, nor the particular case"
+        "necessary condition it excludes nothing; no other one is stated"
     )
     return exact("printed-necessary", not nothing, stated=stated, detail=detail)
 
@@ -94,7 +94,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)],
             computed=share,
-            stated="and is not necessary: a flock with more energy may stay together all the same",
+            stated="the condition is not necessary: a flock with more energy may stay together",
             detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "
             f"they are {min_distance(later.end.q):.3g} apart",
         ),

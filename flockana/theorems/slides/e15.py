@@ -93,7 +93,7 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
         tolerances.agreement - off,
         computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=f"inside or outside, at each speed, with either p_r: off by {off.mid.max():.1g} at most",
+        detail=f"the ratio, inside or outside, at each speed, with either p_r, is off by {off.mid.max():.1g} at most",
     )
 
 
@@ -150,7 +150,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
             proof=_PROOF,
-            detail=f"so never with the true p_r; the project's gains and p_r meet it, {margin:.3g} times over",
+            detail=f"never for the true p_r; for the project's the left side is {margin:.3g} times the right",
         ),
     ]
 
