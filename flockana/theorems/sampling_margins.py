@@ -54,7 +54,7 @@ def sources_steps() -> tuple[Step, ...]:
     few, many, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
     return (
         Step("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
-        Step("msn-few-in-place", "the same agent by agent in place", MSNDiscretisation(msn, 0.009), few),
+        Step("msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few),
         Step("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
         Step("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
         Step("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
