@@ -79,7 +79,7 @@ def _ensure_turnable(q: FloatArray) -> None:
     """Raise on a net in space that lies on one line, whose orbit is a sphere."""
     sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
     if q.shape[1] == 3 and sizes[1] <= _COLLINEAR * sizes[0]:
-        raise ArgumentError("the agents stand on one line in space: expected a net that does not; certify it in m = 1")
+        raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:

@@ -78,7 +78,7 @@ class Between:
         if self.q.shape[1:] != q.shape[1:] or (self.slack is not None and self.slack.shape != intervals):
             raise ArgumentError(f"between.q has shape {self.q.shape}: expected steps of the flock of q {q.shape}")
         if len(self.t) and (self.t[0] <= t[0] or self.t[-1] >= t[-1] or np.isin(self.t, t).any()):
-            raise ArgumentError("between.t: expected times between those of the samples, none of them a sample's")
+            raise ArgumentError("between.t: expected times strictly between those of the samples")
 
     def within(self, t: FloatArray, kept: FloatArray) -> Between | None:
         """Return the steps within a window of the run; None for a single sample."""

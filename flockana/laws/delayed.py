@@ -128,14 +128,14 @@ class Delayed(Wrapper):
         super().check_dimension(m)
         if self.history_q is not None and np.shape(self.history_q)[2] != m:
             raise ArgumentError(
-                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected as many"
+                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected equally many"
             )
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)
         if self.history_q is not None and np.shape(self.history_q)[1] != n:
             raise ArgumentError(
-                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected as many"
+                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected equal numbers"
             )
         if np.ndim(self.delay) == 2 and np.shape(self.delay) != (n, n):
             raise ArgumentError(f"delay has shape {np.shape(self.delay)}: expected ({n}, {n}), a delay for each pair")

@@ -54,7 +54,7 @@ def ensure_one_gain(gains: Gains) -> None:
 def paper_pair(law: Any) -> AlphaInteraction:
     """Return a law's pair law; raise unless it is the paper's, the only one for which φ_α's properties are proved."""
     if not isinstance(law.alpha, AlphaInteraction):
-        raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), of which this is known")
+        raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), as proofs need it")
     return law.alpha
 
 

@@ -343,6 +343,6 @@ def ensure_hears(law: Law) -> None:
     core = law.core if isinstance(law, Wrapper) else law
     if not any(isinstance(term, PairTerm) for term in core.terms):
         raise ArgumentError(
-            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which what is heard "
-            'of others is known apart from an agent\'s own state; delayed="all" takes any law'
+            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which the states "
+            'of others are apart from an agent\'s own; delayed="all" takes any law'
         )
