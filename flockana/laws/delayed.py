@@ -128,7 +128,7 @@ class Delayed(Wrapper):
         super().check_dimension(m)
         if self.history_q is not None and np.shape(self.history_q)[2] != m:
             raise ArgumentError(
-                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected equally many"
+                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected the same"
             )
 
     def check_agents(self, n: int) -> None:  # noqa: D102
