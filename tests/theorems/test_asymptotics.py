@@ -58,4 +58,4 @@ def test_a_lattice_is_the_limit_of_what_stays_near_it_and_a_strained_minimum_is_
     claim = lattice_limit(strained, [], TOLERANCES, name="i")
     assert claim.status == "refuted"
     assert claim.computed > 1e-3
-    assert claim.detail.endswith("λJ presses on every link; " + final_basin(strained).certificate.text)
+    assert claim.detail.endswith("λJ compresses every link; " + final_basin(strained).certificate.text)
