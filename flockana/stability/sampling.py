@@ -101,7 +101,7 @@ class SamplingMargin:
         return self.modes[0] if self.modes else None
 
     def times(self, dt: float) -> float:
-        """Return how many times the step `dt` the margin is; above 1 the sampled flock is stable.
+        """Return the margin over the step `dt`; the sampled flock is stable if it is above 1.
 
         Parameters
         ----------

@@ -80,7 +80,7 @@ def _sides(
         computed=float(x.mid[-1]),
         stated="the two match, and their distance tends to a known one",
         proof="cucker-smale",
-        detail=f"{slow.detail}: their distance tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
+        detail=f"{slow.detail}: x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
     )
     parts = limit_claim(
         "parts",

@@ -32,7 +32,7 @@ def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
     assert bounded.needs[-1].margin == pytest.approx(0.6 * room, rel=1e-10)
     assert bounded.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
     end = tan(atan(start) + 0.4 * room / PSI[mean])
-    assert f"they end {end:.6g} apart" in bounded.detail
+    assert f"x along w tends to {end:.6g}, " in bounded.detail
     fast, run = pair(start, 1.5 * room, mean=mean, way=way)
     parts = fast.claim("parts")
     assert fast.claim("bounded").status == "vacuous"
