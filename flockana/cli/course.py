@@ -34,7 +34,7 @@ def course_command(
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
     A student's copy checks the form of an answer only. If a file in DIR differs from what would be written, such as a
-    notebook with answers, nothing is written.
+    notebook with answers, nothing is written; files that are the same are kept.
 
     Needs `pip install 'flockana[course]'`, which brings Jupyter.
     """
