@@ -229,7 +229,7 @@ def _balls() -> Iterable[str]:
     yield _monotone("taper(s)", "Half-cosine of ρ_h", Taper(_S).composed)
     yield _ball("phi(s, a, b, c)", "φ(s), increasing.", Phi(_S, _A, _B, _C).composed)
     yield _ball("pair(s2, law, piece)", "(weight, adjacency) at squared distance s2.", *law.pair)
-    yield _ball("slopes(s2, law, piece)", "Derivatives of the two by s2.", *law.slopes)
+    yield _ball("slopes(s2, law, piece)", "Derivatives of (weight, adjacency) by s2.", *law.slopes)
     yield _ball("stiffness(s2, law, piece)", "F''(ℓ) of F = ψ(‖·‖_σ), by s2 = ℓ².", law.stiffness)
     yield _ball("closed(z, law)", "An antiderivative of the action where ρ_h = 1.", written(law.closed))
     yield _ball("tapered(z, law, analytic)", "The action on the taper.", written(tapered))

@@ -16,7 +16,7 @@ _BASIS = 0.1  # of the total: what is done from which on the time left is told
 def progress_bar(
     total: float, *, enabled: bool = True, counted: bool = True, steady: bool = False
 ) -> Iterator[Callable[[float, str], None]]:
-    """Show a progress bar; yields a function to report the amount done, and a text to show beside it.
+    """Show a progress bar; yield a function that reports progress and a text.
 
     Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute.
 

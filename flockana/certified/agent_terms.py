@@ -25,7 +25,7 @@ class AgentTerm(ABC):
 
     @abstractmethod
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables."""
+        """Return the derivatives of the force by position and velocity, as two tables."""
 
     @abstractmethod
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:

@@ -32,7 +32,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
     radius = ball(half_width(u))
     centre = [arb(y) for y in x]
     if not regular(u, x, radius):
-        raise SolverError("the equilibrium's turns are not certainly independent: it is too nearly on one line")
+        raise SolverError("the equilibrium's rotations may be dependent: its agents are nearly on one line")
     equations, slope = system(u, x)
     found = enclose_zero(equations, slope, [*centre, *[arb(0)] * (len(u.rotation_tangents(centre)) + u.m)], radius)
     if found is None:
@@ -79,7 +79,7 @@ def _ensure_turnable(q: FloatArray) -> None:
     """Raise on a net in space that lies on one line, whose orbit is a sphere."""
     sizes = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
     if q.shape[1] == 3 and sizes[1] <= _COLLINEAR * sizes[0]:
-        raise ArgumentError("the agents stand on one line in space: expected a net that does not; certify it in m = 1")
+        raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:

@@ -12,14 +12,14 @@ from flint import arb, fmpq
 
 
 def at_least(x: arb, places: int = 6) -> str:
-    """Return the largest decimal with that many places certainly not above x."""
+    """Return the largest decimal of `places` places certainly not above x."""
     if not x.is_finite():
         return "-∞"
     return _shifted(floor(_end(x.lower()) * 10**places), places)
 
 
 def at_most(x: arb, places: int = 6) -> str:
-    """Return the smallest decimal with that many places certainly not below x."""
+    """Return the smallest decimal of `places` places certainly not below x."""
     if not x.is_finite():
         return "∞"
     return _shifted(ceil(_end(x.upper()) * 10**places), places)
@@ -44,14 +44,14 @@ def small(x: arb, digits: int = 2) -> str:
 
 
 def round_down(x: arb | fmpq, digits: int) -> fmpq:
-    """Return the largest decimal with that many significant digits certainly not above x."""
+    """Return the largest decimal of `digits` significant digits certainly not above x."""
     low = Fraction(int(x.p), int(x.q)) if isinstance(x, fmpq) else _end(x.lower())
     unit = _unit(abs(low), digits)
     return _rational(floor(low / unit) * unit)
 
 
 def round_up(x: arb | fmpq, digits: int) -> fmpq:
-    """Return the smallest decimal with that many significant digits certainly not below x."""
+    """Return the smallest decimal of `digits` significant digits certainly not below x."""
     return -round_down(-x, digits)
 
 

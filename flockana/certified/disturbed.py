@@ -82,7 +82,7 @@ class UltimateBound:
 
 
 def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
-    """Return what a disturbance can do to a flock in a certified basin.
+    """Return bounds of a flock's motion in a certified basin under a bounded disturbance.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
 
 
 def _share(basin: Basin) -> arb:
-    """e = ε/√λ."""
+    """Weight e = ε/√λ of the Lyapunov function's cross term."""
     return ball(basin.proof.decay.eps) / ball(basin.proof.bounds.curvature).sqrt()
 
 

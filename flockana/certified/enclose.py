@@ -205,7 +205,7 @@ def _steps(
 
 
 def _excess(flow: Flow, step: Step, knobs: _Settings) -> float:
-    """Return a step's remainder relative to what is allowed."""
+    """Return a step's remainder divided by the allowed one."""
     widest = size(flow, [arb(x.rad()) for x in step.after.hull])
     return step.added / max(knobs.remainder * knobs.length, _PART * widest)
 
@@ -235,7 +235,7 @@ def _proposed(flow: Flow, t: float, current: StateSet, longest: float) -> tuple[
 
 
 def _gaps(flow: Flow, q: FloatArray, p: FloatArray) -> Iterator[tuple[float, float]]:
-    """Return how far each pair and agent is beyond a switch, and how fast it moves away."""
+    """Yield how far each pair and agent is beyond a switch, and how fast it moves away."""
     eps, unit = float(flow.pair.eps), sqrt(float(flow.pair.area))
     switches = [unit * sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (flow.pair.knee, flow.pair.cutoff)]
     for i, j in combinations(range(flow.n), 2):

@@ -48,7 +48,7 @@ def pair(s2: Any, law: Any, piece: Any) -> Any:
 
 
 def slopes(s2: Any, law: Any, piece: Any) -> Any:
-    """Derivatives of the two by s2."""
+    """Derivatives of (weight, adjacency) by s2."""
     x0 = 1/law.area
     x1 = sigma_norm(s2, law.eps)
     x2 = x0*(-law.zero + x1)

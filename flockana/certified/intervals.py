@@ -90,11 +90,11 @@ class _Action:
     h: arb
 
     def at(self, z: arb) -> arb:
-        """Return the action."""
+        """Return the action at z."""
         return bump(z / self.cutoff, self.h) * self._smooth(z)
 
     def slope(self, z: arb) -> arb:
-        """Return its derivative, continuous."""
+        """Return the action's derivative, which is continuous."""
         x = z / self.cutoff
         rising = self.factor * sigma_1_slope(z + self.offset)
         return bump_slope(x, self.h) / self.cutoff * self._smooth(z) + bump(x, self.h) * rising

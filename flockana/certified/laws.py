@@ -30,7 +30,7 @@ def ensure_enclosable(law: Any) -> None:
     >>> ensure_enclosable(Algorithm1())
     """
     if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
-        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, alone")
+        raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
     if isinstance(law, _LED):
         ensure_one_gain(law.gains)
         if type(law.target) not in (StaticTarget, LinearTarget):

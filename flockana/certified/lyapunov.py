@@ -58,7 +58,7 @@ class Decay:
 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:
-    """Return the largest exact α of the inequalities; 0 if there is none above it."""
+    """Return the largest exact rate α that the inequalities allow; 0 if there is none above 0."""
     curvature, least, most = bounds.curvature, bounds.least, bounds.most
     mixed = theta * bounds.surplus + (1 - theta) * curvature
     places = eps * (theta * curvature / 2 + mixed - kappa * most / 2) / (curvature / 2 + eps * tau / 2)

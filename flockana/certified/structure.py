@@ -25,7 +25,7 @@ Balls = Sequence[arb]
 
 
 def in_lengths_of_unit(law: Any) -> Any:
-    """Return a law in lengths of ℓ, the unit of σ₁, where ℓ = 1: the printed law, rounded; unchanged if it is."""
+    """Return a law with ℓ, the unit of σ₁, as its unit of length; unchanged where ℓ = 1."""
     unit = getattr(law.alpha, "unit", 1.0)
     if unit == 1.0:
         return law
@@ -49,7 +49,7 @@ class Structure:
     def of(cls, law: Any, n: int, m: int) -> Structure:
         """Return the exact numbers of a law; raise unless it is Algorithm 1 or 2."""
         if type(law) not in (Algorithm1, Algorithm2) or not isinstance(law.alpha, AlphaInteraction):
-            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2 with AlphaInteraction, alone")
+            raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2 with AlphaInteraction, unwrapped")
         if law.alpha.unit != 1.0:
             raise ArgumentError(f"unit = {law.alpha.unit:g}: expected 1; rescale law and places by it (fl.rescale)")
         led, gains = isinstance(law, Algorithm2), law.gains

@@ -275,7 +275,7 @@ class Tube:
 
 
 def _ensure_energy(law: Any) -> None:
-    """Raise on Algorithm 3, whose energy is another."""
+    """Raise on Algorithm 3, whose energy has more terms."""
     if type(law) not in (Algorithm1, Algorithm2):
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2, whose structural energy this is")
 

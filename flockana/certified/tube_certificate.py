@@ -153,7 +153,7 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
                 break
             stated = small((arb("1.3") * found).max(arb("1e-28")))
         else:
-            raise ArgumentError(f"no error of the path holds itself up at t = {t:g}: expected another weight or tube")
+            raise ArgumentError(f"no error bound is verified at t = {t:g}: expected another weight or tube")
         errors.append(stated)
         state, error = run.at(path, h), found
         least.append(min(length.lower() for length in run.lengths(box)))

@@ -16,9 +16,9 @@ Words = Annotated[list[str] | None, typer.Argument(metavar="[WORD]...", help="On
 Source = Annotated[str, typer.Option(help="Only this source, or part of its name.", show_default=False)]
 Status = Annotated[
     Literal["verified", "refuted", "vacuous", "inconclusive"] | None,
-    typer.Option(help="Only entries of which this is expected.", show_default=False),
+    typer.Option(help="Only entries with this expected status.", show_default=False),
 ]
-Long = Annotated[bool, typer.Option("--long", help="Print all that is known of each.")]
+Long = Annotated[bool, typer.Option("--long", help="Print all details of each.")]
 
 
 @one_thread_for_matrices()

@@ -16,10 +16,10 @@ def check_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A certificate (.json).")],
     as_json: AsJson = False,
 ) -> int:
-    """Verify a certificate, such as that of a basin, and print what it proves, step by step.
+    """Verify a certificate, such as a basin's, and print what it proves, step by step.
 
-    The checker shares with the code that proves only the scalar functions in ball arithmetic. It rejects a file in
-    which anything was changed, and one that claims more than is true.
+    The checker shares only the scalar functions in ball arithmetic with the prover. It rejects a file that was changed,
+    or that claims more than is true.
 
     Exit status: 0 it holds, 2 bad input, 3 it is rejected, 130 interrupted.
     """

@@ -14,7 +14,7 @@ _FOLDERS = ("DIR", "FOLDER")  # how options for folders are written in the help
 
 
 class Command(TyperCommand):
-    """A command that takes no empty name for a path, and names a value that it refuses."""
+    """Command that rejects empty paths, and whose errors name the refused value."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read the arguments as typer does."""

@@ -15,26 +15,26 @@ from flockana.cli.status import OK
 
 def course_command(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
-    solutions: Annotated[bool, typer.Option("--solutions", help="With our solutions, and checks that grade.")] = False,
+    solutions: Annotated[bool, typer.Option("--solutions", help="With solutions, and checks that grade.")] = False,
     self_study: Annotated[
-        bool, typer.Option("--self-study", help="Without solutions, but with checks that grade, and so hold values.")
+        bool, typer.Option("--self-study", help="Without solutions, with checks that grade.")
     ] = False,
     slides: Annotated[
-        bool, typer.Option("--slides", help="For `jupyter nbconvert --to slides --execute DIR/*.ipynb`.")
+        bool, typer.Option("--slides", help="Slides for `jupyter nbconvert --to slides --execute DIR/*.ipynb`.")
     ] = False,
     grader: Annotated[
         Literal["otter", "nbgrader"] | None,
-        typer.Option(help="Masters for a grader, with hidden tests: for `otter assign`, or nbgrader's folder source."),
+        typer.Option(help="Assignments with hidden tests, for `otter assign` or nbgrader's folder source."),
     ] = None,
     address: Annotated[
-        str, typer.Option(help="Where notebooks install flockana from if it is missing: git+https://HOST/PATH.")
+        str, typer.Option(help="Source to install flockana from in notebooks: git+https://HOST/PATH.")
     ] = "",
     as_json: AsJson = False,
 ) -> int:
     """Write the lectures as notebooks that run wherever flockana is installed; a student's by default.
 
-    A student's copy checks the form of an answer only. Where DIR holds a file that differs from what would be written,
-    such as a notebook with answers, nothing is written; files that are the same are no obstacle.
+    A student's copy checks the form of an answer only. If a file in DIR differs from what would be written, such as a
+    notebook with answers, nothing is written; files that are the same are kept.
 
     Needs `pip install 'flockana[course]'`, which brings Jupyter.
     """

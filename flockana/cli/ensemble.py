@@ -22,17 +22,17 @@ _MOST = 7  # curves in one picture
 
 def ensemble_command(
     scenario: ScenarioName,
-    seeds: Annotated[int, typer.Option(min=1, help="How many seeds.")] = 100,
-    first: Annotated[int, typer.Option("--first-seed", min=0, help="The first of them.")] = 0,
+    seeds: Annotated[int, typer.Option(min=1, help="Number of seeds.")] = 100,
+    first: Annotated[int, typer.Option("--first-seed", min=0, help="First seed.")] = 0,
     theorem: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Check only this; 'source' is what the source reports. May be repeated."),
+        typer.Option(metavar="NAME", help="Theorem to check, or 'source' for the source's reports. May be repeated."),
     ] = None,
     options: Annotated[
         list[str] | None, typer.Option("--set", metavar="OPTION=V1,V2,…", help="Values of an option. May be repeated.")
     ] = None,
-    store: Annotated[Path | None, typer.Option(metavar="FILE", help="Keeps runs as they are done.")] = None,
-    retry: Annotated[bool, typer.Option("--retry", help="Make runs anew that the store holds as failed.")] = False,
+    store: Annotated[Path | None, typer.Option(metavar="FILE", help="File that stores finished runs.")] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Retry failed runs of the store.")] = False,
     cluster: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one."),
@@ -59,7 +59,7 @@ def ensemble_command(
     from flockana.ensemble import ensemble, shares
 
     if retry and store is None:
-        raise ArgumentError("--retry: without a store no run is held as failed; give --store FILE too, or leave it out")
+        raise ArgumentError("--retry: without a store no failed runs are known; give --store FILE too, or leave it out")
     parameters = read_options(options or [])
     axes = [name for name, values in parameters.items() if isinstance(values, list)]
     ensure_level(level)

@@ -24,7 +24,7 @@ def equilibrium_command(
     d: Scale = None,
     r: Range = None,
     time: Time = None,
-    save_to: Annotated[Path | None, output("JSON file to save it to.")] = None,
+    save_to: Annotated[Path | None, output("JSON file to write.")] = None,
     picture: Drawing = None,
     as_json: AsJson = False,
 ) -> int:
@@ -32,10 +32,9 @@ def equilibrium_command(
 
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-spiral:19 (see flockana
-    lattice --help). A CSV and a builder bring no law: it is Algorithm 1 or 2 with its usual parameters, and --d and
-    --r. A γ-agent that moves is held where it is at that time. A law that a scenario or a run steps by semi-implicit
-    Euler has the equilibria that it has without. Under dead-zone flocking the strain is that of contacts, pairs closer
-    than d1.
+    lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
+    moving γ-agent is held where it is at that time. Steps of semi-implicit Euler leave equilibria as they are. Under
+    dead-zone flocking strain is measured on contacts, pairs closer than d1.
 
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """

@@ -17,14 +17,14 @@ def explore_command(
         str,
         typer.Argument(help="A scenario, a law, a saved run (.nc) or a counterexample (.json).", metavar="[NAME|FILE]"),
     ] = "paper-flocking",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0 for any that is free.")] = _PORT,
-    seconds: Annotated[float, typer.Option(help="How long a run may take; a longer one is refused.")] = 60.0,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 picks a free one.")] = _PORT,
+    seconds: Annotated[float, typer.Option(help="Longest computing time of a run; a longer one is refused.")] = 60.0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, open nothing.")] = False,
 ) -> int:
     """Open an interactive page for building, dragging and changing a flock.
 
-    Only this machine and this user reach it: it listens on the loopback address, and its address holds a token, kept in
-    ~/.flockana so that an open page finds the server again when it is started anew. Ctrl-C ends it. Needs
+    The page is reachable by this user on this machine only: the server listens on the loopback address, and the page's
+    address holds a token, kept in ~/.flockana so that an open page finds a restarted server. Ctrl-C ends it. Needs
     `pip install 'flockana[explore]'`.
     """
     import asyncio

@@ -13,23 +13,22 @@ from flockana.cli.status import OK
 
 
 def export_command(
-    to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="To whom: lammps.")],
+    to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="Target program.")],
     name: ScenarioName,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder to write to.")],
     seed: Seed = 0,
-    points: Annotated[int, typer.Option(min=2, help="Distances in the table of the pair force.")] = 20_000,
+    points: Annotated[int, typer.Option(min=2, help="Number of distances in the pair force's table.")] = 20_000,
     inner: Annotated[float | None, typer.Option(help="First distance of the table.")] = None,
     dt: Annotated[float | None, typer.Option(help="Longest step; by default a fiftieth of the law's time.")] = None,
-    samples: Annotated[int, typer.Option(min=1, help="Snapshots to write.")] = 200,
+    samples: Annotated[int, typer.Option(min=1, help="Number of snapshots.")] = 200,
     consensus: Annotated[
-        Literal["missing", "nearest"], typer.Option(help="Leave a consensus without a style out, or take the nearest.")
+        Literal["missing", "nearest"], typer.Option(help="A consensus without a pair style: omit, or use nearest.")
     ] = "missing",
     as_json: AsJson = False,
 ) -> int:
     """Write law, start and run of a scenario for LAMMPS: input script, data file, tabulated pair style, README.txt.
 
-    An export that the folder holds from before is replaced; where another's file has one of these names, nothing is
-    written.
+    An earlier export in the folder is replaced. If another file there has one of these names, nothing is written.
     """
     from flockana.lammps.export import export_lammps
     from flockana.scenarios import scenario

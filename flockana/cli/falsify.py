@@ -19,34 +19,33 @@ if TYPE_CHECKING:
 
 
 def falsify_command(
-    theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Such as os-3.")] = None,
-    on: Annotated[str | None, typer.Option(metavar="SCENARIO", help="Where the search begins.")] = None,
-    budget: Annotated[int, typer.Option(min=1, help="Runs to make at most.")] = 200,
-    seed: Annotated[int, typer.Option(min=0, help="Of the scenario and of the search.")] = 0,
+    theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Theorem, such as os-3.")] = None,
+    on: Annotated[str | None, typer.Option(metavar="SCENARIO", help="Scenario to start from.")] = None,
+    budget: Annotated[int, typer.Option(min=1, help="Largest number of runs.")] = 200,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the scenario and of the search.")] = 0,
     claim: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The claim to break; by default whichever comes nearest.")
+        str | None, typer.Option(metavar="NAME", help="Claim to break; by default the nearest to failing.")
     ] = None,
-    vary: Annotated[str, typer.Option(help="What of the state is varied: 'q', 'p', 'q,p' or 'none'.")] = "q,p",
-    region: Annotated[float | None, typer.Option(help="How far a position may be moved on each axis.")] = None,
+    vary: Annotated[str, typer.Option(help="Part of the start to vary: 'q', 'p', 'q,p' or 'none'.")] = "q,p",
+    region: Annotated[float | None, typer.Option(help="Largest change of a coordinate.")] = None,
     speed: Annotated[float | None, typer.Option(help="Largest component of a velocity.")] = None,
     parameters: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=LOW,HIGH", help="Bounds of a parameter, as gains.c1_gamma=0.1,10."),
     ] = None,
-    deepen: Annotated[bool, typer.Option("--deepen", help="Use up the budget after a claim is broken.")] = False,
+    deepen: Annotated[bool, typer.Option("--deepen", help="Search on after a claim is broken.")] = False,
     save_to: Annotated[Path | None, output("JSON file to write.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF of the search.")] = None,
-    replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check a counterexample, search none.")] = None,
+    replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check this counterexample instead.")] = None,
     as_json: AsJson = False,
 ) -> int:
     """Search initial states, and parameters if asked to, for a run that breaks a claim of a theorem.
 
-    THEOREM is one about runs; the search begins at the scenario's start, in a box about it. With -o, a counterexample
-    that is found is written as JSON; --replay simulates such a file again and checks it. That nothing is found proves
-    nothing.
+    THEOREM must be about runs. The search covers a box about the scenario's start. -o writes a counterexample as JSON;
+    --replay simulates such a file again and checks it. A search that finds nothing proves nothing.
 
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
-    known to be false, or a replay on which the claim holds; 130 interrupted, with the worst so far printed.
+    known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
     from flockana.base.errors import ArgumentError
     from flockana.cli.picture import KINDS, ensure_file, write_picture

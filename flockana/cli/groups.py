@@ -16,7 +16,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "Verify": {
         "verify": ("Run, check theorems, write a report.", "flockana verify hexagon"),
         "observe": ("Judge a recorded flock.", "flockana observe tracks.csv"),
-        "falsify": ("Search a run that breaks a claim.", "flockana falsify collision-energy --on head-on"),
+        "falsify": ("Search for a run that breaks a claim.", "flockana falsify collision-energy --on head-on"),
         "prove": ("Check the executable proofs.", "flockana prove cohesion"),
         "check": ("Check a certificate.", "flockana check basin.json"),
     },
@@ -26,7 +26,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "stability": ("Poles, modes, delay margins, norms.", "flockana stability hexagon --delay"),
         "ensemble": ("Shares over many seeds.", "flockana ensemble paper-flocking --seeds 20"),
     },
-    "Take away": {
+    "Save and export": {
         "run": ("Simulate and save as netCDF.", "flockana run hexagon -o hexagon.nc"),
         "export": ("Write a scenario for LAMMPS.", "flockana export lammps hexagon -o folder"),
         "course": ("Write the lectures as notebooks.", "flockana course lectures"),

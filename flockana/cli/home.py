@@ -1,4 +1,4 @@
-"""A home that cannot be written, as in a container with any user: matplotlib's files go elsewhere in silence."""
+"""Fallback folder for matplotlib's files where the home cannot be written, as in containers."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def lattice_command(
 
 
 def _tolerances(tol: float | None) -> Tolerances:
-    """Return the tolerances with that of an α-lattice; beyond that of a quasi-α-lattice Theorem 5 is not proved."""
+    """Return the tolerances with `tol` for an α-lattice; raise if it exceeds a quasi-α-lattice's."""
     from flockana.base.errors import ArgumentError
     from flockana.theorems import Tolerances
 
@@ -179,7 +179,7 @@ def _defects(q: Any, pairs: LinkArray) -> dict[str, Any]:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
-    """The facts in words."""
+    """Return the rows of the table: measured facts in words."""
     kappa, largest = facts["r"] / facts["d"], facts["largest ratio of the pattern"]
     scale = f"{facts['d']:g} and {facts['r']:g}, κ = {kappa:.5g}"
     if largest is not None:

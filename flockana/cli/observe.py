@@ -1,4 +1,4 @@
-"""`flockana observe`: measure a recorded flock, hold it against a law, fit gains, judge theorems, write a page."""
+"""`flockana observe`: measure a recorded flock, compare it with a law, fit gains, judge theorems, write a page."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
 def observe_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS.")],
     law: Annotated[
-        str | None, typer.Option("--law", metavar="NAME", help="A scenario whose law it may follow, or algorithm-1.")
+        str | None, typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, or algorithm-1.")
     ] = None,
     formula: Annotated[
         str | None,
-        typer.Option(metavar="ψ(s)", help="Instead: Algorithm 1 with this pair potential; needs --d and --r."),
+        typer.Option(metavar="ψ(s)", help="Pair potential of Algorithm 1, instead of --law; needs --d, --r."),
     ] = None,
     fit: Annotated[bool, typer.Option("--fit", help="Fit the law's gains.")] = False,
     bound: Annotated[float | None, typer.Option(help="Largest error of a recorded position.")] = None,
-    sd: Annotated[float | None, typer.Option(help="Instead: standard deviation of each coordinate.")] = None,
+    sd: Annotated[float | None, typer.Option(help="Standard deviation, instead of --bound.")] = None,
     d: Annotated[float | None, typer.Option("--d", help="Scale of nets and lattices; by default the law's.")] = None,
-    r: Annotated[float | None, typer.Option("--r", help="Range, likewise; by default 1.2 d.")] = None,
-    dt: Annotated[float | None, typer.Option(help="Time of a frame, where there are no times.")] = None,
-    clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, where times are dates.")] = None,
+    r: Annotated[float | None, typer.Option("--r", help="Range of nets; by default 1.2 d.")] = None,
+    dt: Annotated[float | None, typer.Option(help="Time between frames, if the file has no times.")] = None,
+    clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
     page: Annotated[Path | None, output("HTML page to write, with a player.")] = None,
     as_json: AsJson = False,
 ) -> int:
@@ -71,7 +71,7 @@ def observe_command(
 
 
 def _law(name: str | None, formula: str | None, d: float | None, r: float | None) -> Any:
-    """The law to hold it against; None if none is given."""
+    """Return the law to compare the recording with; None if none is given."""
     from flockana.interactions import pair_law
     from flockana.laws.olfati_saber import Algorithm1
     from flockana.recorded.recording import scaled_alpha
@@ -101,7 +101,7 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
 
 
 def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
-    """The recording with short gaps filled, and without agents that are then still missing, with what was done."""
+    """Return the recording with short gaps filled and incomplete agents removed, and a note on what was done."""
     import numpy as np
 
     if not rec.gaps:
@@ -122,7 +122,7 @@ def _complete(rec: Recording) -> tuple[Recording | None, list[str]]:
 
 
 def _results(rec: Recording | None, law: Any, fit: bool, d: float, r: float) -> dict[str, Any]:
-    """Comparison, fit and verdicts, as `recording_page` takes them."""
+    """Return comparison, fit and verdicts, as `recording_page` takes them."""
     from flockana.recorded.compare import compare
     from flockana.recorded.fit import fit as fitted
     from flockana.theorems import verify
@@ -155,7 +155,7 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
 
 
 def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]:
-    """Everything as plain data."""
+    """Return all results as plain data for JSON."""
     import numpy as np
 
     measures = {

@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal
 import typer
 
 # what to start from
-ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help="Its name in the catalogue.")]
+ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help="Scenario of the catalogue.")]
 SourceName = Annotated[str, typer.Argument(metavar="SOURCE", help="A scenario, a file, or a builder with its size.")]
 Start = Annotated[
     Literal["end", "start"] | None,
-    typer.Option(help="Of a scenario: begin at the end of its run (by default), or at its start.", show_default=False),
+    typer.Option(help="Use the end of a scenario's run (by default), or its start.", show_default=False),
 ]
 AnySeed = Annotated[
     int | None,
@@ -21,15 +21,15 @@ AnySeed = Annotated[
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]
 
-# the law, where none comes with the positions
+# the law, if the source has none
 Algorithm = Annotated[
     int | None,
-    typer.Option("--algorithm", "--law", min=1, max=2, help="Where no law comes with the positions; by default 1."),
+    typer.Option("--algorithm", "--law", min=1, max=2, help="Algorithm 1 (default) or 2, if the source has no law."),
 ]
-Scale = Annotated[float | None, typer.Option("--d", help="Scale, where no law comes with the positions.")]
-Range = Annotated[float | None, typer.Option("--r", help="Range, likewise; by default 1.2 d.")]
+Scale = Annotated[float | None, typer.Option("--d", help="Scale d, if the source has no law.")]
+Range = Annotated[float | None, typer.Option("--r", help="Range r, if the source has no law; by default 1.2 d.")]
 
-# who works, and what is printed and written
+# processes, and what is printed and written
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else.")]
 Drawing = Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF to draw to.")]

@@ -97,7 +97,7 @@ def integrated_law(law: Any) -> Any:
 
 
 def law_scales(law: Any) -> tuple[float, float]:
-    """Scale and range to measure a law's lattices with: (d, r), or 1.2 d where most pairs within r are held nowhere.
+    """Return (d, r) to measure a law's lattices with; r is 1.2 d where most pairs within r have no preferred length.
 
     The contacts of the dead-zone law sit at d₁ (erratum L8), its other pairs in a band.
 
@@ -192,7 +192,7 @@ def read_csv(path: Path) -> FloatArray:
 def _positions_by_header(
     path: Path, header: list[str], lines: list[tuple[int, list[str]]]
 ) -> list[tuple[int, list[str]]]:
-    """The rows with the columns that a header names as positions; all of them where it names none that is known."""
+    """Return the position columns that a header names; all columns where no name is known."""
     from flockana.recorded.reading.names import AGENTS, TIMES, coordinate, layout_of, plain
 
     names = [plain(cell) for cell in header]
@@ -200,7 +200,7 @@ def _positions_by_header(
         return lines
     layout = layout_of(header, str(path))
     if layout.time is not None or "q" not in layout.long:
-        raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; a recording is for observe")
+        raise FileError(f"{path} holds {', '.join(header)}: expected positions at one time; observe reads recordings")
     kept = [header.index(name) for name in layout.long["q"]]
     for k, row in lines:
         if len(row) != len(header):

@@ -33,10 +33,10 @@ def stability_command(
     r: Range = None,
     time: Time = None,
     as_given: Annotated[
-        bool, typer.Option("--as-given", help="Linearise here, equilibrium or not, as if the flock stood still.")
+        bool, typer.Option("--as-given", help="Linearise these positions at rest, equilibrium or not.")
     ] = False,
-    modes: Annotated[int, typer.Option(min=1, metavar="N", help="How many of the slowest modes.")] = 8,
-    delay: Annotated[bool, typer.Option("--delay", help="Delay margin: all terms, and those between agents.")] = False,
+    modes: Annotated[int, typer.Option(min=1, metavar="N", help="Number of slowest modes.")] = 8,
+    delay: Annotated[bool, typer.Option("--delay", help="Delay margins: of all terms, and of pair terms.")] = False,
     norms: Annotated[bool, typer.Option("--norms", help="H2 and Hinf norms from forces to the shape.")] = False,
     plot: Annotated[
         Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF: poles, slowest modes, Bode plot.")
@@ -47,8 +47,8 @@ def stability_command(
 
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-patch:2 (see flockana
-    lattice --help). A CSV and a builder bring no law: it is Algorithm 1 or 2 with its usual parameters, and --d and
-    --r. A γ-agent that moves is held where it is at that time.
+    lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
+    moving γ-agent is held where it is at that time.
 
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """

@@ -40,7 +40,7 @@ def verify_command(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Folder of the report, by default report; a folder NAME within where it has a report on all.",
+            help="Folder of the report; by default report, or report/NAME to keep one on the catalogue.",
             show_default=False,
         ),
     ] = None,
@@ -50,8 +50,8 @@ def verify_command(
         int | None,
         typer.Option(
             min=0,
-            help="From how many seeds to tell shares of runs; 0 for no shares. By default as many as scenarios ask "
-            "for, in a report on the whole catalogue only.",
+            help="Seeds for success rates; 0 = none. By default as many as scenarios ask for, in a report on the "
+            "whole catalogue only.",
             show_default=False,
         ),
     ] = None,
@@ -187,7 +187,7 @@ def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> 
     if seeds:
         raise ArgumentError(f"--seeds {seeds}: a saved run has one seed; leave out --seeds or --on")
     if seed is not None:
-        raise ArgumentError(f"--seed {seed}: a saved run was started already; leave out --seed or --on")
+        raise ArgumentError(f"--seed {seed}: a saved run has its start; leave out --seed or --on")
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
     if name == ERRATA:

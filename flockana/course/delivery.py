@@ -32,7 +32,7 @@ def deliver(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> list[
     ...     _ = first[0].write_text("with notes")
     ...     deliver(folder, {"map.md": b"as it is delivered"})
     Traceback (most recent call last):
-    flockana.base.errors.FileError: ...map.md is there and differs from what would be written: ...
+    flockana.base.errors.FileError: ...map.md exists with other content: ...
     """
     home = ensure_path(folder, action="write to", remedy=_REMEDY)
     paths = {home / name: content for name, content in files.items()}
@@ -57,7 +57,7 @@ def _is_there(path: Path, content: bytes) -> bool:
         raise FileError(f"cannot read {path}: {error.strerror or error}; {_REMEDY}") from error
     if not same:
         raise FileError(
-            f"{path} is there and differs from what would be written: nothing is written, so that no answers are lost; "
+            f"{path} exists with other content: nothing is written, so that no answers are lost; "
             f"{_REMEDY}, or move it away"
         )
     return True

@@ -1,4 +1,4 @@
-"""The solver's own steps between the samples of a run: what bounds at all times are made from.
+"""The solver's own steps between the samples of a run, from which bounds at all times are computed.
 
 Samples at times of one's own choice need not resolve the motion between them; the solver's steps do. So a run keeps
 those between its samples, in bounded memory: beyond it every other one is left out, and how far the path through the
@@ -22,7 +22,7 @@ _TOGETHER = 256  # steps that came one at a time are put into one array, each: s
 
 
 class Course(NamedTuple):
-    """Samples and the steps between them, in order of time; `slack` is what the path between may be off by, or None."""
+    """Samples and steps of a run in order of time; `slack` bounds the error of the path between them, or is None."""
 
     t: FloatArray
     q: FloatArray
@@ -78,10 +78,10 @@ class Between:
         if self.q.shape[1:] != q.shape[1:] or (self.slack is not None and self.slack.shape != intervals):
             raise ArgumentError(f"between.q has shape {self.q.shape}: expected steps of the flock of q {q.shape}")
         if len(self.t) and (self.t[0] <= t[0] or self.t[-1] >= t[-1] or np.isin(self.t, t).any()):
-            raise ArgumentError("between.t: expected times between those of the samples, none of them a sample's")
+            raise ArgumentError("between.t: expected times strictly between those of the samples")
 
     def within(self, t: FloatArray, kept: FloatArray) -> Between | None:
-        """The steps of a window; None if it is one sample."""
+        """Return the steps within a window of the run; None for a single sample."""
         if len(kept) == 1:
             return None
         start, end = kept[0], kept[-1]
@@ -92,7 +92,7 @@ class Between:
         return Between(self.t[inside], self.q[inside], self.p[inside], self.u[inside], slack)
 
     def in_units(self, length: float, time: float) -> Between:
-        """The same in other units (`flockana.rescale`)."""
+        """Return the steps in other units (`flockana.rescale`)."""
         slack = None if self.slack is None else self.slack * length
         return Between(self.t * time, self.q * length, self.p * (length / time), self.u * (length / time**2), slack)
 
@@ -110,7 +110,7 @@ def merged(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, between: 
 
 
 class Recorder:
-    """Takes in samples and the steps between them, and keeps at most so many numbers of the steps."""
+    """Recorder of samples and of the steps between them, which keeps a limited number of steps."""
 
     def __init__(self, most: int = MOST) -> None:
         self.most, self._held, self._thinned = most, 0, False
@@ -120,7 +120,7 @@ class Recorder:
         self._slack: dict[float, FloatArray] = {}  # by time: of the path from there to the next, where it is off
 
     def add(self, some: Sample | Samples) -> None:
-        """The next samples, or the next steps: before steps are added, the samples among all before them have been."""
+        """Add samples or steps; all samples before some steps must be added before these."""
         if some.wanted:
             self._samples.append(some)
             return
@@ -142,7 +142,7 @@ class Recorder:
             self._single = []
 
     def between(self) -> Between | None:
-        """What is between the samples; None if nothing is."""
+        """Return the steps between the samples; None if there are none."""
         self._put_together()
         if not (self._steps and self._samples):
             return None
@@ -160,7 +160,7 @@ class Recorder:
         return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
     def _keep_to_memory(self) -> None:
-        """Leave out every other step if there are too many; the others are copied, and all memory is let go.
+        """Drop every other step if there are too many, and free their memory.
 
         Where a step is left out, no sample may come between its neighbours any more.
         """
@@ -185,7 +185,7 @@ class Recorder:
 
 
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
-    """What the path from before to after may be off by, if it leaves out the step in the middle."""
+    """Return how far the path from before to after may be off if the step in the middle is left out."""
     knots = (before, middle, after)
     states = (np.ascontiguousarray(array) for knot in knots for array in (knot.q, knot.p, knot.u))
     farthest: FloatArray = detours(*(knot.t for knot in knots), *states, slack, later)

@@ -27,7 +27,7 @@ _SMALL = "Required step size is less than spacing between numbers."  # scipy's w
 
 
 class Engine(Stepper):
-    """A law and a method, compiled, on their way through a run.
+    """Compiled integrator: a law and a method, at the current time of a run.
 
     Agents are sorted by cell, so that a pair's are close in memory: `order` has every agent's own number.
     """
@@ -50,7 +50,7 @@ class Engine(Stepper):
         self._method = Method(*given)
 
     def advance(self, checks: StepChecks) -> int:
-        """Make steps that stand; `failure` says why the run ends with them, if it does."""
+        """Make accepted steps; `failure` says why the run ends, if it does."""
         if self._system.reach[0] > 0.0 and self.pairs.made >= self._sorted + _LISTS:
             self._sort()
         judged = checks.judged(self.order)
@@ -82,13 +82,13 @@ class Engine(Stepper):
         self._sorted = self.pairs.made
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(times, states, work) of the samples due within the steps; NaN where a step ended."""
+        """Return (times, states, work) of the samples due within the steps; work is NaN where a step ended."""
         states, work = self._samples
         return self.due[: len(work)], states, work
 
 
 def engine_of(law: Law, q0: FloatArray, p0: FloatArray, t0: float, plan: Plan) -> Engine | None:
-    """Return the law and the method, compiled; None where one has no such form, or pairs are too many."""
+    """Return the compiled integrator of a law and a method; None without a compiled form, or with too many pairs."""
     form = law.compiled(q0.shape[1]) if plan.method in METHODS else None
     if form is None or not np.isfinite(law.hamiltonian(t0, q0, p0)):
         return None

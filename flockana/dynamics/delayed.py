@@ -1,4 +1,4 @@
-"""Runs of a wrapped law without noise: its steps, none of which may leap over an encounter."""
+"""Integration of a wrapped law without noise, in steps that miss no encounter."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flockana.laws.stepped import Stepped
 def followed(
     law: Stepped, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
 ) -> Iterator[Samples]:
-    """Steps of a law that follows a path, as `discrete` gives them; the past that it hears is looked at, too."""
+    """Yield the steps of a wrapped law without noise; raise if a step, or the past, misses an encounter."""
     check, wanted = Encounters.of(law.law, len(q0)), wanted_steps(law, t_span, keep)
     before = State(q0, p0, np.zeros_like(q0))
     past = law.start(q0, p0)["past"]

@@ -1,4 +1,4 @@
-"""The driver of all runs of continuous laws: steps that stand up to all checks, and samples between them.
+"""Driver of all runs of continuous laws: steps that pass all checks, and samples between them.
 
 Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any law by one of scipy's solvers or RK4
 (`flockana.dynamics.solvers`). Beside the state, ∫ dH/dt is integrated as one more variable.
@@ -32,7 +32,7 @@ def integrated(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample | Samples]:
-    """Samples and steps of a run, each kept as soon as it is made; `keep` are the times of samples, None: every step.
+    """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step.
 
     A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
     with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets the
@@ -55,7 +55,7 @@ def integrated(
 def _driven(
     stepper: Stepper, law: Law, q0: FloatArray, p0: FloatArray, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample | Samples]:
-    """Steps to the last of the stops, and samples at the times that are due."""
+    """Yield steps up to the last stop, and samples at the times that are due."""
     frame, checks = stepper.frame, StepChecks(law, stepper.frame, stepper.plan)
     tally.notes["redone"], t0 = 0, frame.t0
     if keep is None or keep[0] == t0:  # not a rounding beside it, as in the frame
@@ -73,7 +73,7 @@ def _driven(
 
 
 def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:
-    """The steps that are no samples, then the samples; one by one they would cost as much as the steps of small flocks.
+    """Yield the steps that are not samples, then the samples, in blocks for speed.
 
     Steps come first: a run that is interrupted after them has no samples whose steps are not known.
     """
@@ -101,7 +101,7 @@ def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[
 
 
 def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
-    """Which times are among some others, which rise: `np.isin` would sort them again for each block of steps.
+    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block of steps.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""No encounter leapt over: how much of a step may be taken so that each meeting of two agents is met by an evaluation.
+"""Limits on a step so that an evaluation falls into every encounter of two agents: none is leapt over.
 
 Forces of finite range are exactly zero beyond it, so an integrator whose evaluations all lie beyond it sees nothing to
 resolve: it may step from before a collision to after it, with an estimated error, and an energy residual, of zero. A
@@ -43,7 +43,7 @@ _TOWARD = 0.5  # of the way to a pole that a step of fixed length may go: no err
 
 
 class State(NamedTuple):
-    """Where the agents are, how they move and what moves them, each of shape (n, m)."""
+    """Positions, velocities and accelerations of the flock, each of shape (n, m)."""
 
     q: FloatArray
     p: FloatArray
@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Encounters:
-    """What the agents of a law may run into."""
+    """Distances and obstacles that no step of a law may leap over."""
 
     radii: FloatArray  # (n, K): distances at which each agent begins or ceases to feel another, rising
     far: float  # how far two agents may go within them in one step
@@ -84,11 +84,11 @@ class Encounters:
 
     @property
     def any(self) -> bool:
-        """Whether there is anything to run into."""
+        """Whether the law has any encounter to check."""
         return self.radii.size > 0 or self.bodies is not None or self.poles.size > 0
 
     def share(self, h: float, before: State, after: State) -> float:
-        """How much of a step may be taken, 1 if it stands; negative if a pair crosses a pole.
+        """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole.
 
         Examples
         --------
@@ -108,12 +108,12 @@ class Encounters:
         return float(share_of_step(0.0, ends, self.around(np.arange(n), 1.0), rules, still, none, none)[0])
 
     def rules(self, energetic: bool, balance: tuple[float, float], *, fixed: bool) -> Rules:
-        """Return how steps are judged, as compiled code reads it."""
+        """Return the settings of the step checks for compiled code."""
         pairs = self.radii.size > 0 or self.poles.size > 0
         return Rules(self.bodies is not None, bool(pairs), energetic, balance, fixed, lister())
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
-        """Return what compiled code reads, of agents in an order of its own."""
+        """Return the encounters for compiled code, with agents permuted by `order`."""
         radii, few, place = self.radii[order], self.among is not None, np.argsort(order).astype(np.uint32)
         among = np.empty((0, 2), np.int32) if self.among is None else self.among
         edges = [*self.radii.ravel(), *(() if few else self.poles)] or [0.0]
@@ -125,7 +125,7 @@ class Encounters:
 
     @cached_property
     def _guard(self) -> tuple[Any, FloatArray, npt.NDArray[np.int64]]:
-        """The guard of the obstacles, the numbers that it reads, and where those of each kind begin."""
+        """Compiled check of the obstacles, the numbers that it reads, and the index at which each kind's begin."""
         kinds, unread = () if self.bodies is None else self.bodies.kinds, np.zeros(BETA_AREA + 1)
         numbers = [body_numbers(self.shell, 0.0, 0.0, unread, *kind[2:]) for kind in kinds]
         starts = np.cumsum([0, *(each.size for each in numbers)]).astype(np.int64)
@@ -133,7 +133,7 @@ class Encounters:
 
 
 class StepChecks:
-    """What the steps of a run must stand up to, whatever makes them (`flockana.kernels.checks`)."""
+    """Checks that every step of a run must pass (`flockana.kernels.checks`)."""
 
     def __init__(self, law: Law, frame: Frame, plan: Plan) -> None:
         self._encounters, self._view, fixed = Encounters.of(law, frame.shape[0]), frame.view, plan.dt > 0.0
@@ -147,11 +147,11 @@ class StepChecks:
 
     @property
     def energetic(self) -> bool:
-        """Whether energies of the steps are still looked at."""
+        """Whether the energy balance of the steps is still checked."""
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
     def judged(self, order: npt.NDArray[Any]) -> Judged:
-        """Return what steps are held against, of agents in an order of its own."""
+        """Return the data that steps are checked against, with agents permuted by `order`."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
             around = self._encounters.around(order, self._toward)
@@ -162,11 +162,11 @@ class StepChecks:
         return self._judged
 
     def look(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
-        """(length of the step if it is to be made again, 0 if it stands; whether it is lost at a pole)."""
+        """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
         shorter, singular, self.near = checked(block, 0, self.judged(order), self._view, kept, self.near)
         return shorter, singular
 
 
 def at_a_pole(t: float) -> str:
-    """Return why a run ended that no shorter step takes past a pole."""
+    """Return the message of a run that ends at a pole, which no shorter step passes."""
     return f"agents met at t = {t:g} where their potential is infinite or their force has no limit: no motion goes on"

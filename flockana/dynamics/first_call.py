@@ -1,4 +1,4 @@
-"""What a law gives is looked at once before it is integrated: an error then names the law and what it returned."""
+"""Check of a law's first results before integration, so that an error names the law and what it returned."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.laws.law import Law
 
 
 def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
-    """Raise unless the law gives what a law gives: real numbers in the flock's shape, finite where it starts."""
+    """Raise unless a law returns real numbers in the flock's shape, finite at the start."""
     name, at = type(law).__name__, f"at the start, t = {t0:g}"
     if isinstance(law, Law):
         _check_finite(law, *law.checked_flow(t0, q0, p0), t0, q0, p0, at)
@@ -28,7 +28,7 @@ def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: Floa
 
 
 def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray, p0: FloatArray, at: str) -> None:
-    """Raise unless accelerations are finite, and the rate is that of an energy if there is one."""
+    """Raise unless accelerations are finite, and so is the energy's rate if there is an energy."""
     name, energy = type(law).__name__, law.hamiltonian(t0, q0, p0)
     if not (known := np.isfinite(u).all(axis=1)).all():
         i = int(np.argmin(known))

@@ -1,4 +1,4 @@
-"""The vector that integrators step: the state relative to the mean motion of the start, and what a run asks of them."""
+"""State vector of integrators, relative to the mean motion of the start, and the plan of a run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EXACT = Control(0.0, Floors(0.0, 0.0, 0.0))
 
 
 class Plan(NamedTuple):
-    """What a run asks of an integrator."""
+    """Plan of a run for an integrator: method, times of stops and samples, tolerances, fixed step."""
 
     method: str
     stops: FloatArray  # rising times at which a step must end, the last of them the end of the run
@@ -59,7 +59,7 @@ class Frame:
 
     @property
     def view(self) -> tuple[float, FloatArray, FloatArray]:
-        """(t0, place at t0, velocity) of the frame, as compiled code reads it."""
+        """(t0, position at t0, velocity) of the frame, for compiled code."""
         m = self.shape[1]
         return float(self.t0), self.origin[:m].copy(), self.drift[:m].copy()
 

@@ -15,7 +15,7 @@ _NUMBERS = 6_000_000  # kept of the steps made at once, at most
 
 
 def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
-    """How many steps of dt it takes between two times; the times' own rounding makes none more or less.
+    """Return the number of steps of dt between two times, whatever the rounding of the times.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def discrete(
 
 
 def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray | None) -> IndexArray | None:
-    """Numbers of the steps nearest to times to keep, each once; None if all are kept."""
+    """Return indices of the steps nearest to the times to keep, each once; None to keep all."""
     return None if keep is None else _nearest(t_span[0], law.dt, count_steps(*t_span, law.dt, np.floor), keep)
 
 
@@ -85,7 +85,7 @@ def _stretch(
     own: IndexArray,
     steps: int,
 ) -> tuple[IndexArray, IndexArray, tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]]:
-    """(numbers of steps, which of them are its own, what `iterate` gives of all these).
+    """Return (indices of steps, positions of the wanted ones among them, states after them from `iterate` or `visit`).
 
     They are its own and the last where the law can leave out others; all where it cannot, or where the map has left the
     finite numbers: which step was the first?
@@ -99,7 +99,7 @@ def _stretch(
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
-    """Numbers of the steps that are nearest to a time to keep, each once; of two as near the earlier.
+    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a run measures: energies, metrics over time, and bounds at all times from its steps."""
+"""Quantities that a run gives: energies, metrics over time, and bounds at all times from its steps."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class MeasuredRun(ResultCache):
 
     @property
     def energy_residual(self) -> FloatArray:
-        """H − ∫ dH/dt less that of the first sample, (T,): what the integration got wrong, by the energy identity.
+        """H(t) − H(t0) − ∫ dH/dt at each sample, shape (T,): the integration's error, by the energy identity.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class MeasuredRun(ResultCache):
 
     @cached_property
     def floors(self) -> Floors:
-        """Least absolute error (place, speed, work) that any sample may carry: the tolerance of one step, or rounding.
+        """Least error (position, speed, work) to expect at any sample: the tolerance of one step, or rounding.
 
         An adaptive solver lets every step be wrong by this much whatever the state, so that positions, velocities and
         the energy balance mean nothing below it. It bounds no error from above: steps add up, and stiff forces at rest
@@ -119,7 +119,7 @@ class MeasuredRun(ResultCache):
         return tuple(dict.fromkeys((*any_flock, *self._own)))
 
     def measure(self, name: str) -> Measure:
-        """What a metric is in words, its unit, how it is drawn.
+        """Return a metric's description: its text, unit and style of drawing.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class MeasuredRun(ResultCache):
         raise UnknownNameError("metric", name, self._metric_names)
 
     def metric(self, name: str) -> FloatArray:
-        """One of `metrics` over time, shape (T,), at the cost of that one alone.
+        """Return one of `metrics` over time, shape (T,), without computing the others.
 
         Parameters
         ----------
@@ -165,7 +165,7 @@ class MeasuredRun(ResultCache):
         return self._measured[name].copy()
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but what is remembered: a copy can be written to, and some measures are functions that do not travel."""
+        """Return the state without cached results, some of which cannot be pickled."""
         return {name: value for name, value in self.__dict__.items() if name not in ("_memory", "_own")}
 
     @cached_property
@@ -201,7 +201,7 @@ class MeasuredRun(ResultCache):
         return isinstance(self.law, DiscreteLaw) or self.between is not None or len(self.t) - 1 >= steps
 
     def closest_approach(self) -> ClosestApproach:
-        """The closest two agents come, between samples too; intervals are those between samples."""
+        """Return the closest approach of two agents, between samples too, for each interval between samples."""
         return self._closest
 
     @cached_property
@@ -214,7 +214,7 @@ class MeasuredRun(ResultCache):
         return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
     def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
-        """Numbers of the path's intervals, shape (..., S), to one for each interval between samples.
+        """Reduce numbers of the path's intervals, shape (..., S), to one for each interval between samples.
 
         Parameters
         ----------
@@ -243,13 +243,13 @@ class MeasuredRun(ResultCache):
 
     @cached_property
     def cohesion_bounds(self) -> FloatArray:
-        """That of each interval between samples, shape (T − 1,)."""
+        """Upper bound of the cohesion radius over each interval between samples, shape (T − 1,)."""
         if not self.resolved:
             return np.full(len(self.t) - 1, np.inf)
         return self.over_intervals(np.maximum, cohesion_bound(*self.path))
 
     def clearance(self) -> Clearance:
-        """How close any agent comes to any obstacle of the law, between samples too; infinite without obstacles."""
+        """Return the least clearance of agents from obstacles, between samples too; infinite without obstacles."""
         return self._clearance
 
     @cached_property

@@ -19,7 +19,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
-    """Return what is a run, or raise `ArgumentError`.
+    """Return `trajectory` if it is a run; raise `ArgumentError` otherwise.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
 
 
 def is_flock(trajectory: Trajectory) -> BoolArray:
-    """At which samples the net G(q) is connected, shape (T,).
+    """Return a mask of the samples at which the net G(q) is connected, shape (T,).
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def is_flock(trajectory: Trajectory) -> BoolArray:
 
 
 def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
-    """At which samples a giant component holds more than `share` of the agents, shape (T,).
+    """Return a mask of the samples at which a giant component holds more than `share` of the agents, shape (T,).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What integrators yield: samples of a run as it goes, and a tally of what they did."""
+"""Samples that integrators yield, and the counts that they keep of a run."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Sample(NamedTuple):
     wanted: bool = True
 
     def each(self) -> Iterator[Sample]:
-        """Itself, as of several."""
+        """Yield the sample itself, as `Samples.each` yields each of several."""
         yield self
 
 
 class Samples(NamedTuple):
-    """Several instants of a run, in order: as a `Sample`, with a first axis of time; all of them wanted, or none."""
+    """Several instants of a run: a `Sample` with a first axis of time; either all are wanted or none."""
 
     t: npt.NDArray[np.floating]
     q: FloatArray
@@ -41,12 +41,12 @@ class Samples(NamedTuple):
 
     @classmethod
     def of(cls, steps: Sequence[Sample]) -> Samples:
-        """Steps between samples, in one array each."""
+        """Return steps between samples, stacked into one array for each quantity."""
         t, q, p, u = (np.array([getattr(step, name) for step in steps]) for name in ("t", "q", "p", "u"))
         return cls(t, q, p, u, {}, wanted=False)
 
     def each(self) -> Iterator[Sample]:
-        """One after the other."""
+        """Yield the samples one by one."""
         for k, t in enumerate(self.t.tolist()):
             extra = {name: values[k] for name, values in self.extra.items()}
             yield Sample(t, self.q[k], self.p[k], self.u[k], extra, self.wanted)
@@ -54,7 +54,7 @@ class Samples(NamedTuple):
 
 @dataclass
 class Tally:
-    """What a run did, filled in as it goes, so that an interrupted run can tell."""
+    """Status and counts of a run, updated as it goes so that they survive an interruption."""
 
     evaluations: int = 0  # of the law
     steps: int = 0
@@ -77,12 +77,12 @@ def start_sample(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: flo
 
 
 def copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Series of a map's memory that it may go on to change."""
+    """Return copies of a map's memory, which the map may overwrite."""
     return {name: np.array(value) for name, value in memory.items()}
 
 
 def finite(*values: Any) -> bool:
-    """Whether all numbers in all arrays are."""
+    """Whether all numbers in all arrays are finite."""
     return all(bool(np.isfinite(value).all()) for value in values)
 
 

@@ -76,7 +76,7 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
 
 
 def _ensure_unharmed(run: Any, attributes: Mapping[str, Any], source: Path) -> Any:
-    """The run with its seal, if it has one; raise unless every field is that which was saved."""
+    """Return the loaded run, sealed if it was; raise if a field differs from the one that was saved."""
     if "seal" not in attributes:
         raise FileError(
             f"{source} is damaged: it has no seal, which every file of a run is written with; run the simulation again"
@@ -156,7 +156,7 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
 
 
 def _read_between(data: xarray.Dataset) -> Between | None:
-    """The steps between the samples in what was read from a file."""
+    """Return the steps between the samples from a file's dataset; None if it has none."""
     if "between_t" not in data:
         return None
     return Between(**{name: np.array(data[f"between_{name}"]) for name in _BETWEEN if f"between_{name}" in data})

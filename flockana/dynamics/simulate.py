@@ -164,7 +164,7 @@ def simulate(
 
 
 def _stepped(law: Law, method: str, dt: Any) -> Stepped:
-    """Return a law that needs steps of its own (delay, clock or noise) as a map with these steps."""
+    """Return a law that needs steps of its own (delay, clock or noise) as a map with steps of dt."""
     if dt is None:
         raise ArgumentError(f"dt = None: {type(law).__name__} is run in fixed steps, expected one such as dt=0.01")
     order = 2 if any(one.noisy for one in wrappers_of(law)) else 4
@@ -176,7 +176,7 @@ def _stepped(law: Law, method: str, dt: Any) -> Stepped:
 def _stacked(
     kept: list[Sample | Samples],
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, dict[str, FloatArray]]:
-    """(t, q, p, u, extra) of a run; each sample is let go as soon as it is copied, so a run is not held twice."""
+    """Return (t, q, p, u, extra) of a run, stacked without holding its samples twice in memory."""
     one = next(kept[0].each())
     end = sum(np.size(samples.t) for samples in kept)
     shape, t = (end, *one.q.shape), np.empty(end)
@@ -200,14 +200,14 @@ def _ensure_step(name: str, dt: Any, t_span: tuple[float, float]) -> float:
 
 
 def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, keep: FloatArray | None) -> None:
-    """Raise before a run whose steps, all of them kept, would not fit into memory."""
+    """Raise if a run that keeps all its steps would not fit into memory."""
     if keep is None:
         samples = count_steps(*t_span, dt) + 1
         ensure_fits(f"a sample at each step of {dt:g}", (samples, 3, *q0.shape), "take longer steps, or give t_eval")
 
 
 def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> Iterator[float]:
-    """Times at which steps of at most dt end.
+    """Yield times at which steps of at most dt end.
 
     The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
     """
@@ -246,7 +246,7 @@ def _check_t_eval(t_eval: Any, t_span: tuple[float, float]) -> FloatArray | None
 
 
 def _copy(sample: Sample) -> Sample:
-    """For who watches: whatever becomes of it, the run stays as it is."""
+    """Return a copy of a sample for the user's `watch`, which may change it without harm to the run."""
     q, p, u = (np.array(series) for series in (sample.q, sample.p, sample.u))
     return sample._replace(q=q, p=p, u=u, extra=copied(sample.extra))
 
@@ -280,7 +280,7 @@ def _collect(
 
 
 def _one_by_one(samples: Iterator[Sample | Samples]) -> Iterator[Sample | Samples]:
-    """Each sample by itself, for who watches; steps as they come."""
+    """Yield samples one at a time for the user's `watch`, and steps as they come."""
     for found in samples:
         yield from found.each() if found.wanted else (found,)
 

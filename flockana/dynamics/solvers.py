@@ -68,7 +68,7 @@ class Solver(Stepper):
             self._write(0)
 
     def _counted(self, flow: Flow, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """A flow that counts its evaluations, and stops a solver that would not notice that it is no longer finite."""
+        """Return a flow that counts its evaluations, and stops a solver once values are not finite."""
         self.evaluations += 1
         u, rate = flow(t, q, p)
         if self.method == "LSODA" and not finite(u):  # LSODA would try to step over it for ever
@@ -76,7 +76,7 @@ class Solver(Stepper):
         return u, rate
 
     def _open(self, until: float, first: float | None) -> None:
-        """A new solver from the first row to some time, whose first step is as long as given if it can be."""
+        """Return a new solver from the first row towards a time, with the given first step if possible."""
         t, y = float(self.block.t[0]), self.block.y[0].copy()
         self._course: Callable[[float], FloatArray] | None = None
         if self.plan.dt:
@@ -93,14 +93,14 @@ class Solver(Stepper):
         self._solver = getattr(scipy.integrate, self.method)(self._rhs, t, y, until, **options)
 
     def _write(self, row: int) -> bool:
-        """Write where the solver is; most know the rate there. Return whether that is finite."""
+        """Write the solver's state and rate; return whether they are finite."""
         t, y, f = float(self._solver.t), self._solver.y, getattr(self._solver, "f", None)
         self.block.t[row], self.block.y[row] = t, y
         self.block.f[row] = self._rhs(t, y) if f is None else f
         return finite(self.block.y[row], self.block.f[row])
 
     def advance(self, checks: StepChecks) -> int:
-        """Make one step that stands, to the second row; 0 if the run ends, for the reason in `failure`."""
+        """Make one accepted step into the second row; return 0 if the run ends, with the reason in `failure`."""
         while self.step():
             if checks.energetic:
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
@@ -117,7 +117,7 @@ class Solver(Stepper):
         return 0
 
     def step(self) -> bool:
-        """Whether one step succeeds, to the second row; if not, `failure` says why."""
+        """Try one step into the second row; return whether it succeeds, with the reason in `failure` if not."""
         if self._solver.status == "finished":  # a stop, or a step that was made again ended here
             self._open(self.stops[0], getattr(self._solver, "h_abs", None))
         self._course = None
@@ -129,7 +129,7 @@ class Solver(Stepper):
         return not self.failure
 
     def _attempt(self) -> bool:
-        """Whether one step of the solver as it comes succeeds."""
+        """Try one step as the solver proposes it; return whether it succeeds."""
         try:
             why = self._solver.step()
             if self._solver.status != "failed" and self._write(1):
@@ -143,7 +143,7 @@ class Solver(Stepper):
         return False
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(times, states, work) of the samples due within the step."""
+        """Return (times, states, work) of the samples due within the step."""
         due = self.due[self.due < self.block.t[1]]
         states, work = np.empty((due.size, 3, *self.frame.shape)), np.full(due.size, np.nan)
         for k, t in enumerate(due.tolist()):

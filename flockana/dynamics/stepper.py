@@ -1,4 +1,4 @@
-"""What the driver of runs asks of an integrator, compiled with its law or not."""
+"""Interface between the driver of runs and integrators, compiled or not."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flockana.kernels.march import Block
 
 
 class Stepper(ABC):
-    """An integrator on its way through a run, which makes steps into a block, from its first row."""
+    """Integrator at the current time of a run; it writes steps into a block, after the block's first row."""
 
     frame: Frame
     plan: Plan
@@ -29,11 +29,11 @@ class Stepper(ABC):
 
     @abstractmethod
     def advance(self, checks: StepChecks) -> int:
-        """Make steps that stand; `failure` says why the run ends with them, if it does."""
+        """Make accepted steps; `failure` says why the run ends, if it does."""
 
     @abstractmethod
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(times, states, work) of the samples due within the steps; work is NaN where a step ended."""
+        """Return (times, states, work) of the samples due within the steps; work is NaN where a step ended."""
 
     def states(self, good: int) -> tuple[FloatArray, FloatArray]:
         """(states of shape (good, 3, n, m), work) at the ends of the steps."""

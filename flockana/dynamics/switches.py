@@ -1,4 +1,4 @@
-"""Laws with jumps from switch to switch: the first time, within a step, at which a pair leaves its smooth piece."""
+"""Laws with jumps: the first time within a step at which a pair leaves its smooth piece is located."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
 class Switches:
-    """A law with every pair held in its piece, until one leaves it.
+    """Flow with every pair held in its smooth piece until one leaves it.
 
     A pair held at a surface (a Filippov sliding mode) would switch ever more frequently: `cross` reports it.
     """
@@ -40,7 +40,7 @@ class Switches:
         return first_switch(self.law, self.pieces, way, start, end)
 
     def cross(self, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Hold the pairs in the pieces after a switch; returns in words what slides there, None if nothing does."""
+        """Move pairs to their pieces after a switch; return in words what slides there, None if nothing does."""
         before = self.pieces
         self.pieces, self.count = self.law.crossed(before, self.law.margins(before, q)), self.count + 1
         return self.law.sliding(before, self.pieces, t, q, p)
@@ -95,12 +95,12 @@ def switched(
 
 
 def _drop(due: deque[float], t: float) -> bool:
-    """Whether a sample was due at this time; it no longer is."""
+    """Remove a time from those due for a sample; return whether it was due."""
     return bool(due) and due[0] == t and due.popleft() == t
 
 
 def _beside(switch: Sample) -> Sample:
-    """The path goes on from a switch with the other side's input: a knot next to it, apart in any unit of time."""
+    """Return a second sample just after a switch, from which the path continues with the other side's input."""
     gap = 4.0 * float(np.spacing(abs(switch.t)))
     return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)
 
@@ -129,7 +129,7 @@ def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: 
 
 
 def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> list[float]:
-    """When, within a step, the distance of a pair that could leave its piece stops growing or shrinking, rising.
+    """Return the times within a step at which the distance of a pair that may switch has an extremum, rising.
 
     The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
     pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.

@@ -30,7 +30,7 @@ class Floors(NamedTuple):
 
 
 class Control(NamedTuple):
-    """How an adaptive solver chooses its steps: relative tolerance, absolute ones, and the longest step."""
+    """Step control of an adaptive solver: relative and absolute tolerances, and the longest step."""
 
     rtol: float
     floor: Floors
@@ -72,7 +72,7 @@ def options_in_units(options: Mapping[str, Any], length: float, time: float) -> 
 def error_floor(
     law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: Atol
 ) -> Floors:
-    """Absolute tolerances: a pair as it is, a length and the law's own speed, or a hundredth of `rtol`.
+    """Return absolute tolerances: those given, completed by the law's own speed, or by default a hundredth of `rtol`.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
@@ -98,7 +98,7 @@ def error_floor(
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> Floors:
-    """Roundings of the largest numbers in a run, and what the rounding of the time makes of its fastest motion."""
+    """Return rounding errors of the largest numbers of a run, and of the distances moved within the time's rounding."""
     late, far, fast, hard, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
     tick = float(np.spacing(late))
     place, speed, work = (float(np.spacing(x)) for x in (far, fast, much))

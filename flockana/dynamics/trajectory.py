@@ -125,7 +125,7 @@ class Trajectory(MeasuredRun):
             self.between.check_fits(self.t, self.q)
 
     def __repr__(self) -> str:
-        """One line: arrays of thousands of numbers tell nobody anything."""
+        """Return a one-line description without the arrays."""
         span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", type(self.law).__name__
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
 

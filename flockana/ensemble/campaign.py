@@ -178,7 +178,7 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
         if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
             raise ArgumentError(f"seed {seed!r}: expected a whole number >= 0, below 2^63")
     if not given:
-        raise ArgumentError("seeds: there are none; expected at least one, such as range(200)")
+        raise ArgumentError("seeds: empty; expected at least one, such as range(200)")
     whole = tuple(int(seed) for seed in given)
     if len(set(whole)) < len(whole):
         twice = next(seed for k, seed in enumerate(whole) if seed in whole[:k])

@@ -48,7 +48,7 @@ class TableTarget(Target):
     def __post_init__(self) -> None:
         t, q = ensure_series("t", self.t), ensure_points("q", self.q)
         if len(t) < 2 or len(q) != len(t):
-            raise ArgumentError(f"t has {len(t)} times and q {len(q)} positions: expected as many, two or more")
+            raise ArgumentError(f"t has {len(t)} times and q {len(q)} positions: expected equal numbers, two or more")
         if not (np.diff(t) > 0.0).all():
             k = int(np.argmax(~(np.diff(t) > 0.0)))
             raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times")

@@ -81,7 +81,7 @@ def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...]
 
 
 def _one_to_one(nearest: Any, y: FloatArray, tol: float) -> bool:
-    """Return whether each place receives as many agents as stand there."""
+    """Return whether a map of places sends as many agents to each place as it holds."""
     from scipy.spatial import KDTree
 
     if np.unique(nearest).size == len(nearest):

@@ -43,8 +43,10 @@ def ensure_flock_law(law: Any, m: int) -> SumOfTerms:
 
 @dataclass(frozen=True)
 class Potential:
-    """Σ U^T over the terms of a law at one time: V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2),
-    V_α + V_β + V_γ (Algorithm 3), c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
+    """Sum of the potentials of a law's terms at one time.
+
+    V (Algorithm 1, dead zone), U_λ in the moving frame (Algorithm 2), V_α + V_β + V_γ (Algorithm 3),
+    c1α V + ½ Σ c1γ_i ‖q_i − q_r‖² (Algorithm 2 with per-agent gains).
     """
 
     law: SumOfTerms  # the law, from `ensure_flock_law`

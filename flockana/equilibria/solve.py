@@ -249,7 +249,7 @@ def ensure_unedited_equilibrium(name: str, equilibrium: Equilibrium) -> None:
 
 
 def _fixed_in_space(potential: Potential) -> bool:
-    """Return whether the target acts through the potential, or not at all."""
+    """Return whether the target acts through the potential alone, or does not act at all."""
     pull = potential.law.term(Navigation)
     return potential.pinned or (pull is not None and pull.gains.c1_gamma == 0.0)
 

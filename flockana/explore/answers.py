@@ -150,7 +150,7 @@ def poles(run: Trajectory) -> dict[str, Any]:
 
 
 def _few(names: list[str]) -> list[str]:
-    """Names of zero modes, the soft ones, which have but numbers, counted."""
+    """Return the names of zero modes; soft modes, which have no names, are counted."""
     named = [name for name in names if not name.startswith("soft")]
     soft = len(names) - len(named)
     return [*named, f"{soft} soft ones"] if soft else named

@@ -48,7 +48,7 @@ class Problem:
     scales: Mapping[str, float] = field(default_factory=dict)  # units of the margins by claim, 1 where none is given
 
     def __call__(self, point: FloatArray) -> Evaluation:
-        """Evaluate a point; an error becomes the grade of a failed run."""
+        """Evaluate a point of the search space; an error becomes the grade of a failed run."""
         try:
             with restore_interrupts():
                 return self.judged(self.space.case(point))
@@ -74,7 +74,7 @@ class Problem:
         return confirmed(judge(run), judge, case)
 
     def graded(self, run: Trajectory, verdict: Verdict) -> Evaluation:
-        """Return the grade of a verdict."""
+        """Return the evaluation of a run: its verdict, its worst claim, and that claim's grade for the search."""
         if self.claim is not None and all(claim.name != self.claim for claim in verdict.claims):
             verdict = replace(verdict, claims=(*verdict.claims, vacuous(self.claim, "not judged")))
         chosen = [claim for claim in verdict.claims if self.claim in (None, claim.name)]

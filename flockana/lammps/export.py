@@ -202,7 +202,7 @@ def _ensure_own(paths: Iterable[Path]) -> None:
             raise FileError(f"cannot read {path}: {error.strerror or error}; choose another folder") from error
         if own is None:
             raise FileError(
-                f"{path} is there, and is no file of an export for LAMMPS: nothing is written, so that it is kept; "
+                f"{path} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; "
                 "choose another folder, or move it away"
             )
 

@@ -63,7 +63,7 @@ def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translat
 
 
 def _is_empty(term: object) -> bool:
-    """Return whether a term of obstacles has none."""
+    """Return whether a term is an obstacle term without obstacles."""
     own = getattr(term, "field", None)
     return own is not None and not own.obstacles
 

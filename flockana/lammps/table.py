@@ -1,4 +1,4 @@
-"""A pair term as LAMMPS reads it: energy and force at distances with evenly spaced squares, and what that is off by.
+"""Pair term as a LAMMPS table: energy and force at evenly spaced squared distances, and the table's error.
 
 `pair_style table linear` interpolates the energy and the force over the distance linearly in the squared distance.
 With as many points in the file as in the style, and the parameter RSQ, it takes the file's values as they are.
@@ -100,7 +100,7 @@ def adjacency(term: PairTerm, r: FloatArray) -> FloatArray:
 
 
 def _pull_and_adjacency(term: PairTerm, r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(φ ‖n_ij‖, a_ij): many pairs, each out of reach of the others, along the first axis and in motion across it."""
+    """Return (φ ‖n_ij‖, a_ij) at each distance, from many pairs that are out of each other's range."""
     n, reach = len(r), term.pair.range
     below = np.minimum(r, np.nextafter(reach, 0.0))  # at the range itself the limit from within
     q, p = np.zeros((2 * n, 2)), np.zeros((2 * n, 2))

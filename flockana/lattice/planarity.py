@@ -143,7 +143,7 @@ def _name(links: LinkArray) -> Kuratowski:
 
 
 def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]:
-    """Return the corners that paths from this one reach through agents of degree 2."""
+    """Return the corners that paths from a corner reach through agents of degree 2."""
     near: dict[int, list[int]] = {}
     for i, j in links.tolist():
         near.setdefault(i, []).append(j)

@@ -93,6 +93,6 @@ class Algorithm3(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """H = c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ²(√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖², every pair once (E2)."""
+        """Terms with the energy c1α V + c1β ΣΣ ψ_β + c1γ Σ ℓ²(√(1 + ‖q_i − q_r‖²/ℓ²) − 1) + ½ Σ‖p_i‖² (E2)."""
         own, unit = self.obstacle_field, self.alpha.bend_length
         return parts(self.alpha, self.gains, field=own, target=self.target, unit=unit)

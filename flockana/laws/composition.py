@@ -1,4 +1,4 @@
-"""A law from terms: whichever of gradient, consensus, γ-feedback, β-agents, drag and speed control one wants."""
+"""Laws composed of chosen terms: gradient, consensus, γ-feedback, β-agents, drag and speed control."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _NO_GAIN = Gains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Composition(GainedLaw):
-    """A law of which `compose` puts the terms together; what it lacks is None, empty or has the gain 0.
+    """Law that `compose` puts together; an absent term is None, empty or has the gain 0.
 
     u_i = c1α Σ_j φ n_ij + c2α Σ_j a_ij (p_j − p_i) + β-agents + γ-feedback + feedforward d²q_r/dt² + (α − β‖p_i‖²) p_i.
 
@@ -133,7 +133,7 @@ class Composition(GainedLaw):
 
     @property
     def scales(self) -> Scales | None:
-        """Of the pair law, or of the consensus net; the time is that of drag or thrust if nothing else has one."""
+        """Length and time scales of the pair law or consensus net; the time of drag or thrust if no gain gives one."""
         known = self.alpha or self.net
         if known is None or isinstance(known, Weight):
             return None
@@ -162,7 +162,7 @@ class Composition(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """H = c1α V + c1β ΣΣ ψ_β + the γ-agent's potential + kinetic energy, in the frame that `parts` tells."""
+        """Terms with the energy c1α V + c1β ΣΣ ψ_β + the γ-agent's and the kinetic energy, in the frame of `parts`."""
         return parts(
             self.alpha,
             self.gains,
@@ -176,7 +176,7 @@ class Composition(GainedLaw):
         )
 
     def structural_energy(self, q: Any, p: Any) -> float:
-        """The energy that never rises where no term adds any: seen from the centre of mass unless a place holds them.
+        """Return the energy that never rises unless a term adds some: in the moving frame if nothing fixes the place.
 
         Parameters
         ----------
@@ -316,7 +316,7 @@ def _ensure_parts(part: str, value: Any, **belonging: Any) -> None:
 
 
 def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: int | None) -> Any:
-    """The gain, or that of the informed agents and 0 of the others."""
+    """Return the gain agent by agent: `gain` for informed agents, 0 for the others."""
     gain = getattr(Gains(), name) if gain is None else gain
     if informed is None or not name.endswith("gamma"):
         return gain

@@ -55,12 +55,12 @@ class CuckerSmale(SumOfTerms):
 
     @property
     def moving(self) -> bool:
-        """Its energy is that in the frame of the centre of mass."""
+        """True: the law's energy is that in the frame of the centre of mass."""
         return True
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """H = ½ Σ‖p_i − p̄‖², falling by Σ_{i<j} a_ij ‖p_j − p_i‖²."""
+        """Terms with the energy ½ Σ‖p_i − p̄‖², which falls at the rate Σ_{i<j} a_ij ‖p_j − p_i‖²."""
         return (AlignmentTerm(self.weight, 1.0, self.mean),)
 
     def measures(  # noqa: D102

@@ -91,12 +91,12 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """H̄ = ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), the saturated energy (erratum L5), falls by k₂ pᵀL̂p."""
+        """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling by k₂ pᵀL̂p (see L5)."""
         return (PairTerm(self.interaction, 1.0, self.k2),)
 
     @property
     def moving(self) -> bool:
-        """Its energy is that in the frame of the centre of mass."""
+        """True: the law's energy is that in the frame of the centre of mass."""
         return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
@@ -222,7 +222,7 @@ def contact_scales(interaction: DeadZoneInteraction) -> Scales:
 
 
 def ensure_apart(q: FloatArray, force: str = "the dead-zone force") -> None:
-    """Raise if two agents coincide: their force, in words, has no direction."""
+    """Raise if two agents coincide, as their force has no direction; the message names the force."""
     from scipy.spatial import KDTree
 
     if len(q) > 1:

@@ -20,7 +20,7 @@ _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for roun
 
 @dataclass(frozen=True)
 class Delayed(Wrapper):
-    """Agents act on what is `delay` old; before the start the flock moved with its initial velocities, or as told.
+    """Law whose agents act on states that are `delay` old; before the start, `history` or uniform motion.
 
     Late is everything, an agent's own state and the γ-agent's included (``"all"``); or the terms between agents, their
     own state in them included (``"pairs"``); or what they hear of other agents, their own state being known at once
@@ -79,7 +79,7 @@ class Delayed(Wrapper):
             self._check_history()
 
     def _check_history(self) -> None:
-        """Raise unless the history is one, and goes back as far as the delay; keep it as tuples."""
+        """Raise unless the history is valid and covers the delay; store it as tuples."""
         t = ensure_series("history_t", self.history_t)
         try:
             q = real_array(self.history_q)
@@ -96,7 +96,7 @@ class Delayed(Wrapper):
         self._ensure_remembered(self.memory)
 
     def _ensure_remembered(self, longest: float) -> None:
-        """Raise if a delay, or the sum of delays around each other, is longer than the history that was given."""
+        """Raise if a delay, or the sum of nested delays, is longer than the given history."""
         if self.history_t is not None and longest > -self.history_t[0] * (1.0 + _ROUNDED):
             raise ArgumentError(
                 f"delay = {longest:g}: the history given goes back {-self.history_t[0]:g}, expected one as long as the "
@@ -128,14 +128,14 @@ class Delayed(Wrapper):
         super().check_dimension(m)
         if self.history_q is not None and np.shape(self.history_q)[2] != m:
             raise ArgumentError(
-                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected as many"
+                f"history_q has {np.shape(self.history_q)[2]} components, the agents {m}: expected the same"
             )
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)
         if self.history_q is not None and np.shape(self.history_q)[1] != n:
             raise ArgumentError(
-                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected as many"
+                f"history_q is of {np.shape(self.history_q)[1]} agents, the flock has {n}: expected equal numbers"
             )
         if np.ndim(self.delay) == 2 and np.shape(self.delay) != (n, n):
             raise ArgumentError(f"delay has shape {np.shape(self.delay)}: expected ({n}, {n}), a delay for each pair")

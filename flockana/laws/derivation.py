@@ -1,4 +1,4 @@
-"""A law's energy identity with its own pair law: what sympy derives of both, for every number of agents."""
+"""Derivation by sympy of a law's energy identity with its own pair law, for every number of agents."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are coun
 
 @dataclass(frozen=True)
 class DirectedNet(Around):
-    """A law of Olfati-Saber whose agents see what is within a range of their own, and in a cone ahead of them.
+    """Law of Olfati-Saber whose agents see others within ranges of their own, and in a cone ahead of them.
 
     u_i = Σ w_ij (c1α φ_α n_ij + c2α a_ij (p_j − p_i)) over the j that i sees, in which the bump ends at agent i's own
     range (a_ij ≠ a_ji then), and the other terms as they are. A range at most d makes an agent that repels and never

@@ -23,7 +23,7 @@ IndexArray = npt.NDArray[np.int64]
 
 
 class DiscreteLaw(LawOfMotion):
-    """A law that is a map from one step to the next, and not the time-discretisation of anything else.
+    """Law that is a map from one step to the next.
 
     A subclass is a frozen dataclass with a step `dt` and `step`. Its state may carry more than (q, p): `memory` maps
     names to arrays, is passed along, and is recorded over time in `Trajectory.extra`. A run holds the state at
@@ -50,7 +50,7 @@ class DiscreteLaw(LawOfMotion):
 
     @property
     def continuous(self) -> Law | None:
-        """The law that is stepped, where the map steps one: its parameter `law`."""
+        """Continuous law that the map steps, its parameter `law`; None if it steps none."""
         own = vars(self).get("law")
         return own if isinstance(own, Law) else None
 

@@ -98,7 +98,7 @@ class Disturbed(Wrapper):
                 object.__setattr__(self, name, _pushes(name, getattr(self, name), least))
         if (self.times is None) != (self.table is None) or len(self.times or ()) != len(self.table or ()):
             raise ArgumentError(
-                f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected as many"
+                f"times has {len(self.times or ())} numbers and table {len(self.table or ())} rows: expected the same"
             )
         if self.times is not None and (np.ndim(self.times) != 1 or (np.diff(self.times) <= 0.0).any()):
             raise ArgumentError(f"times = {format_value(self.times)}: expected rising times, one for each row of table")
@@ -113,7 +113,7 @@ class Disturbed(Wrapper):
         return self.intensity > 0.0
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
-        """Names and pushes at one time, shape (m,) or (n, m), of all that pushes."""
+        """Yield the name and value of each push at one time, of shape (m,) or (n, m)."""
         given = {
             "force": self._called(0.0),
             "swing": self.swing,
@@ -125,7 +125,7 @@ class Disturbed(Wrapper):
         super().check_dimension(m)
         for name, push in self._pushed():
             if np.shape(push)[-1] != m:
-                raise ArgumentError(f"{name} has {np.shape(push)[-1]} components, the agents {m}: expected as many")
+                raise ArgumentError(f"{name} has {np.shape(push)[-1]} components, the agents {m}: expected the same")
 
     def check_agents(self, n: int) -> None:  # noqa: D102
         super().check_agents(n)

@@ -37,7 +37,7 @@ def per_pair(name: str, value: Any) -> PerPair:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)
     if table.ndim != 2 or table.shape[0] != table.shape[1]:
-        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): how much i heeds j")
+        raise ArgumentError(f"{name} has shape {table.shape}: expected one number, or (n, n): the weight of j for i")
     return tuple(
         tuple(ensure_nonnegative(f"{name}[{i}][{j}]", one) for j, one in enumerate(row)) for i, row in enumerate(table)
     )

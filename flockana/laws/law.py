@@ -1,4 +1,4 @@
-"""What a law of motion is and has, and the continuous ones: a feedback u(t, q, p) for q' = p, p' = u."""
+"""Base classes of laws of motion; the continuous ones are feedbacks u(t, q, p) for q' = p, p' = u."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def block_diagonal(blocks: FloatArray) -> csr_array:
-    """One block for each agent down the diagonal of a sparse matrix.
+    """Return a sparse matrix with one block for each agent on its diagonal.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field"
 
 
 def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
-    """The first pair interaction of finite range, of a law that is stepped too."""
+    """Return the first pair interaction among parameters, or in laws among them; None if its range is infinite."""
     for value in parameters:
         pair = value.pair if isinstance(value, LawOfMotion) else value
         if isinstance(pair, PairInteraction):
@@ -55,7 +55,7 @@ def _pair_among(parameters: Iterable[Any]) -> PairInteraction | None:
 
 
 class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract method of its own
-    """What continuous laws and maps have in common, and what the rest of the library may ask any of them for.
+    """Common interface of continuous laws and maps.
 
     A law has what its parameters are named for; what it lacks is None or empty, so that nobody need ask for its class.
 
@@ -94,12 +94,12 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     @property
     def continuous(self) -> Law | None:
-        """The law itself if it is continuous, of a map the law that it steps, if it steps one."""
+        """The continuous law: the law itself, or the one that a map steps; None if there is none."""
         return None
 
     @property
     def terms(self) -> tuple[Term, ...]:
-        """The summands of a law that is a sum of terms; none of another."""
+        """Terms of a law that is a sum of terms; empty for other laws."""
         return ()
 
     def term(self, kind: type[_Term]) -> _Term | None:
@@ -114,12 +114,12 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     @property
     def conservative(self) -> bool:
-        """Whether it is known that the force at rest is minus the gradient of the energy: of sums of such terms."""
+        """Whether the force at rest is known to be minus the gradient of the energy."""
         return False
 
     @property
     def splits(self) -> bool:
-        """Whether shape and centre of mass are known to move apart: forces cancel, but for one linear pull on all."""
+        """Whether shape and centre of mass are known to decouple: forces cancel, but for one linear pull on all."""
         return False
 
     @property
@@ -148,7 +148,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     @property
     def poles(self) -> tuple[float, ...]:
-        """Distances between agents at which their potential is infinite or their force has no limit: none is crossed.
+        """Distances between agents at which the potential is infinite or the force has no limit; none is crossed.
 
         Those of the law's pair interaction, if it has one. A run that meets one ends as failed.
         """
@@ -156,7 +156,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
     @property
     def pole_pairs(self) -> tuple[tuple[int, int], ...] | None:
-        """The pairs that poles concern; None: all."""
+        """Pairs to which the poles apply; None for all pairs."""
         return None
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:
@@ -176,7 +176,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     def measures(
         self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
     ) -> Mapping[str, Any]:
-        """What is worth measuring of a run of this law, beside what is of any flock: `Trajectory.metrics` shows it.
+        """Return the measures of a run that only this law has; `Trajectory.metrics` shows them.
 
         Parameters
         ----------

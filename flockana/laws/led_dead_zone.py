@@ -120,13 +120,13 @@ class LedDeadZoneFlocking(SumOfTerms):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Pairs without consensus, and what ties agents to their leaders."""
+        """Terms: the pair forces without consensus, and the coupling to leaders."""
         ties = (self.leaders, self.group, self.pinned, self.c1, self.c2, self.feedforward)
         return PairTerm(self.interaction, 1.0, 0.0), Leaders(self.interaction, self.k2, *ties)
 
     @property
     def ties(self) -> Leaders:
-        """The second of the terms."""
+        """Term that couples agents to their leaders."""
         ties = self.term(Leaders)
         assert ties is not None
         return ties

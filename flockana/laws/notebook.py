@@ -80,7 +80,7 @@ class PushTerm(Term):
 
 
 class _Push:
-    """The two parameters' checks and the further term, shared by the two laws."""
+    """Mixin of the two pushed laws: checks of the two parameters, and the push term."""
 
     alpha: AlphaInteraction
     gains: Gains

@@ -42,7 +42,7 @@ def ensure_gains(law: Any) -> None:
 
 
 def ensure_one_gain(gains: Gains) -> None:
-    """Raise on what is no Gains, and on per-agent gains, for what needs the split into a shape and a centre of mass."""
+    """Raise unless `gains` are Gains with one c1γ and c2γ for all agents, under which shape and centre decouple."""
     ensure_part("gains", gains, Gains, GAINS)
     if gains.per_agent:
         raise ArgumentError(
@@ -52,14 +52,14 @@ def ensure_one_gain(gains: Gains) -> None:
 
 
 def paper_pair(law: Any) -> AlphaInteraction:
-    """The pair law of a law, which must be the paper's: what is proved of φ_α holds of no other."""
+    """Return a law's pair law; raise unless it is the paper's, the only one for which φ_α's properties are proved."""
     if not isinstance(law.alpha, AlphaInteraction):
-        raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), of which this is known")
+        raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), as proofs need it")
     return law.alpha
 
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
-    """d, and the time in which the law's leading term moves an agent by d: of c1α, or else of c1γ, c2α or c2γ.
+    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class Algorithm1(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Pairs alone: H(q, p) = c1α V(q) + ½ Σ‖p_i‖² in the given frame (with the ½ that the slides omit: E1)."""
+        """Pair term, with the energy c1α V(q) + ½ Σ‖p_i‖² in the given frame (with the ½ that the slides omit: E1)."""
         return parts(self.alpha, self.gains)
 
     def structural_energy(self, q: Any, p: Any) -> float:
@@ -158,7 +158,7 @@ class Algorithm2(GainedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Pairs and a linear pull: H_λ(x, v) = c1α V(x) + c1γ J(x) + K(v) in the moving frame, for every target.
+        """Pair term and linear pull, with the energy c1α V(x) + c1γ J(x) + K(v) in the moving frame for every target.
 
         With per-agent gains the flock's shape does not separate from its centre, and no frame but the given one will
         do for every target: H(t, q, p) = c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r‖² + ½ Σ‖p_i‖², as under Algorithm 3.
@@ -166,7 +166,7 @@ class Algorithm2(GainedLaw):
         return parts(self.alpha, self.gains, target=self.target)
 
     def structural_energy(self, q: Any, p: Any) -> float:
-        """H_λ(x, v): the same as `energy`, which lives in the moving frame already.
+        """Return H_λ(x, v), which equals `energy`, as that is in the moving frame already.
 
         Parameters
         ----------

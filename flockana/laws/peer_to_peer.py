@@ -60,7 +60,7 @@ class PeerToPeer(SumOfTerms):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """H(t, q, p) = c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r^i‖² + ½ Σ‖p_i‖², in the given frame."""
+        """Terms with the energy c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r^i‖² + ½ Σ‖p_i‖² in the given frame."""
         return (
             PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha),
             CopiesTerm(self.copies, self.gains),

@@ -88,7 +88,7 @@ class Stepped(Scheme):
 
     @property
     def noisy(self) -> bool:
-        """Whether chance has a part in it."""
+        """Whether the law draws random numbers."""
         return any(one.noisy for one in self._wrappers)
 
     @cached_property
@@ -167,7 +167,7 @@ class Stepped(Scheme):
     def _marched(
         self, t: float, q: FloatArray, p: FloatArray, first: int, wanted: IndexArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
-        """What `visit` gives, from one compiled call; None of a law that is not compiled, or has more than pushes."""
+        """Return the result of `visit` from one compiled call; None if the law is not compiled or has more wrappers."""
         law, (n, m), steps = self.law, q.shape, int(wanted[-1])
         pushing = [one for one in self._wrappers if isinstance(one, Disturbed)]
         if not isinstance(law, Disturbed) or len(pushing) < len(self._wrappers):
@@ -188,7 +188,7 @@ class Stepped(Scheme):
         return input_of(self.law, now, View(t, q, p))
 
     def _departs(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
-        """Input at the beginning of the step, which the past then holds."""
+        """Return the input at the step's beginning, and store it in the past."""
         u = self._ask(now, t, q, p)
         now.begins = False
         if self.past_steps:

@@ -63,7 +63,7 @@ class SumOfTerms(Law):
         return u, rate
 
     def compiled(self, m: int) -> Compiled | None:
-        """The terms for integrators that are compiled too; None if one has no such form."""
+        """Return the law's terms in compiled form; None if a term has none."""
         if not overrides_consistently(type(self), "compiled", ("flow", "hamiltonian", "potential_energy")):
             return None
         kernels: list[TermKernel] = []
@@ -120,7 +120,7 @@ class SumOfTerms(Law):
 
 
 def _assembled(parts: Any) -> Any:
-    """The sum of sparse matrices and of blocks that agents feel of themselves alone."""
+    """Return the sum of sparse matrices and of diagonal blocks of single agents."""
     matrices, blocks = ([x for x in parts if isinstance(x, np.ndarray) == own] for own in (False, True))
     if blocks:
         matrices.append(block_diagonal(sum(blocks[1:], blocks[0])))

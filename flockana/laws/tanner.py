@@ -256,7 +256,7 @@ def _edges(given: Any) -> tuple[tuple[int, int], ...]:
 
 
 def _held(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Return the pairs that are held within R."""
+    """Return the index pairs (i, j) assigned to the piece within R."""
     i, j = np.triu_indices(n, 1)
     near = pieces == _NEAR
     return i[near], j[near]

@@ -93,7 +93,7 @@ class HeadingAveraging(DiscreteLaw):
         normalise(self, ensure_nonnegative, "noise")
         ensure_choice("average", self.average, AVERAGES)
         if self.noise > _TURN:
-            raise ArgumentError(f"noise = {self.noise:g}: expected radians, at most 2π, a heading that forgets itself")
+            raise ArgumentError(f"noise = {self.noise:g}: expected at most 2π radians, at which headings are uniform")
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed < _MOST:
             raise ArgumentError(f"seed = {self.seed!r}: expected a whole number, 0 <= seed < 2**63")
 
@@ -233,5 +233,5 @@ def _mean_vectors(heading: FloatArray, pairs: LinkArray) -> FloatArray:
 
 
 def _sizes(pairs: LinkArray, n: int) -> FloatArray:
-    """How many agents each averages over, itself included."""
+    """Return the number of agents that each agent averages over, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0

@@ -1,4 +1,4 @@
-"""Laws that wrap a law: what they have in common, and what a step tells them."""
+"""Base classes of laws that wrap a law, and the data of a step that they read."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _CHANNELS = 8  # kinds of random numbers
 
 
 class View(NamedTuple):
-    """What agents know when they compute their inputs.
+    """States that agents know when they compute their inputs.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class View(NamedTuple):
 
 
 class Step:
-    """The step that a wrapped law is asked in: its number and length, the past, random numbers, inputs held.
+    """Step in which a wrapped law is evaluated: number, length, past, random numbers, held inputs.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class Around(Law):
 
 
 class Wrapper(Around):
-    """A law with one imperfection of the loop around it; wraps any law, another wrapper too.
+    """Law with one imperfection of the control loop added; it wraps any law, another wrapper too.
 
     A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says
     whether it can be integrated by fixed steps only, because it has a past, a clock or chance.
@@ -172,7 +172,7 @@ class Wrapper(Around):
 
     @abstractmethod
     def input(self, step: Step, view: View) -> FloatArray:
-        """Accelerations that the agents come to from what they know, shape (n, m), unchecked.
+        """Return accelerations from the states that agents know, shape (n, m), unchecked.
 
         Parameters
         ----------
@@ -196,7 +196,7 @@ class Wrapper(Around):
 
     @property
     def noisy(self) -> bool:
-        """Whether it has random numbers, anew at each step."""
+        """Whether the law draws random numbers at each step."""
         return hasattr(self, "seed") and self.stepped
 
     @property
@@ -206,7 +206,7 @@ class Wrapper(Around):
 
     @property
     def memory(self) -> float:
-        """Longest time that it looks back."""
+        """Longest time that the law looks back."""
         return 0.0
 
     @property
@@ -222,7 +222,7 @@ class Wrapper(Around):
 
     @property
     def wrappers(self) -> Iterator[Wrapper]:
-        """Itself and the wrappers within, the outermost first."""
+        """This wrapper and the wrappers within, the outermost first."""
         yield self
         if isinstance(self.law, Wrapper):
             yield from self.law.wrappers
@@ -293,7 +293,7 @@ def input_of(law: Law, step: Step, view: View) -> FloatArray:
 
 
 def _heard_input(law: Law, view: View) -> FloatArray:
-    """Input of a sum of terms whose terms between agents go by what each agent hears."""
+    """Return the input of a sum of terms whose pair terms use what each agent hears of the others."""
     u, n = np.zeros_like(view.q), len(view.q)
     heard = (view.q[None], view.p[None]) if view.heard is None else view.heard
     for term in law.terms:
@@ -317,7 +317,7 @@ def _heard_input(law: Law, view: View) -> FloatArray:
 
 
 def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """The listeners' own state in the terms between agents."""
+    """Return each listener's own position and velocity, as its pair terms use them."""
     if not view.both:
         return view.q, view.p
     n = len(view.q)
@@ -333,7 +333,7 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
 
 
 def ensure_hears(law: Law) -> None:
-    """Raise unless what agents hear of each other can be told from what they know of themselves.
+    """Raise unless the law's pair terms are known, so that heard states can enter them alone.
 
     Examples
     --------
@@ -343,6 +343,6 @@ def ensure_hears(law: Law) -> None:
     core = law.core if isinstance(law, Wrapper) else law
     if not any(isinstance(term, PairTerm) for term in core.terms):
         raise ArgumentError(
-            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which what is heard "
-            'of others is known apart from an agent\'s own state; delayed="all" takes any law'
+            f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which the states "
+            'of others are apart from an agent\'s own; delayed="all" takes any law'
         )

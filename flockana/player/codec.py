@@ -72,7 +72,7 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
 
 
 def _whole(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
-    """Return an array as 32-bit integers, with the offset subtracted first."""
+    """Return an array as 32-bit integers, and the origin that was subtracted."""
     with np.errstate(over="ignore"):
         single = values.astype("<f4")
     if not np.isfinite(single).all():

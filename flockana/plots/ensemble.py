@@ -101,7 +101,7 @@ def share_against(
 
 
 def _alike(table: xarray.Dataset, claims: Sequence[str], of: str) -> dict[str, str]:
-    """Return the first of the claims that share a curve, with the names of all: drawn apart they would hide another."""
+    """Return the first claim of each group with identical curves, with the names of all in the group."""
     groups: dict[bytes, list[str]] = {}
     for claim in claims:
         part = table.sel(claim=claim, of=of)

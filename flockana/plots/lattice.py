@@ -172,8 +172,7 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
 def barrier(
     together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
 ) -> Axes:
-    """Draw, against n and in units of c*: the least energy with two agents at one place, the least of all, and the
-    barrier, which is their difference.
+    """Draw the least energies with and without two coincident agents, and their difference, against n in units of c*.
 
     Where the least energy of all is above 1, no state meets the printed condition V < c*.
 

@@ -183,8 +183,9 @@ def configuration(
     bar: bool = True,
     title: str = "",
 ) -> Axes:
-    """Draw agents, and what else is given: velocities as arrows, links within r coloured by (length − d)/d, a γ-agent,
-    obstacles, and the β-agents on them that are within r' of their agent, each joined to it by a dotted line.
+    """Draw agents with their velocities, links, γ-agent and obstacles, as far as these are given.
+
+    Links within r are coloured by (length − d)/d; β-agents within r' are joined to their agents by dotted lines.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How far recorded numbers may be off: a bound, or a band that holds of all samples at once."""
+"""Accuracy of recorded numbers: a bound, or a band that holds for all samples at once."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Accuracy:
 
     @property
     def decides(self) -> bool:
-        """Whether a verdict may rest on it: it was stated, not estimated."""
+        """Whether a verdict may rest on the accuracy: it was stated, not estimated."""
         return self.kind in ("bound", "sd")
 
     def __str__(self) -> str:
@@ -45,7 +45,7 @@ class Accuracy:
 
 
 def band(samples: int, m: int) -> float:
-    """Return the radius, in standard deviations of a coordinate, that holds of all samples at once with 0.99."""
+    """Return the radius, in standard deviations, of a band that holds for all samples at once with probability 0.99."""
     from scipy.stats import chi2
 
     return float(sqrt(chi2.isf((1.0 - CONFIDENCE) / samples, m)))

@@ -1,4 +1,4 @@
-"""A recorded flock held against a law: what the law explains, what each part contributes, and what is found."""
+"""Comparison of a recorded flock with a law: what the law explains, contributions of its parts, findings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROUGH = 0.1  # of the recorded accelerations: noise beyond which shares and gai
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """A recording held against a law.
+    """Comparison of a recording with a law.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Comparison:
 
     @property
     def caution(self) -> str:
-        """What noise does to this comparison, in words; empty if the accelerations are known well enough."""
+        """Effect of noise on the comparison, in words; empty if the accelerations are known well enough."""
         usual = float(np.nanmedian(lengths(self.recorded)))  # the ends of splines can be far off
         if self.noise <= _ROUGH * usual:
             return ""
@@ -88,7 +88,7 @@ class Comparison:
 
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:
-        """Places where the law is off most: time, agent, size."""
+        """Largest residuals: time, agent, size."""
         size = np.nan_to_num(lengths(self.residual))
         order = np.argsort(-size, axis=None)[:_WORST]
         at = [np.unravel_index(k, size.shape) for k in order]

@@ -21,7 +21,7 @@ _EXACT = 1e-12  # share of the squares below which nothing more is sought
 
 
 class Share(NamedTuple):
-    """What a part of the law contributes: its gain in the law and in the recording, and its share of the motion."""
+    """Contribution of a part of the law: its gain in the law and in the recording, and its share of the motion."""
 
     symbol: str
     text: str
@@ -32,7 +32,7 @@ class Share(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """Gains by least squares, their standard errors, and the squares that are left."""
+    """Gains by least squares, their standard errors, and the residual sum of squares."""
 
     gains: FloatArray
     errors: FloatArray
@@ -40,7 +40,7 @@ class Solution(NamedTuple):
 
 
 class Explained(NamedTuple):
-    """A law held against accelerations: residual, squares left by it and by what was found, shares, findings."""
+    """Accelerations explained by a law: residual, squares that the law and its corrections leave, shares, findings."""
 
     residual: FloatArray
     left: float
@@ -89,7 +89,7 @@ class Regression:
 
 
 def explained(data: Accelerations, law: Any) -> Explained:
-    """Return what a law explains of some accelerations, and what differs, forms first."""
+    """Return what a law explains of accelerations and what differs: other forms first, then gains."""
     work, parts = Regression(data, law), contributions(law)
     columns = [data.of(part.acts) for part in parts]
     residual = work.target - sum(part.stated * column for part, column in zip(parts, columns, strict=True))
@@ -113,7 +113,7 @@ def explained(data: Accelerations, law: Any) -> Explained:
 def _with_better_forms(
     work: Regression, law: Any, names: list[str], columns: list[FloatArray]
 ) -> tuple[list[FloatArray], list[str]]:
-    """The parts with those forms in place that explain far more than the law's own, and what these are."""
+    """Return the columns of a law's parts, replaced where another form explains far more, and texts on these forms."""
     current, texts = list(columns), list[str]()
     open_ = [(variant, work.data.of(variant.acts)) for variant in variants(law) if variant.gain in names]
     left = work.solve(current).left

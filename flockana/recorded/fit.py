@@ -1,4 +1,4 @@
-"""Parameters of a law fitted to a recording, with standard errors and what the data cannot tell."""
+"""Parameters of a law fitted to a recording, with standard errors and what the data cannot determine."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Fit:
 
 
 def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: float | None = None) -> Fit:
-    """Return a law with those parameters that lead from sample to sample best.
+    """Return the law with the parameters that best predict each sample from the one before.
 
     Where noise is stated (`sd`), or has to be estimated as only positions are known, solutions of the law are matched
     to windows of samples, each from a start of its own; standard errors count the starts, too. Where samples have
@@ -119,7 +119,7 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
 
 
 def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
-    """Solutions matched to windows of noisy positions."""
+    """Return the fit of solutions to windows of noisy positions."""
     if len(rec.t) < 4:
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
     duration = usual_window(rec, parameters.law) if window is None else ensure_positive("window", window)
@@ -133,7 +133,7 @@ def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
 
 
 def _stepped(rec: Recording, parameters: Free) -> Fit:
-    """The law integrated from each sample to the next; errors by how residuals of the agents differ."""
+    """Return the fit of each sample predicted from the one before; standard errors from the spread over agents."""
     from scipy.optimize import least_squares
 
     rec.ensure_complete("a fit from sample to sample")

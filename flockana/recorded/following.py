@@ -24,7 +24,7 @@ _ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two sampl
 
 @dataclass(frozen=True, eq=False)
 class Following:
-    """Whether samples follow a law; the start and the velocities to judge the law's solution with.
+    """Result of checking whether samples follow a law, with start and velocities for the law's solution.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ def following(rec: Recording, law: Any) -> Following:
 
 
 def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
-    """Each sample against where the law leads from the one before, and from one law time before."""
+    """Compare each sample with the law's prediction from the one before, and from one law time before."""
     assert rec.p is not None
     shape = rec.q.shape[:2]
     place, speed = (
@@ -95,7 +95,7 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
 
 
 def _strides(rec: Recording, law: Any) -> list[Any]:
-    """All samples, and if they lie closer than one law time every so many."""
+    """Return slices of the samples: all of them, and if they are dense, samples one law time apart."""
     strides = [slice(None)]
     scales = law.scales
     if scales is not None and (wide := int(scales.time / rec.interval)) > 1 and len(rec.t) > wide:
@@ -106,7 +106,7 @@ def _strides(rec: Recording, law: Any) -> list[Any]:
 def _differences(
     law: Any, t: FloatArray, q: FloatArray, p: FloatArray, place: FloatArray, speed: FloatArray
 ) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
-    """Distances of samples from where the law leads, and those that accuracy, integration and rounding allow."""
+    """Return distances of samples from the law's predictions, and the distances that all errors allow."""
     near, fine = predicted(law, t, q, p), predicted(law, t, q, p, refine=2)
     ends = tuple(b + (b - a) / 15.0 for a, b in zip(near, fine, strict=True))  # Richardson's, of a scheme of order 4
     off = lengths(q[1:] - ends[0]), lengths(p[1:] - ends[1])
@@ -129,7 +129,7 @@ def _differences(
 
 
 def _over_windows(rec: Recording, law: Any) -> Following:
-    """Solutions matched to windows of noisy positions: their residuals against the stated noise."""
+    """Compare the residuals of solutions, matched to windows of noisy positions, with the stated noise."""
     from scipy.stats import chi2, norm
 
     if isinstance(law, DiscreteLaw):

@@ -47,7 +47,7 @@ def measured(rec: Recording, d: float, r: float) -> xarray.Dataset:
 
 
 def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
-    """Sets of agents with the samples at which exactly these were seen; not the empty one."""
+    """Yield sets of agents, each with the samples at which exactly these were seen; never the empty set."""
     sets, which = np.unique(seen, axis=0, return_inverse=True)
     found = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
     return [(agents, samples) for agents, samples in found if agents.size]
@@ -64,7 +64,7 @@ def _fill(
     *,
     velocities: bool,
 ) -> None:
-    """Measures of velocities, or of positions, of some agents at some samples, with errors."""
+    """Write measures of some agents at some samples, with errors."""
     at = np.ix_(samples, agents)
     assert rec.p is not None
     q, p = rec.q[at], np.nan_to_num(rec.p[at])

@@ -23,7 +23,7 @@ class Free:
 
     @classmethod
     def of(cls, law: Any, names: Sequence[str] | None) -> Free:
-        """Return the parameters of those names, by default the law's gains; raise on an unknown or fixed one."""
+        """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]
             if not names:

@@ -109,7 +109,7 @@ def _contents(
 
 
 def _stated(arrays: Mapping[str, Any]) -> dict[str, Any]:
-    """Names, source and accuracy that `Recording.save` wrote beside the samples."""
+    """Return names, source and accuracy from the file that `Recording.save` wrote beside the samples."""
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}
     found = {name: arrays[name][()] for name in _ACCURACY if name in arrays}

@@ -84,5 +84,5 @@ def recognise(rec: Recording, laws: Mapping[str, Any] | None = None) -> Recognit
         except FlockanaError as error:
             refused[name] = str(error)
     if not found:
-        raise ArgumentError(f"no law is for this recording: {next(iter(refused.values()))}")
+        raise ArgumentError(f"no law applies to this recording: {next(iter(refused.values()))}")
     return Recognition(tuple(sorted(found, key=lambda each: -each[1].explained_refitted)), refused)

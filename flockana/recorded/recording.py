@@ -321,7 +321,7 @@ class Recording(ResultCache):
 
 
 def scaled_alpha(d: float | None, r: float | None) -> AlphaInteraction:
-    """Return the paper's pair law of a scale and a range, the other 1.2 times larger or smaller if one is missing."""
+    """Return the paper's pair law with scale d and range r; a missing one follows from r = 1.2 d."""
     d = ensure_positive("d", d) if d is not None else ensure_positive("r", r) / 1.2
     return AlphaInteraction(d=d, r=1.2 * d if r is None else ensure_positive("r", r))
 
@@ -356,7 +356,7 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
 
 
 def _whole_vectors(x: FloatArray) -> FloatArray:
-    """The vectors, one with a component missing wholly missing."""
+    """Return the vectors, all components NaN where one is missing."""
     x[np.isnan(x).any(axis=2)] = np.nan
     return x
 

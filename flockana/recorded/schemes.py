@@ -53,7 +53,7 @@ def kinematic_scheme(rec: Recording) -> Found | None:
 
 
 def scheme_by_law(rec: Recording, law: Any) -> Found | None:
-    """Return the scheme of one step a sample by which a law leads far closer to the next sample than its flow does."""
+    """Return the scheme whose steps lead far closer to the next sample than the law's flow does."""
     if rec.p is None or rec.gaps or isinstance(law, DiscreteLaw) or not _even(rec):
         return None
     some = slice(0, 40)

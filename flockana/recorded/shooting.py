@@ -1,4 +1,4 @@
-"""Solutions of a law matched to noisy positions: each window of samples has a start of its own, found with it.
+"""Solutions of a law matched to noisy positions, with an estimated start for each window of samples.
 
 Parameters and starts are sought together by the method of Gauss and Newton. Residuals are divided by the noise, so that
 they are independent with deviation 1, and an error of the integration whose residuals have the norm x moves a parameter
@@ -38,7 +38,7 @@ _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; e
 
 
 class Matched(NamedTuple):
-    """Parameters with the covariance of noise 1, starts, residuals, how many numbers, and how it ended."""
+    """Result of matching: parameters, covariance for unit noise, starts, residuals, their number, and outcome."""
 
     values: FloatArray
     covariance: FloatArray
@@ -99,7 +99,7 @@ class Window:
 
 
 class _Nearby(NamedTuple):
-    """A law with more and one with less of a parameter, and the difference."""
+    """Laws with a parameter increased and decreased, and the difference between the two values."""
 
     more: Any
     less: Any
@@ -138,7 +138,7 @@ class _Rate:
 
 
 def _within(t: FloatArray, time: float) -> int:
-    """Samples that lie within some time."""
+    """Return how many samples lie within a duration, at least 1."""
     return max(1, int(min(len(t), time / float(np.median(np.diff(t)) if len(t) > 1 else 1.0))))
 
 
@@ -196,7 +196,7 @@ class _Normal:
         return _inverse(self.reduced)
 
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
-        """Return the step of the parameters, of each start, and the squares that it promises to gain."""
+        """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
         downhill = [each.T @ off for each, off in zip(self.slopes, residuals, strict=True)]
         sizes = [len(corner) for corner in self.corners]
         slope, gained = np.zeros(len(self.reduced)), 0.0
@@ -221,7 +221,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
 
 
 def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> Matched:
-    """Return the parameters by which solutions of a law match windows of samples best, the starts found with them.
+    """Return the parameters, and starts of windows, for which solutions of a law fit the samples best.
 
     Slopes are kept as long as steps gain what these promise: most rounds cost solutions alone.
     """
@@ -266,7 +266,7 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
 
 
 def _fine_enough(parts: list[Window], law: Any) -> int:
-    """How much finer steps must be for their error to move no parameter by more than a bit of its standard error."""
+    """Return how much finer steps must be for their error to be negligible against the standard errors."""
     finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
     while finer < _FINEST:
         fine = [part.residual(law, part.start, 2 * finer) for part in parts]
@@ -279,7 +279,7 @@ def _fine_enough(parts: list[Window], law: Any) -> int:
 def _residuals(
     parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], finer: int
 ) -> list[FloatArray] | None:
-    """Residuals of all windows; None if there is no such law, or its solution is not finite."""
+    """Return residuals of all windows; None if the law refuses the parameters, or its solution is not finite."""
     try:
         law = with_values(theta)
         found = [part.residual(law, start, finer) for part, start in zip(parts, starts, strict=True)]
@@ -301,7 +301,7 @@ def _squares(found: list[FloatArray]) -> float:
 
 
 def _share(theta: FloatArray, moved: FloatArray, first: FloatArray) -> float:
-    """How much of a step may be taken while every positive parameter stays above a tenth of itself."""
+    """Return the fraction of a step that keeps every positive parameter above a tenth of its value."""
     falls = (first > 0.0) & (moved < 0.0)
     room = np.where(falls, (0.9 * theta - _LEAST * first) / np.where(falls, -moved, 1.0), np.inf)
     return float(min(1.0, np.maximum(room, 1e-3).min(initial=1.0)))
@@ -326,7 +326,7 @@ def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) ->
 
 
 def _nearby_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[_Nearby]:
-    """For each parameter the law with more and with less of it, and the difference."""
+    """Return for each parameter the laws with it increased and decreased, and the difference."""
     found = []
     for k, value in enumerate(values.tolist()):
         more, less = values.copy(), values.copy()

@@ -31,7 +31,7 @@ class Smoothed(NamedTuple):
 
 
 class _Filtered(NamedTuple):
-    """Means, standard deviations and log-likelihoods (T, K) of a filter, or of a filter that went back, too."""
+    """Means, standard deviations and log-likelihoods (T, K) of a Kalman filter, or of a smoother."""
 
     mean: FloatArray
     sd: FloatArray
@@ -39,7 +39,7 @@ class _Filtered(NamedTuple):
 
 
 def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
-    """Return the smoothing spline through each series, with the largest intensity of its jerk that they allow."""
+    """Return the smoothing spline through each series, the jerk's intensity estimated sample by sample."""
     unit = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
     middle = np.nanmean(y, axis=0)
     spread = float(np.nanmax(np.abs(y - middle))) or 1.0
@@ -54,7 +54,7 @@ def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: 
 
 
 def _steepest(x: FloatArray) -> float:
-    """Logarithm of the size of third differences: what the jerk is at most, as noise adds to them."""
+    """Return the logarithm of third differences, an upper bound of the jerk, as noise enlarges them."""
     third = np.diff(x, 3, axis=0)
     size = float(np.sqrt(np.nanmean(third**2))) if np.isfinite(third).any() else 1.0
     return float(np.log(max(size, 1e-14))) + 2.0
@@ -130,7 +130,7 @@ def _spread(y: FloatArray, sd: FloatArray) -> FloatArray:
 
 
 def _transition(h: float) -> tuple[FloatArray, FloatArray]:
-    """Of (position, velocity, acceleration) over a step h: matrix, and covariance that white jerk of size 1 adds."""
+    """Return transition matrix and noise covariance of (position, velocity, acceleration) for unit white jerk."""
     turn = np.array([[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]])
     kick = np.array(
         [[h**5 / 20.0, h**4 / 8.0, h**3 / 6.0], [h**4 / 8.0, h**3 / 3.0, h**2 / 2.0], [h**3 / 6.0, h**2 / 2.0, h]]

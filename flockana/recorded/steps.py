@@ -1,4 +1,4 @@
-"""Where a law leads from each recorded sample to the time of the next."""
+"""Predictions by a law of each recorded sample from the one before."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def substeps(law: Any, interval: float, share: float = SHARE) -> int:
 def predicted(
     law: Any, t: FloatArray, q: FloatArray, p: FloatArray, *, refine: int = 1
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where a law leads from each sample to the next, as positions and velocities of shape (T - 1, n, m)."""
+    """Return a law's predictions of each next sample, positions and velocities of shape (T - 1, n, m)."""
     ends = np.empty((2, max(len(t) - 1, 0), *q.shape[1:]))
     for k in range(len(t) - 1):
         ends[0, k], ends[1, k] = led(law, float(t[k]), float(t[k + 1] - t[k]), q[k], p[k], refine=refine)
@@ -36,7 +36,7 @@ def predicted(
 def led(
     law: Any, t: float, h: float, q: FloatArray, p: FloatArray, *, refine: int = 1, share: float = SHARE
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where a law leads from a state within a time h."""
+    """Return the state to which a law leads from another within a time h."""
     if isinstance(law, DiscreteLaw):
         steps = round(h / law.dt)
         if steps < 1 or abs(h / law.dt - steps) > _WHOLE * max(steps, 1):

@@ -114,7 +114,7 @@ def _gaps(rec: Recording) -> Iterator[tuple[int, int, int]]:
 
 
 def _whole_gaps(rec: Recording, told: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Samples that were seen, and gaps throughout which the motion is told, shape (T, n)."""
+    """Return a mask of samples that were seen or lie in a gap that `told` covers wholly, shape (T, n)."""
     carried = rec.present.copy()
     for i, a, b in _gaps(rec):
         carried[a + 1 : b, i] = told[a + 1 : b, i].all()

@@ -219,7 +219,7 @@ def _html(
 
 
 def _checked(pages: list[Page]) -> dict[str, str]:
-    """Where in the page each theorem is checked first."""
+    """Return the anchor in the page at which each theorem is first checked."""
     found: dict[str, str] = {}
     for each in pages:
         subject = each.name if isinstance(each, ScenarioPage) else "fixed"
@@ -229,7 +229,7 @@ def _checked(pages: list[Page]) -> dict[str, str]:
 
 
 def _surprises(pages: list[Page]) -> list[tuple[str, str]]:
-    """(where in the page, what) of all that differs from the expected."""
+    """Return (anchor in the page, text) of each difference from the expected statuses."""
     found = []
     for each in pages:
         subject = each.name if isinstance(each, ScenarioPage) else "fixed"

@@ -71,7 +71,7 @@ def _deep(value: Any) -> bool:
 
 
 def source_name(key: str) -> str:
-    """A key of the bibliography as a name to read.
+    """Return a key of the bibliography as a readable name.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A flock of the user's own: a law, a start and a time span, for all that also takes a scenario of the catalogue."""
+"""A user's own flock: a law, a start and a time span, accepted wherever a scenario of the catalogue is."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     detail = f"{counts[-1]} component(s) at t = {run.t[-1]:g}"
     if counts[-1] == 1 and apart.size:
         detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
-    certificate = Certificate(-1.0, "the net at one instant of a motion that forgets its start is no limit")
+    certificate = Certificate(-1.0, "the net at one instant decides no limit")
     return limit_report("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
 
 
@@ -105,7 +105,7 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"until t = {run.t[-1]:g} {count} of {run.n} agents rest (slower than {limit:.3g}, {tolerances.agreement:g} of "
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
     )
-    certificate = Certificate(1.0 if count else -1.0, "that is a count" if count else "none does, as yet")
+    certificate = Certificate(1.0 if count else -1.0, "counted in this run" if count else "none so far")
     return limit_report("trapped", certificate, detail, computed=count, stated="more than 0")
 
 
@@ -124,8 +124,8 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     calmest = int(np.argmin(lefts))
     t, force, speed = (float(series[calmest]) for series in (run.t[late], forces, speeds))
     left = max(float(lefts[calmest]), 1e-300)
-    damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of what counts as none")
-    none = Certificate(-1.0, "without damping by the γ-agent it may never")
+    damped = Certificate(float(np.clip(-np.log(left), -1.0, 1.0)), f"{left:.2g} of the thresholds of rest")
+    none = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
     certificate = damped if law.gains.c2_gamma > 0.0 else none
     return limit_report("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")

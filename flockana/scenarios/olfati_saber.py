@@ -61,7 +61,7 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
     series, basin = run.metric("normalised_velocity_mismatch"), attraction(run.law, run.q[-1], run.p[-1])
-    detail = f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}"
+    detail = f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}"
     return limit_report("matched", basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
 
 

@@ -129,7 +129,7 @@ class Scenario:
         return verdicts + self.reported(trajectory, tolerances=tolerances)
 
     def verdict(self, name: str, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> Verdict:
-        """Return one theorem's verdict on a run of this scenario, rigorous if it is one of those `enclosed`."""
+        """Return one theorem's verdict on a run of this scenario, rigorous if `enclosed` names the theorem."""
         if self.enclosed is not None and name in self.enclosed.theorems:
             return self.enclosed.verdict(name, trajectory, tolerances=tolerances, subject=self.name)
         return verify(name, trajectory, tolerances=tolerances, subject=self.name)

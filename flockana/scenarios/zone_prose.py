@@ -85,7 +85,9 @@ def _way(run: Trajectory, tolerances: Tolerances) -> Claim:
     text = "; ".join(
         f"w^ls = {w[0]:g}, {w[1]:g}: both at {v[0]:.3g}, {v[1]:.3g}" for w, v in zip(_GIVES_WAY, end, strict=True)
     )
-    return finding("gives-way", slowest - 0.5, text, computed=end.tolist(), stated="who heeds more turns round")
+    return finding(
+        "gives-way", slowest - 0.5, text, computed=end.tolist(), stated="the agent with the larger weight turns round"
+    )
 
 
 def _repeats(run: Trajectory, tolerances: Tolerances) -> Claim:

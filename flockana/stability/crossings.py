@@ -110,7 +110,7 @@ def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
 
 
 def _common_diagonals(four: Four) -> ComplexArray | None:
-    """Diagonals of four matrices made triangular together, shape (4, N); None if they cannot be, or rounding blurs."""
+    """Return the diagonals of four matrices triangularised together, shape (4, N); None if that is impossible."""
     from scipy.linalg import schur
 
     sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
@@ -180,7 +180,7 @@ class _Spectrum(NamedTuple):
 
 
 def _spectrum(four: Four, omega: float) -> _Spectrum:
-    """All that is asked of a frequency."""
+    """Return the spectrum of W at a frequency, with its derivatives."""
     k0, d0, k1, d1 = four
     one = np.eye(len(k0))
     inverse = np.linalg.inv(k0 + k1 - omega**2 * one + 1j * omega * (d0 + d1))
@@ -207,7 +207,7 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
 
 
 def _free(at: _Spectrum, angle: float) -> float:
-    """How far from a frequency there certainly is no crossing with ωτ up to an angle.
+    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle.
 
     Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less than
     s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.

@@ -213,7 +213,7 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
 
 
 def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> DelayMargin:
-    """Margin of a part that nothing else moves."""
+    """Return the delay margin of a part that depends on no other part."""
     if system.highest == 0.0:
         return DelayMargin(inf, float("nan"), inf)
     unit = 2.0 ** int(np.log2(system.highest))  # of frequency: exact, and nothing overflows

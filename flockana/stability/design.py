@@ -182,7 +182,7 @@ def design_gains(
 
 
 def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> SpecifiedGains:
-    """Search gains, by their logarithms, that leave the most room."""
+    """Search for the gains that leave the most room in all specifications, over their logarithms."""
     if not isinstance(asked, Specifications):
         raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
     law, q = problem.law, problem.q
@@ -217,7 +217,7 @@ def _alike(
     most: int = 200,
     finest: float = _SMALLEST,
 ) -> FloatArray:
-    """Return the pair of numbers between bounds whose worth is least, by a grid and a simplex search."""
+    """Return the pair of numbers between bounds that minimises a function, by a grid and a simplex search."""
     from scipy.optimize import minimize
 
     axis, wide = np.linspace(low, high, count), (high - low) / count

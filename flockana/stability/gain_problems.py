@@ -59,7 +59,7 @@ class GainProblem:
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
-        """Bases of the positions and of the velocities that are left."""
+        """Return bases of the positions and velocities that the projection leaves."""
         kept = complement(self.apart)
         return kept, kept if self.speeds else np.eye(len(self.stiffness))
 

@@ -146,7 +146,7 @@ class Linearisation:
 
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """All other modes, slowest first; one for each real eigenvalue or conjugate pair."""
+        """Modes other than the zero modes, slowest first; one for each real eigenvalue or conjugate pair."""
         return self._dense.modes
 
     @property

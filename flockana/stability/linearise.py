@@ -204,7 +204,7 @@ def _length(q: FloatArray) -> float:
 
 
 def _over(value: float, scale: float) -> float:
-    """A share of a scale; of a scale that is 0 nothing is a share but 0."""
+    """Return value/scale; for scale 0, infinite unless the value is 0."""
     return value / scale if scale > 0.0 else (inf if value > 0.0 else 0.0)
 
 

@@ -142,7 +142,7 @@ class MapLinearisation:
 
     @cached_property
     def _dense(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """Multipliers, vectors and errors of A; what errors part from 1 is 1."""
+        """Multipliers, vectors and errors of A; multipliers within their error of 1 are set to 1."""
         values, vectors, errors = eigen(self.A, self.off)
         return np.where(np.abs(values - 1.0) <= errors, 1.0, values), vectors, errors
 
@@ -160,7 +160,7 @@ class MapLinearisation:
 
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
-        """All other modes, slowest first; one for each real multiplier or conjugate pair."""
+        """Modes other than the neutral motions, slowest first; one for each real multiplier or conjugate pair."""
         if self.second_order is None:
             values, vectors, errors = self._dense
             kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
@@ -272,7 +272,7 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
-    """Linearisation of a map of headings about parallel motion: its net then stays as it is."""
+    """Linearisation of a map of headings about parallel motion, under which its net is constant."""
     heading = np.arctan2(p[:, 1], p[:, 0])
     off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
     if off > _PARALLEL:
@@ -330,7 +330,7 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
             "state within its zones and bounds, not at the edge of one"
         )
     if np.abs(later - matrix).max() > _KINK * size:
-        raise ArgumentError(f"{name} is another map further along this motion: expected none that meets an obstacle")
+        raise ArgumentError(f"{name} changes further along this motion: expected one that meets no obstacle")
     units = np.repeat(list(sizes.values()), np.diff(ends))
     off = (float(np.linalg.norm(wide - matrix)) + len(start) * 4.0 * EPS / _WIDTH) / size
     beside = [f"{key}{k}" for key, shape in shapes.items() if key in memory for k in range(int(np.prod(shape)))]

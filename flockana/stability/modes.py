@@ -1,4 +1,4 @@
-"""Modes of δq'' + D δq' + K δq = 0: a shape, how fast it decays, how fast it swings; zero modes set apart.
+"""Modes of δq'' + D δq' + K δq = 0: shape, decay rate and frequency of each; zero modes separate.
 
 The motions that cost nothing span an invariant subspace that is known beforehand, and so does the centre of mass where
 it moves by itself. Both are taken out exactly, by the left eigenvectors, before any eigenvalue is computed: a zero

@@ -1,4 +1,4 @@
-"""A mode as a motion of the flock, to look at."""
+"""Motion of the flock along one of its modes, for pictures and films."""
 
 from __future__ import annotations
 

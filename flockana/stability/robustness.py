@@ -68,7 +68,7 @@ class RobustnessMargins:
 
     @property
     def gain(self) -> tuple[float, float]:
-        """Narrowest factors of one input."""
+        """Narrowest gain margin of any one input: (least, greatest) factor."""
         return max(one.gain[0] for one in self.loops), min(one.gain[1] for one in self.loops)
 
     @property

@@ -64,7 +64,7 @@ class ModePeriod:
 
 @dataclass(frozen=True)
 class SamplingMargin:
-    """Largest period for which the sampled flock is stable, and the mode that goes first.
+    """Largest period for which the sampled flock is stable, and the mode that becomes unstable first.
 
     Parameters
     ----------
@@ -96,11 +96,11 @@ class SamplingMargin:
 
     @property
     def first(self) -> ModePeriod | None:
-        """Mode that goes first; None if there is none."""
+        """Mode that becomes unstable first; None if there is none."""
         return self.modes[0] if self.modes else None
 
     def times(self, dt: float) -> float:
-        """Return how many times the step `dt` the margin is; above 1 the sampled flock is stable.
+        """Return the margin over the step `dt`; the sampled flock is stable if it is above 1.
 
         Parameters
         ----------
@@ -292,7 +292,7 @@ def _least_damped(k: FloatArray, d: FloatArray) -> float:
 
 
 def _guess(k: FloatArray, d: FloatArray, factor: float) -> float:
-    """Length of step that the norms of K and D would bear."""
+    """Return a first guess of the largest step, from the norms of K and D."""
     flip = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), max(factor, 1.0))
     return flip if flip < inf else 1.0
 
@@ -300,7 +300,7 @@ def _guess(k: FloatArray, d: FloatArray, factor: float) -> float:
 def _searched(
     flow: Linearisation, factor: float, low: float, high: float, *, in_place: bool = False
 ) -> list[ModePeriod]:
-    """First growth that a search meets from a stable step on, located by halving."""
+    """Return the first step at which a search upwards from a stable one meets growth, refined by halving."""
     if low <= 0.0:
         return [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
     zero = flow.second_order.invariant

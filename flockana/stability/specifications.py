@@ -1,4 +1,4 @@
-"""Specifications of a flock: decay, delay, sampling period, noise, overshoot; how far each is met, which one binds."""
+"""Specifications of a flock (decay, delay, sampling period, noise, overshoot): how far each is met, which binds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from flockana.stability.translational import CentreOfMass
 
 @dataclass(frozen=True)
 class Specifications:
-    """What a flock must do; None where nothing is asked.
+    """Requirements on a flock; None where nothing is required.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Specifications:
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Names of what is asked."""
+        """Names of the required quantities."""
         return tuple(field.name for field in fields(self) if getattr(self, field.name) is not None)
 
 
@@ -86,7 +86,7 @@ class SpecifiedGains:
 
     @property
     def met(self) -> bool:
-        """Whether all are met."""
+        """Whether all specifications are met."""
         return min(self.room.values()) >= 0.0
 
     @property
@@ -96,7 +96,7 @@ class SpecifiedGains:
 
 
 def evaluated(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: float) -> SpecifiedGains:
-    """Return what a flock does with these c1γ and c2γ at the equilibrium that it then has, near q."""
+    """Return the performance of a flock with these c1γ and c2γ, at the equilibrium near q that they give."""
     gains = replace(law.gains, c1_gamma=c1, c2_gamma=c2)
     trial = replace(law, gains=gains)
     rest = find_equilibrium(trial, q).q if len(q) > 1 else q

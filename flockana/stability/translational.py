@@ -74,7 +74,7 @@ class CentreOfMass:
 
     @property
     def falling(self) -> float:
-        """c2γ²(1 − factor²)/2c1γ: if >= 1, |G(jω)| falls with every ω, the faster the γ-agent, the smaller (E15)."""
+        """c2γ²(1 − factor²)/2c1γ; if it is >= 1, |G(jω)| falls as ω rises from 0 (erratum E15)."""
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return float(0.5 * c2 * c2 * (1.0 - self.factor**2) / c1) if c1 > 0.0 else inf
 

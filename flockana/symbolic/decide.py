@@ -131,7 +131,7 @@ def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
 def _looked_at(
     of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
 ) -> Fact:  # fmt: skip
-    """Return faults that values and slopes beside a point show: a jump, pole, kink or missing value."""
+    """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""
     whole, place = region.right - region.left, region.place(_float(at))
     near, far = whole / 2**100, whole / 2**50
     sides: list[list[list[arb] | None]] = []

@@ -111,12 +111,12 @@ class Phi(Named):
 
     @property
     def stable(self) -> sp.Expr:
-        """Return the quotient."""
+        """Return φ as the quotient of `PhiAbove` and `PhiBelow`, numerically stable."""
         return PhiAbove(*self.args).stable / PhiBelow(*self.args).stable
 
     @property
     def composed(self) -> sp.Expr:
-        """Return the formula."""
+        """Return φ as an expression in σ₁, as printed."""
         s, a, b, c = self.args
         return HALF * ((a + b) * Sigma1(s + c) + (a - b))
 
@@ -134,7 +134,7 @@ class PhiAbove(Phi):
 
     @property
     def stable(self) -> sp.Expr:
-        """Return the numerator."""
+        """Return the numerator in a numerically stable form."""
         s, a, b, c = self.args
         x, g, _ = self._parts
         return HALF * (a + b) * sp.Piecewise((s * (s + 2 * c), x >= 0), (-(g**2), True))
@@ -145,7 +145,7 @@ class PhiBelow(Phi):
 
     @property
     def stable(self) -> sp.Expr:
-        """Return the denominator."""
+        """Return the denominator in a numerically stable form."""
         return self._parts[1] * self._parts[2]
 
 

@@ -14,7 +14,7 @@ _PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F
 
 
 def _over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
-    """Return a sum over friends term by term, with what does not depend on the friend in front."""
+    """Return a sum over friends term by term, factors that do not depend on the friend in front."""
     terms = (term.as_independent(_J) for term in sp.Add.make_args(sp.expand(summand)))
     return sp.Add(*(front * sp.Sum(rest, limits) for front, rest in terms if front != 0))
 

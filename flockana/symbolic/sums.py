@@ -18,7 +18,7 @@ LAMBDA = sp.Symbol("lambda", nonnegative=True)
 
 
 def _sum(summand: sp.Expr, *limits: tuple[sp.Symbol, sp.Expr, sp.Expr]) -> sp.Expr:
-    """Return a sum term by term, with what does not depend on the indices in front."""
+    """Return a sum term by term, factors that do not depend on the indices in front."""
     indices = [index for index, _, _ in limits]
     terms = (term.as_independent(*indices) for term in sp.Add.make_args(summand))
     return sp.Add(*(front * sp.Sum(rest, *limits) for front, rest in terms if front != 0))

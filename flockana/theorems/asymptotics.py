@@ -37,7 +37,7 @@ def velocities_match(
         witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
         proof=proof,
         evidence=evidence(seen.t, series, "K̃"),
-        detail=f"velocities match: K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
+        detail=f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
     )
 
 
@@ -56,7 +56,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
     caught = final_basin(seen)
     pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0
     room, known = tolerances.lattice - limit_strain(seen, end, caught), caught.certificate.certain
-    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
+    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known and not pressed else []
     strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None
     return limit_claim(
@@ -69,7 +69,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
         witness={"force": end.force, "links": end.links, "curvature": end.curvature},
         detail=f"at the end: {kind}, links {end.shortest:.6g} to {end.longest:.6g}, residual force {end.force:.2g}"
         + ("" if known else f"; {caught.certificate.text}")
-        + ("; λJ presses on every link" if pressed else ""),
+        + ("; λJ compresses every link" if pressed else ""),
     )
 
 

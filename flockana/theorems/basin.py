@@ -1,4 +1,4 @@
-"""Basins of strict minima: how much energy a flock needs at least to leave the minimum of a potential U beside it.
+"""Basins of strict minima: the least energy that a flock needs to leave the minimum of U beside its state.
 
 Where x' = v, v' = -∇U - D(x) v with D >= 0, the energy E = U + K never rises. Let λ be the least eigenvalue of ∇²U(x)
 off the rigid motions, g = ∇U(x), and let ∇²U be Lipschitz with constant L within the distance w of x.
@@ -139,7 +139,7 @@ def barrier(
     *,
     off: float = 0.0,
 ) -> tuple[float, float]:
-    """Return the highest barrier of step 2 over a choice of windows w, and L there; 0 and ∞ where there is none.
+    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none.
 
     A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
     with L = 0 they were no better.

@@ -32,7 +32,7 @@ _REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are j
 
 @cache
 def catalogue() -> dict[str, Theorem]:
-    """All theorems by id: what the modules of this room call THEOREM."""
+    """Return all theorems by id, from the `THEOREM` of every module of this package."""
     by_id: dict[str, Theorem] = {}
     for module in modules("flockana.theorems"):
         defined = getattr(module, "THEOREM", None)
@@ -58,7 +58,7 @@ def theorems() -> tuple[str, ...]:
 
 
 def theorem(name: str) -> Theorem:
-    """The theorem of that id: its statement, its source, what it is checked on.
+    """Return a theorem by its id or printed name: its statement, its source, the cases it is checked on.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def _printed_as(name: str) -> Theorem:
 
 
 def _printed(source: str) -> str:
-    """Return where a statement is printed, without what is ours."""
+    """Return the part of a source's text that says where a statement is printed."""
     return re.split(r";| \(", source)[0]
 
 
@@ -222,14 +222,14 @@ def verify(
 
 
 def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
-    """Return a run from a start, at rest and over 20 time units unless told otherwise."""
+    """Return a run from a start; without p0 at rest, without t_span over 20 time units."""
     if law is None or q0 is None:
         raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
     return simulate(law, q0, np.zeros(np.shape(q0)) if p0 is None else p0, T_SPAN if t_span is None else t_span)
 
 
 def _is_recording(run: Any) -> TypeGuard[Recording]:
-    """Return whether it is a recording, without loading what reads them for what is none."""
+    """Return whether a value is a recording, without importing recordings unless needed."""
     if run is None or isinstance(run, Trajectory):
         return False
     from flockana.recorded.recording import Recording
@@ -238,16 +238,16 @@ def _is_recording(run: Any) -> TypeGuard[Recording]:
 
 
 def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
-    """The vacuous verdict on a run of a wrapped law: a theorem about the law says nothing of it."""
+    """Return the vacuous verdict on a run of a wrapped law, which a theorem about the bare law does not cover."""
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
-    detail = f"the run is of the law within {around}; the theorem is about the law itself"
+    detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
     claims = tuple(vacuous(name, missed, by=item.by(name)) for name in item.claims)
     return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)
 
 
 def _is_tube(run: Any) -> bool:
-    """Whether it is a tube, told without loading Arb for what is none."""
+    """Return whether a value is a tube, without importing Arb unless needed."""
     if run is None or isinstance(run, Trajectory):
         return False
     from flockana.certified.tube import Tube

@@ -14,6 +14,7 @@ import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
+from flockana.theorems.headline import does_not_hold
 from flockana.theorems.proofs import CITES, RIGOUR
 from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
 
@@ -89,7 +90,7 @@ def concluded(
     detail: str = "",
     **fields: Any,
 ) -> Claim:
-    """Return a claim from what numbers or certificates say, its hypotheses and its proof.
+    """Return a claim from its status by numbers or certificates, its hypotheses and its proof.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def concluded(
 
 
 def _status_of(margin: Enclosure, about: About) -> Status:
-    """Status by the sign of the margin alone."""
+    """Return a status by the sign of a margin alone."""
     if about == "limit":
         return "inconclusive"
     if (margin.hi < 0.0).any():
@@ -153,7 +154,7 @@ def with_needs(status: Status, needs: tuple[Hypothesis, ...], about: About) -> S
 
 
 def _finite(margin: Enclosure) -> float:
-    """The best value of a margin, or what is nearest to it and finite, so that a search can compare margins."""
+    """Return a margin's best value, or a finite substitute, so that a search can compare margins."""
     ends = (float(margin.mid), float(margin.lo), float(margin.hi))
     return next((end for end in ends if np.isfinite(end)), 0.0)
 
@@ -161,7 +162,7 @@ def _finite(margin: Enclosure) -> float:
 def counted(
     name: str, most: int, certain: int, possible: int, needs: Iterable[Hypothesis] = (), **fields: Any
 ) -> Claim:
-    """Return a claim that at most so many things happen, of which some certainly do and some may.
+    """Return a claim that at most `most` things happen, from counts of certain and of possible ones.
 
     Parameters
     ----------
@@ -200,7 +201,7 @@ def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis]
 
 
 def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about stored numbers, such as one configuration, whose margin is off by rounding alone.
+    """Return a claim about stored numbers, such as a configuration, whose margin has only rounding errors.
 
     Parameters
     ----------
@@ -218,7 +219,7 @@ def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothes
 
 
 def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about the orbit of a map in floating point, which is its subject: no second run is nearer to it.
+    """Return a claim about the orbit of a map in floating point, which has rounding but no integration error.
 
     Parameters
     ----------
@@ -306,11 +307,12 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
     Examples
     --------
     >>> vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail
-    'c1α > 0: c1α = 0'
+    'c1α > 0 does not hold: c1α = 0'
     """
-    unmet = isinstance(reason, Hypothesis)
-    detail = f"{reason.name}: {reason.detail}" if isinstance(reason, Hypothesis) else reason
-    return Claim(name, "vacuous", detail=detail, needs=(reason,) if unmet else (), **fields)  # type: ignore[arg-type]
+    if isinstance(reason, Hypothesis):
+        why = f"{does_not_hold(reason.name)}: {reason.detail}".removesuffix(": ")
+        return Claim(name, "vacuous", detail=why, needs=(reason,), **fields)
+    return Claim(name, "vacuous", detail=reason, **fields)
 
 
 def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
@@ -345,7 +347,7 @@ def erratum(
     corrected: tuple[str, ...] = (),
     ours: tuple[str, ...] = (),
 ) -> Theorem:
-    """A statement that is checked by itself, on no run of the user's: an erratum, with what is expected of its claims.
+    """Return an erratum: a theorem checked without a user's run, with expected statuses of its claims.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ _MOST = 7  # agents of which a basin is proved within seconds
 
 
 class _Case(NamedTuple):
-    """Bound and start in lengths of ℓ, the unit of σ₁, of which the run has `unit`."""
+    """Bound and start in lengths of ℓ, the unit of σ₁; `unit` is ℓ in the run's lengths."""
 
     bound: Any  # UltimateBound
     q: FloatArray
@@ -81,7 +81,7 @@ def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
         return
     largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
     margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
-    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could leave{rounded}"
+    detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{rounded}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
         yield Hypothesis(name, "unmet", margin=margin, detail=text)
@@ -99,7 +99,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
 
 
 def _stays(seen: Observed, case: _Case) -> Claim:
-    """That the flock stays in the basin is proved; its samples stand beside."""
+    """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
     radius, apart = unit * float(basin.radius), unit * float(basin.distance)
     return _beside(
@@ -114,7 +114,7 @@ def _stays(seen: Observed, case: _Case) -> Claim:
 
 
 def _ultimate(seen: Observed, case: _Case) -> Claim:
-    """The ultimate bound is proved; the end of the run stands beside, with what is left of the start by then."""
+    """Return the proved claim of the ultimate bound, with the end of the run for comparison."""
     from flint import arb, ctx
 
     from flockana.certified.balls import ball
@@ -142,7 +142,7 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
 
 
 def _beside(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
-    """Return a proved claim that the flock is nearer to the orbit than allowed, with its samples from one on."""
+    """Return a proved claim that the flock is nearer to the orbit than a bound, with samples for comparison."""
     basin, run, unit = case.bound.basin, seen.given, case.unit
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
     distances = [basin.above(run.q[k] / unit, run.p[k] / unit)[0] for k in some]  # upper bounds

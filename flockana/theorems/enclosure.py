@@ -158,7 +158,7 @@ class Enclosure:
         return self.clip(0.0).rising(np.log)
 
     def rising(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
-        """Return a non-decreasing function, at both ends and in between, rounded outwards by so many ulp."""
+        """Return a non-decreasing function of the enclosure, its ends rounded outwards by some ulp."""
         with np.errstate(all="ignore"):
             lo, mid, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
         return _outward(lo, mid, hi, ulps=ulps)
@@ -192,7 +192,7 @@ class Enclosure:
         return Enclosure(*(end.min(axis=axis) for end in (self.lo, self.mid, self.hi)))
 
     def sum(self, axis: int | None = None) -> Enclosure:
-        """Return the sum, widened by the rounding of so many terms."""
+        """Return the sum of all entries, widened by the rounding of its terms."""
         terms = self.mid.size if axis is None else self.mid.shape[axis]
         sizes = np.maximum(np.abs(self.lo), np.abs(self.hi)).sum(axis=axis)
         with np.errstate(invalid="ignore", over="ignore"):

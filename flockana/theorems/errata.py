@@ -53,12 +53,12 @@ class Erratum:
 
     @property
     def mark(self) -> str:
-        """✗ of what is printed and false, ✓ of what is true, · of what was only read."""
+        """Mark of the printed statement: ✗ if false, ✓ if true, · if only read."""
         return _MARKS[self.claim[1]]
 
     @property
     def right_mark(self) -> str:
-        """The same of what is right."""
+        """Mark of the right statement: ✗ if false, ✓ if true, · if only read."""
         return _MARKS[self.right_claim[1]]
 
     def __str__(self) -> str:

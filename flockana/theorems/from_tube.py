@@ -57,7 +57,7 @@ class Enclosed:
 
     @property
     def until(self) -> str:
-        """How long what it shows holds, in words."""
+        """Time for which the tube's claims hold, in words."""
         tube = self.tube
         note = f"; {tube.message}" if tube.message and tube.message not in self.doubt else ""
         if self.basin is not None:
@@ -66,7 +66,7 @@ class Enclosed:
 
 
 def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
-    """What decides a theorem of `olfati_saber` from a tube: a function that is imported when it is called."""
+    """Return a function that decides a theorem of `olfati_saber` from a tube, imported at its first call."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
         decide = getattr(import_module(f"flockana.theorems.olfati_saber.{module}"), name)
@@ -113,7 +113,7 @@ def below(name: str, energy: arb, bound: arb) -> Hypothesis:
 
 
 def met(tube: Tube) -> dict[Pair, float]:
-    """Pairs that certainly meet, by when at the latest: on a line, agents that certainly change places."""
+    """Return pairs that certainly meet, as they change places on a line, with the latest time at which they do."""
     times: dict[Pair, float] = {}
     if tube.m > 1:
         return times
@@ -175,7 +175,7 @@ def converges(
 ) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]
-    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else detail
+    caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""
     return in_the_limit(case, needs, name=name, stated=stated, witness={"time": last}, detail=caught, proof=proof)
 
 

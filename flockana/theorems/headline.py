@@ -39,7 +39,7 @@ def _counts(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
 
 
 def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
-    """Why claims are vacuous: the first hypothesis that does not hold, or what the claim says itself."""
+    """Return why claims are vacuous: the first unmet hypothesis, or the claim's own detail."""
     silent = [claim for claim in claims if claim.status == "vacuous"]
     needs = [need for claim in silent for need in (*claim.needs, *verdict.hypotheses) if need.status == "unmet"]
     if not needs:
@@ -48,7 +48,7 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
 
 
 def does_not_hold(need: str) -> str:
-    """Say of a hypothesis that it does not hold; a name in words is quoted.
+    """Return the sentence that a hypothesis does not hold; a name in words is quoted.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def does_not_hold(need: str) -> str:
 
 
 def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
-    """Return claims with their names; neighbours that are vacuous for one reason as one, with all their names."""
+    """Return claims with their names; adjacent ones that are vacuous for the same reason are merged."""
 
     def reason(claim: Claim) -> tuple[str, str]:
         silent = claim.status == "vacuous" and claim.computed is None
@@ -77,5 +77,5 @@ def _listed(claims: Iterable[Claim]) -> str:
 
 
 def _short(claim: Claim) -> str:
-    """What a claim states where that is short, else its name."""
+    """Return a claim's statement where that is short, else its name."""
     return claim.stated if isinstance(claim.stated, str) and len(claim.stated) <= _SHORT else claim.name

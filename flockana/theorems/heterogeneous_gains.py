@@ -38,8 +38,8 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
         "stated": "gains of its own for each agent make the slowest mode die out faster than one pair for all, by "
         f"more than {_WORTH:.0%}",
         "witness": {"ratio": best.ratio},
-        "detail": f"n = {n}, {words}, gains within [0, 5]: decay rate {best.rate_homogeneous:.4f} alike, at "
-        f"least {best.rate_heterogeneous:.4f} per agent, {100.0 * (best.ratio - 1.0):.2g} % faster",
+        "detail": f"n = {n}, {words}, gains within [0, 5]: decay rate {best.rate_homogeneous:.4f} with equal gains, at "
+        f"least {best.rate_heterogeneous:.4f} with gains for each agent, {100.0 * (best.ratio - 1.0):.2g} % faster",
     }
     if margin > error:
         return spectral(name, margin, error, **found)

@@ -1,4 +1,4 @@
-"""Hypotheses that several theorems share: which law a run is of, which gains it has, what lies below what."""
+"""Hypotheses that several theorems share: on laws, gains, pair laws and inequalities."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hy
 
 
 def by_fact(name: str, fact: Fact) -> Hypothesis:
-    """Return a hypothesis about a function, with the status of what is decided about it.
+    """Return a hypothesis about a function, with the status of a fact about it.
 
     Parameters
     ----------
@@ -260,4 +260,4 @@ def positive_room(name: str, room: Enclosure, detail: str) -> Hypothesis:
     margin, error = float(room.mid), float(room.half_width)
     if room.lo > 0.0 or room.hi <= 0.0:
         return condition(name, bool(room.lo > 0.0), margin, detail, error=error)
-    return Hypothesis(name, "assumed", margin, f"{detail}; equal but for its error", error)
+    return Hypothesis(name, "assumed", margin, f"{detail}; equal within the error", error)

@@ -1,4 +1,4 @@
-"""Certificates of limits, and the claim that the best of them makes.
+"""Certificates of limits, and claims that rest on the best of several.
 
 A claim about t → ∞ is verified by a certificate alone: a state in the basin of a strict minimum
 (`flockana.theorems.basin`), an exact solution, or a proof. It is refuted by an escape: something that is certain at all
@@ -67,12 +67,12 @@ def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
     --------
     >>> t = np.linspace(0.0, 40.0, 401)
     >>> evidence(t, np.exp(-t), "K̃"), evidence(t, np.ones(401), "K̃")
-    ('consistent: K̃ falls by a factor of 1.6e+15', 'K̃ does not fall')
+    ('in this run K̃ falls by a factor of 1.6e+15', 'K̃ does not fall')
     """
     times, values = np.asarray(t, dtype=np.float64), np.maximum(np.asarray(amplitude, dtype=np.float64), _LEAST)
     late = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
     factor = float(values.max() / late)
-    return f"consistent: {name} falls by a factor of {factor:.2g}" if factor > 2.0 else f"{name} does not fall"
+    return f"in this run {name} falls by a factor of {factor:.2g}" if factor > 2.0 else f"{name} does not fall"
 
 
 def limit_claim(

@@ -1,4 +1,4 @@
-"""What energy it takes that two agents meet: c1α ψ_α(0) under the paper's pair law, where no pair has less than 0."""
+"""Energy needed for two agents to meet: c1α ψ_α(0) under the paper's pair law, whose potential is never negative."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Meeting(NamedTuple):
 
 
 def meeting(run: Trajectory | Observed) -> Meeting:
-    """Those of a run's law, which has an α-interaction, and its number of agents."""
+    """Return the pair energies of a run's law, which has an α-interaction, for the run's number of agents."""
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
     if gain == 0.0:
         return Meeting(0.0, 0.0)
@@ -41,7 +41,7 @@ def meeting(run: Trajectory | Observed) -> Meeting:
 
 
 def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Bounds of the least potential and of that at contact; where none are proved, the values at two distances."""
+    """Return bounds of the least potential and of the potential at contact; if unproved, values at two distances."""
     least, contact = pair.facts.least, pair.facts.contact
     if np.isfinite(least[0]) and contact[0] > -np.inf:
         return least, contact
@@ -53,15 +53,15 @@ def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def above_least(run: Trajectory | Observed, energy: Enclosure) -> Enclosure:
-    """Return an energy less the least that all pairs together can have."""
+    """Return an energy less the least total potential of all pairs."""
     floor = meeting(run).floor
     return energy if floor == 0.0 else (energy - floor).widened(4.0 * EPS * abs(floor))
 
 
 def least_is_known(run: Trajectory | Observed) -> list[Hypothesis]:
-    """The hypothesis that no pair has less energy than is counted with; none where a bound is proved."""
+    """Return the hypothesis that no pair potential is below the least one seen; empty where a bound is proved."""
     facts = run.law.alpha.facts
     if np.isfinite(facts.least[0]) and facts.contact[0] > -np.inf:
         return []
-    detail = f"{type(run.law.alpha).__name__}: no bound is proved; seen at contact, at the length and at the range"
+    detail = f"{type(run.law.alpha).__name__}: no lower bound is proved; values at contact, length, range"
     return [Hypothesis("no pair has less potential energy than the least seen", "assumed", detail=detail)]

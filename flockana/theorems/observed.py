@@ -1,4 +1,4 @@
-"""A run with what is known of its error: enclosures of what can be observed on it, from the run and a second one.
+"""Run with its numerical error: enclosures of observables, from the run and a second one.
 
 The second run starts alike and is a hundred times tighter, or looser where that cannot be. By how much the two differ,
 doubled, encloses the state: each agent seen from the centre of mass, and the centre apart, at worst within one time
@@ -32,7 +32,7 @@ from flockana.theorems.theorem import Claim, Hypothesis, Status
 
 
 class End(NamedTuple):
-    """Last state of a run: positions and velocities, and how far each may be off, seen from the centre of mass."""
+    """Last state of a run in the frame of its centre of mass: positions and velocities with their errors."""
 
     q: FloatArray
     p: FloatArray
@@ -47,7 +47,7 @@ class End(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observed(ResultCache):
-    """A run and a second one from the same start, with enclosures of what both show.
+    """Run paired with a second one from the same start, with enclosures of the observables of both.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Observed(ResultCache):
 
     @property
     def floors(self) -> Floors:
-        """Least errors of the looser run: of a place, a speed and the work."""
+        """Least errors of the looser run: of position, speed and work."""
         return self.other.floors
 
     # half widths ---------------------------------------------------------------------------------------------------
@@ -165,7 +165,7 @@ class Observed(ResultCache):
         return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
 
     def transformed(self, change: Callable[[Trajectory], Trajectory]) -> Observed:
-        """Return both runs as seen from another frame, in which no distance between agents is another."""
+        """Return both runs in another frame that keeps all distances between agents."""
         given, run, other = (change(each) for each in (self.given, self.run, self.other))
         return replace(self, given=given, run=run, other=other)
 
@@ -205,11 +205,11 @@ class Observed(ResultCache):
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
-        """Other states that are known alike; none of a run."""
+        """Other final states that the accuracy allows; empty for a run."""
         return ()
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> Any:
-        """Return by how much an observable differs between states that are known alike: 0 of a run."""
+        """Return how much an observable differs among the states that the accuracy allows; 0 for a run."""
         return 0.0
 
     @cached_property
@@ -267,7 +267,7 @@ class Observed(ResultCache):
     # spans ---------------------------------------------------------------------------------------------------------
 
     def known_samples(self, known: Any) -> int:
-        """Return how many samples from the start on are known, without a gap; 0 if they span less than a law time."""
+        """Return the number of known samples before the first unknown one; 0 if they span less than a law time."""
         unknown = np.flatnonzero(~np.asarray(known))
         count = int(unknown[0]) if unknown.size else len(self.t)
         whole = count == len(self.t) and count > 1
@@ -275,12 +275,12 @@ class Observed(ResultCache):
         return count if whole or long_enough else 0
 
     def until(self, count: int) -> str:
-        """Return up to which time the first so many samples reach, in words."""
+        """Return in words the time up to which the first `count` samples reach."""
         return f"to t = {self.t[count - 1]:.4g}" if count else "at no time"
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
-    """Return a run of a law as observed: what errata show their cases on.
+    """Simulate a law and return the run with its numerical error; for the cases that errata show.
 
     Examples
     --------
@@ -293,7 +293,7 @@ def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options:
 
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
-    """Return claims with the reason why nothing is known of a run, if so; a failed run decides nothing at all."""
+    """Return claims with a doubt about the run in their details; of a failed run no claim is decided."""
     if not seen.doubt:
         return tuple(claims)
     failed = bool(failure(seen.given))
@@ -309,7 +309,7 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
 def as_known(
     hypotheses: Iterable[Hypothesis], claims: Iterable[Claim], seen: Observed
 ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
-    """Return hypotheses and claims as far as the run is known: numbers rest on steps that resolve the law."""
+    """Return hypotheses and claims, with one more hypothesis where steps may not resolve the law."""
     claims = with_doubt(claims, seen)
     if not seen.unresolved:
         return tuple(hypotheses), claims
@@ -340,7 +340,7 @@ def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
     error = (best.error or 0.0) + (DOUBT * apart if best.margin != other.margin else 0.0)
     if other.status == best.status and abs(best.margin) > error:
         return replace(best, error=error)
-    detail = f"{best.detail}; the second run reads {other.status}, and differs by {apart:.2g}"
+    detail = f"{best.detail}; by the second run it is {other.status}, with a margin that differs by {apart:.2g}"
     return replace(best, status="inconclusive", error=error, detail=detail.lstrip("; "))
 
 

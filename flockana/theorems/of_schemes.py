@@ -1,4 +1,4 @@
-"""What theorems on motion say of a scheme's steps (`ExplicitEuler`, `SemiImplicitEuler`, `TaylorStep`).
+"""Verdicts of theorems on motion for the runs of schemes (`ExplicitEuler`, `SemiImplicitEuler`, `TaylorStep`).
 
 A theorem about a flow is vacuous of a run in steps; definitions about samples hold of one as they stand. Of the energy
 identity and of Theorem 6 the library says more: the energy loses in each step what it loses along the flow, and changes
@@ -31,14 +31,14 @@ _FINE = 8  # times finer than usual the flow is integrated
 
 
 def says_of_schemes(item: Theorem) -> str:
-    """Return what a theorem on motion says of a scheme's run, in a sentence; empty for other theorems."""
+    """Return a sentence on what a theorem on motion yields for a scheme's run; empty for other theorems."""
     if item.kind != "trajectory":
         return ""
     if item.id in ON_STEPS:
-        return f"Of a scheme: {ON_STEPS[item.id]}."
+        return f"For the run of a scheme: {ON_STEPS[item.id]}."
     if item.law is None:
-        return "Of a scheme: the same, as it speaks of samples or states its law among its hypotheses."
-    return "Of a scheme: nothing, as it is about the law's flow, unless its first hypothesis names the scheme."
+        return "For the run of a scheme: the same, as the theorem is about samples or has its law among its hypotheses."
+    return "For the run of a scheme: nothing, as the theorem is about the law's flow, unless it names the scheme."
 
 
 def is_about_steps(item: Theorem, seen: Observed) -> bool:
@@ -52,7 +52,7 @@ def is_about_steps(item: Theorem, seen: Observed) -> bool:
 def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
     """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
     law: Scheme = seen.law
-    detail = f"{type(law).__name__} steps {type(law.law).__name__} by {law.dt:g}. {says_of_schemes(item)}"
+    detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
     claims = [vacuous(name, missed, by=item.by(name)) for name in item.claims]
     if item.id not in ON_STEPS or len(seen.t) < 2:
@@ -71,7 +71,7 @@ def _of_law(seen: Observed, law: Scheme) -> Observed:
 
 
 def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerances: Tolerances) -> list[Claim]:
-    """Both claims of ours: the energy falls from sample to sample, and rises by no more than the scheme's defect."""
+    """Return flockana's two claims: the energy falls at every sample, and rises by at most the scheme's defect."""
     run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS
@@ -101,6 +101,6 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
 
 
 def _ends(law: Any, run: Trajectory, refine: int) -> FloatArray:
-    """H where the law's flow leads from each sample by the time of the next."""
+    """Return H after the law's flow from each sample to the time of the next."""
     ends = predicted(law, run.t, run.q, run.p, refine=refine)
     return np.array([law.hamiltonian(float(t), *state) for t, *state in zip(run.t[1:], *ends, strict=True)])

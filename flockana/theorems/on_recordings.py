@@ -166,7 +166,7 @@ def _names(item: Theorem) -> tuple[str, ...]:
 def _of_samples(
     item: Theorem, rec: Recording, tolerances: Tolerances, d: float | None, r: float | None, subject: str
 ) -> Verdict:
-    """A definition about samples, with nothing known between them."""
+    """Return the verdict of a definition about samples, with nothing assumed between them."""
     if item.id not in DEFINITIONS:
         raise ArgumentError(
             f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
@@ -240,6 +240,6 @@ def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
     if claim.status not in ("verified", "refuted"):
         return claim
     if first.status != "met":
-        detail = f"{claim.detail}; {first.name}: {first.detail}, which decides nothing"
+        detail = f"{claim.detail}; nothing is decided, as it is only assumed that {first.name}: {first.detail}"
         return replace(claim, status="inconclusive", detail=detail.lstrip("; "))
     return replace(claim, rigour="statistical" if rec.accuracy.kind == "sd" else "numeric")

@@ -39,7 +39,7 @@ class Step:
 
 
 def sources_steps() -> tuple[Step, ...]:
-    """Return the sources' maps with the equilibria at which they are looked at.
+    """Return the sources' maps with the equilibria at which they are linearised.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def sources_steps() -> tuple[Step, ...]:
     few, many, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
     return (
         Step("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
-        Step("msn-few-in-place", "the same agent by agent in place", MSNDiscretisation(msn, 0.009), few),
+        Step("msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few),
         Step("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
         Step("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
         Step("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
@@ -72,7 +72,7 @@ def _check(tolerances: Tolerances) -> Checked:
 
 
 def _claim(step: Step) -> Claim:
-    """Compare the step with the margin; where that is but an upper bound, judge the multipliers at the step."""
+    """Compare the step with the margin; where the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.law.continuous
     rest = step.q if isinstance(law, MinimalFlocking) else find_equilibrium(law, step.q).q
     found, dt = sampling_margin(step.law, rest), step.law.dt

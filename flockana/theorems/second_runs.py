@@ -1,4 +1,4 @@
-"""A second run of the same start, how far the two differ, and why nothing may be known of a run.
+"""Second run of the same start, the difference of the two, and reasons why a run may show nothing.
 
 The second run is a hundred times tighter, or looser where that cannot be; of a fixed step it is an adaptive one. By the
 same method its steps are bounded by a part of the first's longest, so that the two share no stage; of a pair law given
@@ -47,9 +47,7 @@ class Errors(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two runs of one start at the same samples, their half widths, the reason if these are unknown, and where both may
-    leap over a feature of a formula.
-    """
+    """Two runs of one start at the same samples, their half widths, and reasons why a verdict may not rest on them."""
 
     tighter: Trajectory
     looser: Trajectory

@@ -17,7 +17,7 @@ INTERVAL_ERROR = 1e-9  # of the ends of an interval, which are quantiles of a be
 
 
 def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float]:
-    """Return the exact Clopper-Pearson interval of the share of which `count` among `size` is a sample.
+    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`.
 
     Outcomes that are undecided count against the lower end and for the upper one.
 
@@ -53,7 +53,7 @@ def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, w
 def mostly(
     name: str, holds: Iterable[bool | None], what: str, stated: str, *, least: float = 0.5, witness: Any = None
 ) -> Claim:
-    """Return a claim that a share is at least so large: verified by its lower end, refuted by its upper one."""
+    """Return a claim that a share is at least a bound: verified by its lower end, refuted by its upper one."""
     return _judged(name, list(holds), least, what, stated=stated, witness=witness)
 
 

@@ -63,7 +63,7 @@ def formulas_of(law: Any) -> tuple[Formula, ...]:
 
 
 def demand_of(run: Trajectory, place: float) -> Demand:
-    """Return the steps of a run with what its pair laws' slopes demand of them, to an error of a place."""
+    """Return the steps of a run with the longest ones that its pair laws' slopes allow, positions known to an error."""
     t, q, p, u, slack = run.path
     step, longest = steps_of(run)[1], np.full(len(t) - 1, np.inf)
     for formula in formulas_of(run.law):
@@ -92,7 +92,7 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 
 def _hidden(formula: Formula, apart: FloatArray, allowance: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
-    """Return ω² of each pair over an interval, from its relative control points, and the way that its distance goes."""
+    """Return ω² of each pair over an interval, from its relative control points, and how far its distance moves."""
     sides, ends = lengths(np.diff(apart, axis=1)).sum(axis=1) + 2.0 * allowance, lengths(apart[:, [0, -1]])
     middle, edges = 0.5 * ends.sum(axis=1), _table(formula.pair)[0]
     first = np.clip(np.searchsorted(edges, middle - 0.5 * sides, side="right") - 1, 0, len(edges) - 2)

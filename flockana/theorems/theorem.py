@@ -122,15 +122,15 @@ class Claim:
 
     @property
     def account(self) -> str:
-        """The detail, of a vacuous claim after the need that does not hold."""
+        """Detail; for a vacuous claim with the unmet hypothesis in front."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
-        if missed is None or self.detail.startswith(missed.name):
+        if missed is None or self.detail.startswith(does_not_hold(missed.name)):
             return self.detail
         return f"{does_not_hold(missed.name)}; {self.detail}"
 
     @property
     def cited(self) -> str:
-        """What its proof takes from the literature, in words, or an empty text."""
+        """Results of the literature that the claim's proof cites, in words, or an empty text."""
         return f" [proof cites {', '.join(self.cites)}]" if self.cites else ""
 
 
@@ -166,7 +166,7 @@ class Verdict:
 
     @property
     def further_claims(self) -> tuple[Claim, ...]:
-        """Corrections and extensions, which leave the status as it is."""
+        """Corrections and extensions, which do not change the verdict's status."""
         return tuple(claim for claim in self.claims if claim.by != self.author)
 
     @property
@@ -306,7 +306,7 @@ class Theorem:
 
     @property
     def erratum(self) -> Erratum | None:
-        """What the source prints and what is right, if the theorem checks an erratum."""
+        """Erratum that the theorem checks (what is printed and what is right), or None."""
         return erratum_of(self.id)
 
     def by(self, claim: str) -> By:
@@ -346,7 +346,7 @@ class Theorem:
 
 
 def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
-    """The first hypothesis that is not met, if any is not.
+    """Return the first unmet hypothesis; None if no hypothesis is unmet.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class Verdicts(tuple[Verdict, ...]):
         return html_table(self.rows(), ("theorem", "status", "rigour", "decided by", "title"))
 
     def about_the_law(self) -> Verdicts:
-        """Return these verdicts without vacuous ones of theorems that name no law, as they are about another."""
+        """Return these verdicts without the vacuous ones of theorems that name no law."""
         return Verdicts(v for v in self if v.status != "vacuous" or theorem(v.theorem).law is not None)
 
     def to_latex(self) -> str:

@@ -164,7 +164,7 @@ def test_ctrl_c_before_the_first_frame_is_130(call, catalogue, monkeypatch, tmp_
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("verify", "os-1", "--on", "run.nc", "--seed", "3"), "--seed 3: a saved run was started already"),
+        (("verify", "os-1", "--on", "run.nc", "--seed", "3"), "--seed 3: a saved run has its start"),
         (("equilibrium", "line:3", "--seed", "3"), "--seed 3: line:3 is no scenario"),
         (("stability", "line:3", "--seed", "0"), "--seed 0: line:3 is no scenario"),
         (("stability", "line:3", "--start", "start"), "--start start: line:3 is no scenario"),

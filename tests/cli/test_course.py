@@ -79,7 +79,7 @@ def test_answers_are_not_replaced(call, refused, tmp_path, options, book):
     answered.write_text(text)
     lost.unlink()
     refused(
-        f"own/{book} is there and differs from what would be written: nothing is written, so that no answers are lost; "
+        f"own/{book} exists with other content: nothing is written, so that no answers are lost; "
         "choose another folder, or move it away",
         "own",
         *options,
@@ -93,7 +93,7 @@ def test_other_files_of_the_course_are_not_replaced_either(refused, tmp_path, na
     path = tmp_path / "own" / name
     path.parent.mkdir(parents=True)
     path.write_text("mine")
-    refused(f"own/{name} is there and differs from what would be written", "own")
+    refused(f"own/{name} exists with other content", "own")
     assert path.read_text() == "mine"
     assert [each for each in (tmp_path / "own").rglob("*") if each.is_file()] == [path]
 

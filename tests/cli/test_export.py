@@ -44,7 +44,7 @@ def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, mes
 def test_another_s_file_is_kept(refused, tmp_path, name, text):
     (tmp_path / name).write_text(text)
     refused(
-        f"{name} is there, and is no file of an export for LAMMPS: nothing is written, so that it is kept; choose "
+        f"{name} exists and is not from an export for LAMMPS: nothing is written, so that it is kept; choose "
         "another folder, or move it away",
         *("lammps", "hexagon", "--out", tmp_path, "--points", 50),
     )

@@ -248,4 +248,4 @@ def test_headers_are_respected(found, refused, tmp_path):
     (tmp_path / "v.csv").write_text("x,y,vx\n0,0,1\n7,0,1\n")
     refused("expected vy too", "v.csv")
     (tmp_path / "t.csv").write_text("time,id,x,y\n0,1,0,0\n")
-    refused("a recording is for observe", "t.csv")
+    refused("observe reads recordings", "t.csv")

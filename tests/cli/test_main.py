@@ -144,7 +144,7 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         ),
         (
             ["ensemble", "hexagon", "--retry"],
-            "--retry: without a store no run is held as failed; give --store FILE too",
+            "--retry: without a store no failed runs are known; give --store FILE too",
         ),
         (["run", "hexagon"], "--output"),
         (["run", "hexagn", "-o", "x.nc"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),

@@ -24,7 +24,7 @@ def test_what_differs_is_told_before_anything_is_written(tmp_path, obstacle):
         there.mkdir()
     else:
         there.symlink_to("nowhere")
-    with pytest.raises(FileError, match=r"b\.txt is there and differs .*; choose another folder, or move it away"):
+    with pytest.raises(FileError, match=r"b\.txt exists with other content.*; choose another folder, or move it away"):
         deliver(tmp_path, {"a.txt": b"a", "b.txt": b"b"})
     assert [path.name for path in tmp_path.iterdir()] == ["b.txt"]
 
@@ -40,6 +40,6 @@ def test_a_law_of_one_s_own_is_not_replaced_where_a_notebook_runs(tmp_path):
     build.copy_companions(tmp_path)
     build.copy_companions(tmp_path)
     (tmp_path / "own_law" / "law.py").write_text("mine")
-    with pytest.raises(FileError, match=r"law\.py is there and differs"):
+    with pytest.raises(FileError, match=r"law\.py exists with other content"):
         build.copy_companions(tmp_path)
     assert (tmp_path / "own_law" / "law.py").read_text() == "mine"

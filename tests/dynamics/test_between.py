@@ -270,7 +270,7 @@ class TestRefusals:
     @pytest.mark.parametrize("times", [[0.0, 0.5], [0.5, 1.0], [0.5, 2.0]])
     def test_times_that_are_not_between_samples(self, times):
         steps = np.zeros((2, 3, 2))
-        with pytest.raises(ArgumentError, match="expected times between those of the samples"):
+        with pytest.raises(ArgumentError, match="expected times strictly between those of the samples"):
             Trajectory(
                 np.array([0.0, 1.0]), steps, steps, steps, LAW, between=Between(np.array(times), steps, steps, steps)
             )

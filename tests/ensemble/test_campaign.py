@@ -299,7 +299,7 @@ BAD = [
     ({"scenario": "hexagn"}, UnknownNameError, "did you mean 'hexagon'"),
     ({"scenario": 3}, ArgumentError, "scenario = 3: expected a name"),
     ({"scenario": lambda seed: None}, ArgumentError, "top of a module"),
-    ({"seeds": []}, ArgumentError, "there are none"),
+    ({"seeds": []}, ArgumentError, "empty; expected"),
     ({"seeds": 200}, ArgumentError, r"seeds = 200: expected several .*range\(200\)"),
     ({"seeds": [1, 2, 1]}, ArgumentError, "seed 1 comes twice"),
     ({"seeds": range(10**11)}, ArgumentError, "seeds: there are more than 1000000; expected at most so many, split"),

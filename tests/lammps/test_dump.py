@@ -247,5 +247,5 @@ def test_names_of_elements_are_no_numbers(path):
 
 
 def test_bounds_that_are_none_are_refused(path):
-    with pytest.raises(FileError, match="bounds that are none"):
+    with pytest.raises(FileError, match="invalid bounds"):
         boxed(path, "ss ss pp\n0\n0\n0", "id x y vx vy", "1 1 1 1 1")

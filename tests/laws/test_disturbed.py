@@ -137,7 +137,7 @@ def test_it_is_saved_and_its_theorems_are_vacuous(tmp_path):
     np.testing.assert_array_equal(simulate(again.law, run.q[0], run.p[0], (0.0, 1.0)).q, run.q)
     verdict = verify("os-3", again)
     assert verdict.status == "vacuous"
-    assert "the run is of the law within Disturbed" in verdict.claims[0].detail
+    assert "wrapped in Disturbed" in verdict.claims[0].detail
     assert verify("energy", simulate(Disturbed(LAW, force=(0.1, 0.0)), Q, 0.0 * Q, (0.0, 1.0))).status == "vacuous"
 
 
@@ -162,7 +162,7 @@ def test_units():
             r"force\(1.5\) = 'wind': expected finite components",
         ),
         (lambda: simulate(Disturbed(LAW, force=lambda t: (t,)), Q, Q, (0, 1)), "force has 1 components, the agents 2"),
-        (lambda: Disturbed(LAW, times=(0.0, 1.0)), "times has 2 numbers and table 0 rows: expected as many"),
+        (lambda: Disturbed(LAW, times=(0.0, 1.0)), "times has 2 numbers and table 0 rows: expected the same"),
         (lambda: Disturbed(LAW, times=(1.0, 0.0), table=((0.0, 0.0), (1.0, 1.0))), "expected rising times"),
         (lambda: Disturbed(LAW, times=(1.0,), table=(1.0,)), r"table = .*: expected finite components, \(K, m\)"),
         (lambda: Disturbed(LAW, frequency=-1.0), "frequency = -1"),

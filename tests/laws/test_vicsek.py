@@ -107,7 +107,7 @@ def test_other_units():
         ({"speed": -1.0}, "speed = -1"),
         ({"dt": float("nan")}, "dt = nan"),
         ({"average": "median"}, "average = 'median': expected one of headings, vectors"),
-        ({"noise": 7.0}, "noise = 7: expected radians, at most 2π"),
+        ({"noise": 7.0}, "noise = 7: expected at most 2π radians"),
         ({"noise": -1.0}, "noise = -1"),
         ({"seed": 1.5}, "seed = 1.5"),
         ({"zero": float("inf")}, "zero = inf"),

@@ -120,7 +120,7 @@ MESSAGES = [
     ("t,id,x\n0,,2\n", r"line 2, column 'id': no name"),
     ("t,id,x\n", "a header and no rows"),
     ("", "is empty"),
-    ("t,x,x\n0,1,2\n", "the column 'x' stands twice"),
+    ("t,x,x\n0,1,2\n", "the column 'x' is given twice"),
     ("t,id,x,z\n0,1,2,3\n", "expected y too"),
     ("t,id,y\n0,1,2\n", "expected x too"),
     ("t,x\n0,1\n0,2\n", "several rows at one time and no column id"),

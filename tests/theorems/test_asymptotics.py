@@ -29,11 +29,11 @@ def test_velocities_match_by_a_basin_and_never_by_a_decay_alone():
     pair = Observed.of(simulate(law, [[0.0, 0.0], [7.1, 0.0]], np.zeros((2, 2)), (0.0, 60.0)))
     claim = velocities_match(pair, [], name="ii", caught=[final_basin(pair).certificate])
     assert claim.status == "verified"
-    assert claim.detail.startswith("velocities match: K̃ goes from 0 to ")
+    assert claim.detail.startswith("velocity mismatch K̃ goes from 0 to ")
     assert "certified to stay near a strict minimum of U" in claim.detail
     alone = velocities_match(pair, [], name="ii")
     assert alone.status == "inconclusive"
-    assert "consistent: K̃ falls by a factor of" in alone.detail
+    assert "in this run K̃ falls by a factor of" in alone.detail
 
 
 def test_where_a_net_can_flex_no_basin_is_known_and_a_lattice_is_open():
@@ -58,4 +58,4 @@ def test_a_lattice_is_the_limit_of_what_stays_near_it_and_a_strained_minimum_is_
     claim = lattice_limit(strained, [], TOLERANCES, name="i")
     assert claim.status == "refuted"
     assert claim.computed > 1e-3
-    assert claim.detail.endswith("λJ presses on every link; " + final_basin(strained).certificate.text)
+    assert claim.detail.endswith("λJ compresses every link; " + final_basin(strained).certificate.text)

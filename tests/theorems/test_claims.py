@@ -123,7 +123,7 @@ def test_a_margin_that_a_search_compares_is_finite():
 
 
 def test_vacuous_and_undecided_claims_name_their_reason():
-    assert vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail == "c1α > 0: c1α = 0"
+    assert vacuous("iv", Hypothesis("c1α > 0", "unmet", 0.0, "c1α = 0")).detail == "c1α > 0 does not hold: c1α = 0"
     assert undecided("rate", "at rest from the start", [UNMET]).status == "vacuous"
     assert undecided("rate", "at rest from the start", [ASSUMED]).status == "inconclusive"
 

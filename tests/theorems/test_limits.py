@@ -11,11 +11,11 @@ T = np.linspace(0.0, 80.0, 801)
 @pytest.mark.parametrize(
     ("amplitude", "said"),
     [
-        (np.exp(-T), "consistent: v falls by a factor of 2.5e+30"),  # e^70, to the start of the last eighth
+        (np.exp(-T), "in this run v falls by a factor of 2.5e+30"),  # e^70, to the start of the last eighth
         (np.abs(np.cos(T)), "v does not fall"),
         (np.exp(0.1 * T), "v does not fall"),
         (np.zeros(801), "v does not fall"),
-        (1.0 / (1.0 + T), "consistent: v falls by a factor of 71"),
+        (1.0 / (1.0 + T), "in this run v falls by a factor of 71"),
     ],
     ids=["decay", "swing", "growth", "rest", "power"],
 )

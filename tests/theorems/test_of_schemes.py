@@ -37,7 +37,7 @@ def test_a_scheme_whose_law_damps_may_lose_energy_all_the_same():
     assert [found.claim(name).status for name in ("steps-fall", "steps-defect")] == ["verified", "verified"]
     assert "our extension" in found.summary
     assert found.hypotheses[0].status == "unmet"
-    assert "TaylorStep steps Algorithm2 by 0.01" in found.hypotheses[0].detail
+    assert "in steps of 0.01 of Algorithm2 by TaylorStep" in found.hypotheses[0].detail
     assert "energy" in {one.theorem for one in fl.verify(None, run)}
     assert fl.verify("os-3", run).hypotheses[0].name == "the law acts in continuous time"
 

@@ -46,7 +46,7 @@ class AlignmentTerm(Term):
     idle: ClassVar[bool] = True
 
     def _gain(self, n: int) -> float:
-        """g, or g/n."""
+        """Return the gain g, divided by n if the consensus is a mean."""
         return self.gain / n if self.mean else self.gain
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
@@ -75,7 +75,7 @@ class AlignmentTerm(Term):
 
 
 def _assembled(i: Any, j: Any, blocks: FloatArray, n: int) -> csr_array:
-    """Of blocks B of pairs: −B on the two diagonal blocks, B on the two others."""
+    """Return the matrix of pair blocks B: −B on the two diagonal blocks, B on the two others."""
     from scipy.sparse import coo_array
 
     m = blocks.shape[1]

@@ -1,4 +1,4 @@
-"""What acts along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
+"""Forces along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class AlongVelocity(Term):
 
     @property
     def splits(self) -> bool:
-        """A drag is the same for shape and centre; what depends on the speed is not."""
+        """Whether shape and centre of mass decouple: under plain drag they do, under speed control not."""
         return self.brake == 0.0
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

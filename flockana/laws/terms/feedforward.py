@@ -1,4 +1,4 @@
-"""The γ-agent's acceleration, told to every agent: what followers of a varying velocity lack otherwise."""
+"""Feedforward of the γ-agent's acceleration to every agent, needed to follow a varying velocity."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ class Navigation(Term):
 
     @cached_property
     def _path(self) -> FloatArray | None:
-        """The numbers of `flockana.kernels.navigation`, of a target whose path has that form."""
+        """Numbers that `flockana.kernels.navigation` reads, for a target whose path is harmonic; else None."""
         path = self.target.harmonic
         if path is None or not overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
@@ -98,7 +98,7 @@ class Navigation(Term):
 
     @cached_property
     def _straight(self) -> FloatArray | None:
-        """The same of a target at rest or on a line, whose path compiled code has to the last bit."""
+        """Numbers for the kernel of a target at rest or on a line, exact to the last bit; else None."""
         return None if self._path is None or self.target.harmonic.omega else self._path  # type: ignore[union-attr]
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
@@ -124,5 +124,5 @@ class Navigation(Term):
         return -pull, -drag
 
     def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Second derivative of `energy`, on deviations x where it is that of the shape."""
+        """Return the second derivative of `energy` by positions, or by deviations in the moving frame."""
         return self.target_derivatives(t, q)[0]

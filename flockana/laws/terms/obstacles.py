@@ -52,7 +52,7 @@ class ObstacleTerm(Term):
 
     @property
     def invariance(self) -> Invariance:
-        """Rotations, of those about the target, that move no obstacle."""
+        """Motions that leave the energy unchanged: with obstacles, rotations about the target."""
         return "rotations about the target" if self.field.obstacles else "rigid motions"
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
@@ -63,7 +63,7 @@ class ObstacleTerm(Term):
         check_free(q, self.field.obstacles)
 
     def compiled(self, m: int) -> tuple[TermKernel, ...] | None:
-        """Each kind of obstacle as a term."""
+        """Return compiled terms, one for each kind of obstacle."""
         if not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
             return None
         beta, kernels = self.field.beta, []

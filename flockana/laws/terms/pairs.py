@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def ensure_apart(q: FloatArray) -> None:
-    """Raise if two agents stand at one place, for a force that has no limit there.
+    """Raise if two agents coincide, for a force that has no limit there.
 
     Examples
     --------

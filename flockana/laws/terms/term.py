@@ -1,4 +1,4 @@
-"""What a summand of a law gives: its force and power, its share of the energy, and their derivatives."""
+"""Interface of the terms of a law: force, power, share of the energy, and derivatives."""
 
 from __future__ import annotations
 
@@ -47,17 +47,17 @@ class Compiled(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """Within which it needs all pairs."""
+        """Distance within which the term needs all pairs."""
         return max((term.reach for term in self.terms), default=0.0)
 
     @property
     def functions(self) -> LawFunctions:
-        """Its functions, compiled."""
+        """Compiled functions of the term."""
         return law_functions(tuple((term.act, term.energy) for term in self.terms))
 
     @property
     def numbers(self) -> LawNumbers:
-        """What they read."""
+        """Numbers that the compiled functions read."""
         return law_numbers(self.terms)
 
     def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:
@@ -74,7 +74,7 @@ class Compiled(NamedTuple):
 
 
 class Term(ABC):
-    """A summand u^T of u = Σ u^T, where what it gives is unchecked: the law checks once for all.
+    """Term u^T of a law u = Σ u^T; its results are unchecked, as the law checks once for all terms.
 
     A derivative is either a sparse matrix (n m, n m) in the order of ``q.ravel()``, or an array of blocks (n, m, m),
     where an agent feels of the others nothing.
@@ -88,17 +88,17 @@ class Term(ABC):
 
     @property
     def invariance(self) -> Invariance:
-        """What leaves the energy unchanged; rigid motions, as of everything that depends on distances alone."""
+        """Motions that leave the term's energy unchanged; by default rigid motions."""
         return "rigid motions"
 
     @property
     def splits(self) -> bool:
-        """Whether it lets shape and centre of mass move apart: its forces cancel, or are one linear pull or drag."""
+        """Whether shape and centre of mass decouple: the term's forces cancel, or are one linear pull or drag."""
         return self.invariance == "rigid motions"
 
     @property
     def moving(self) -> bool:
-        """Whether its energy and its power are those in the frame that moves with the flock's centre of mass."""
+        """Whether the term's energy and power are those in the frame of the flock's centre of mass."""
         return False
 
     @abstractmethod
@@ -112,19 +112,19 @@ class Term(ABC):
         """
 
     def energy(self, t: float, q: FloatArray) -> float:
-        """Its potential energy; 0 for a term without one."""
+        """Return the term's potential energy; 0 if it has none."""
         return 0.0
 
     @abstractmethod
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
-        """(∂u/∂q, ∂u/∂p) of its force."""
+        """Return (∂u/∂q, ∂u/∂p) of the term's force."""
 
     @abstractmethod
     def hessian(self, t: float, q: FloatArray) -> Any:
-        """Second derivative of `energy`."""
+        """Return the second derivative of `energy` by positions."""
 
     def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
-        """The term, or several that add up to it, for integrators that are compiled too.
+        """Return the term in compiled form, or several terms that add up to it.
 
         None, and the law is stepped by scipy's, unless it has one.
         """

@@ -21,7 +21,7 @@ class Box:
 
     @classmethod
     def of(cls, words: Sequence[str], rows: FloatArray) -> Box | None:
-        """The box of an item ``BOX BOUNDS`` and its three lines; None if they do not fit each other.
+        """Return the box of an item ``BOX BOUNDS`` and its three lines; None if they are inconsistent.
 
         Bounds of a tilted box are those of the box around it.
 
@@ -43,5 +43,5 @@ class Box:
         return cls(edges, periodic)
 
     def crossed(self, axes: Sequence[int]) -> list[int]:
-        """Edges along which an agent may leave and come in again elsewhere on some axes."""
+        """Return the periodic edges that have a component along one of some axes."""
         return [k for k in range(3) if (self.periodic is None or self.periodic[k]) and self.edges[k, list(axes)].any()]

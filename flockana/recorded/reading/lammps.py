@@ -140,7 +140,7 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
         elif item[:2] == ["BOX", "BOUNDS"]:
             box = Box.of(item[2:], _numbers(file, 3, None, path))
             if box is None:
-                raise FileError(f"{path}: {line.strip()[:60]!r} has bounds that are none; expected a box of LAMMPS")
+                raise FileError(f"{path}: {line.strip()[:60]!r} has invalid bounds; expected a box of LAMMPS")
         elif item[:1] == ["UNITS"]:
             next(file, "")
         elif item[:1] == ["ATOMS"]:

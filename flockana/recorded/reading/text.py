@@ -31,7 +31,7 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
         )
     twice = sorted({cell for cell in cells if cells.count(cell) > 1}) if names is None else []
     if twice:
-        raise FileError(f"{path}, line 1: the column {twice[0]!r} stands twice; expected each once")
+        raise FileError(f"{path}, line 1: the column {twice[0]!r} is given twice; expected each once")
     width = len(cells)
     if names is not None and len(names) != width:
         raise FileError(f"{path}, line 1: {width} columns, and {len(names)} names are given; expected one for each")
@@ -122,7 +122,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _delimiter(line: str) -> str:
-    """Tab, semicolon or comma: the one that the first line has most of."""
+    """Return the delimiter most frequent in the first line: tab, semicolon or comma."""
     return max("\t,;", key=line.count)
 
 

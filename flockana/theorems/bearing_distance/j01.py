@@ -21,7 +21,7 @@ _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most;
 
 
 def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
-    """(law, q, p) of many random out-trees of 2 to 8 agents, none of which sees another: one run moves them all."""
+    """Return (law, q, p) of many independent random out-trees of 2 to 8 agents, simulated in one run."""
     rng = np.random.default_rng(seed)
     edges: list[tuple[int, int]] = []
     agents = 0
@@ -34,7 +34,7 @@ def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFl
 
 
 def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
-    """Each tree of a forest, with its state at the end of the run."""
+    """Yield each tree of a forest, with its state at the end of the run."""
     edges: Edges = seen.law.edges
     label = components(seen.n, np.array(edges, dtype=np.int32))
     trees = []
@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="|x_e| -> 0 on every edge of every spanning tree",
             witness=case | {"shortest edge at the end": float(lengths.min())},
             disproof="bearing-distance-printed",
-            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge at a length > 0 for ever; the "
+            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge longer than 0 for good; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
         limit_claim(
@@ -75,8 +75,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"trees": settled, "interval": [least, most]},
             stated="what converges is | |x_e| - α_i r_i | and the velocity difference, on every edge",
             witness=case | {"largest length error": float(np.abs(lengths - 1.0).max())},
-            detail=f"{settled} of {_TREES} random directed trees go to every edge at αr and equal velocities; share "
-            f"{least:.3f} or more ({CONFIDENCE:.0%}, Clopper-Pearson)",
+            detail=f"{settled} of {_TREES} random trees tend to edges of length αr and equal velocities; share "
+            f"at least {least:.3f} ({CONFIDENCE:.0%}, Clopper-Pearson)",
         ),
     ]
 

@@ -10,7 +10,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 
 
 def _two_agents_abscissa(ratio: float) -> float:
-    """Largest real part of an eigenvalue of the law's Jacobian in the child of two agents, at this multiple of ρ."""
+    """Return the spectral abscissa of two agents, a root and its child, at a multiple of the desired length ρ."""
     law = MinimalFlocking(edges=((0, 1),), spacing=1.0)
     A = law.jacobian(0.0, np.array([[0.0, 0.0], [ratio, 0.0]]), np.zeros((2, 2)))
     child = [2, 3, 6, 7]

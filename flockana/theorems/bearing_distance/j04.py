@@ -46,7 +46,7 @@ def _loop() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    signs = "(28) as printed has the wrong sign before q", "so has the identity before (34)"
+    signs = "(28) as printed has the wrong sign before q", "the identity before (34) has the wrong sign, too"
     return [
         _identity("28", "separation = -(d W Dᵀ) p + (d W) q", signs[0], disproof=_PROOF),
         _identity("identity", "(d W) q = α r (d W W^q Dᵀ) p", signs[1], disproof=_PROOF),

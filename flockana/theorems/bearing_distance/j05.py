@@ -26,7 +26,7 @@ def _wanted(law: MinimalFlocking) -> FloatArray:
 
 
 def _off(law: MinimalFlocking, seed: int) -> Enclosure:
-    """Return how far a run from a random start ends from the equilibrium: equal ends, edges 5/3, |u| = 2/3."""
+    """Return how far a run from a random start ends from the predicted equilibrium: edges 5/3 long, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
     seen = observed(law, q, p, (0.0, _END), t_eval=(0.0, _END), rtol=1e-11)
@@ -36,7 +36,7 @@ def _off(law: MinimalFlocking, seed: int) -> Enclosure:
 
 
 def _rate(law: MinimalFlocking) -> float:
-    """Rate of the slowest mode of the linearised runaway, but for its direction, which is free."""
+    """Return the slowest decay rate of the linearised runaway, its free direction left out."""
     q = np.array([[-5.0 / 3.0, 0.0], [0.0, 0.0], [-5.0 / 3.0, 0.0]])
     T = np.kron(np.eye(2), np.kron(-incidence(3, ((0, 1), (1, 2))).T, np.eye(2)))  # (q, p) to edges and their rates
     modes = np.linalg.eigvals(T @ np.asarray(law.jacobian(0.0, q, 0.0 * q)) @ np.linalg.pinv(T))
@@ -57,7 +57,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",
             witness={"graph": "frozen undirected path of three"},
             disproof=_PROOF,
-            detail=f"an edge between agents of different degree is wanted at two lengths at once: whatever its length, "
+            detail=f"the two agents of an edge want different lengths if their degrees differ: whatever its length, "
             f"it is off one of them by {0.5 * abs(wanted[1] - wanted[0]):g} or more",
         ),
         judged(

@@ -62,7 +62,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
             disproof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
-            "finer steps less still",
+            "finer steps the limit is lower",
         ),
         always(
             "speed",
@@ -74,7 +74,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         mostly(
             "clip",
             [abs(v - law.desired_speed) <= near for v in clipped],
-            "with v min(1, v^max/|v|) it is about 3",
+            "with v min(1, v^max/|v|) the mean speed is about 3",
             "a plain clip lets the flock keep 3 m/s",
             witness={"mean speed over seeds": float(np.mean(clipped))},
         ),

@@ -56,7 +56,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "the flock stays together with the estimate as well",
             witness={"components by seed": flocks},
         ),
-        mostly("measured", connected, "with its true velocity it is one component", "odometry mends it"),
+        mostly("measured", connected, "with the true velocity the flock is one component", "odometry repairs it"),
     ]
 
 

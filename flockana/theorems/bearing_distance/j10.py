@@ -68,8 +68,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         mostly(
             "unordered-still",
             [c < _IN_ORDER for c in mended],
-            f"not {order}, with J7 and J8 mended and the printed weights,",
-            "nor is C = 1 within 2 s with J7 and J8 mended",
+            f"C falls below {_IN_ORDER:g} after {_FROM:g} s, with J7 and J8 corrected and the printed weights,",
+            "C does not reach 1 within 2 s with J7 and J8 corrected",
             witness={"least C from 2 s on, by seed": mended},
         ),
         _weights_cancel(),

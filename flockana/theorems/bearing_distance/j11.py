@@ -30,7 +30,7 @@ def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
-    """Number of components of the undirected graph of who perceives whom.
+    """Return the number of components of the undirected graph of perception.
 
     Examples
     --------

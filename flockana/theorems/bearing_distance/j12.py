@@ -61,7 +61,7 @@ def _separation_only(speed: float, weight: float) -> ZoneFlocking:
 
 
 def _stand_offs() -> tuple[float, dict[str, list[float]]]:
-    """(largest error, [predicted, measured] by case) of the stand-off before a wall and before another agent."""
+    """Return (largest error, [predicted, measured] by case) of the distance kept from a wall and from another agent."""
     rows = {f"wall, w^ga = {g:g}, w^oa = {w:g}": [3.0 - 3.0 * g / w, _at_wall(g, w)] for g, w in _AT_WALLS}
     rows |= {
         f"agents, w^ga = {g:g}, w^ls = {w:g}": [3.0 - 3.0 * g / w, _head_on(_separation_only(g, w))[0]]
@@ -104,8 +104,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",
-            detail=f"pushed out by {mended_outward:.3g}, back by {mended_inward:.3g}: after 3 s the second is "
-            f"{-mended_beyond:.3g} m inside",
+            detail=f"an agent inside is pushed out by {mended_outward:.3g}, one beyond a wall back by "
+            f"{mended_inward:.3g}: after 3 s it is {-mended_beyond:.3g} m inside the wall",
         ),
         of_map(
             "stand-off",

@@ -24,7 +24,7 @@ _NEAR = 0.05  # a mean speed this close, relative, is "about" the desired one
 
 
 def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
-    """(speeds over time of two agents side by side of whom so many are informed, the same by x' = M x in steps)."""
+    """Return speeds over time of two agents side by side, some of them informed: simulated, and by x' = M x."""
     drives = tuple(_DRIVE if k < informed else 0.0 for k in range(2))
     weights = ZoneWeights(speed=drives, cohesion_gain=0.0, alignment_gain=_GAIN)
     law = ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED, v_max=_UNBOUNDED, desired_speed=_DESIRED)
@@ -52,7 +52,7 @@ def _told_and_not() -> list[Claim]:
             computed=told[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
-            detail=f"of two at 1 m/s one is told v^d = {_DESIRED:g}: both take it over, as x' = M x has it, whose "
+            detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as by x' = M x, whose "
             f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
         of_map(
@@ -62,13 +62,13 @@ def _told_and_not() -> list[Claim]:
             computed=alone[-1].tolist(),
             stated=1.5,
             witness={"informed": "none", "p(0)": (1.0, 2.0)},
-            detail="two of whom none is informed, at 1 and at 2 m/s, agree on 1.5: alignment alone keeps a mean",
+            detail="two uninformed agents at 1 and 2 m/s agree on 1.5 m/s: alignment alone preserves the mean",
         ),
     ]
 
 
 def _speeds(informed: int) -> list[float]:
-    """Mean speed over the second half of runs of ten agents of whom so many are informed, by seed."""
+    """Return mean speeds, by seed, over the second half of runs of ten agents, some of them informed."""
     weights = ZoneWeights(speed=tuple([5.0] * informed + [0.0] * (_AGENTS - informed)))
     runs = (observed(ZoneFlocking(_RADII, weights), *separated_start(k), (0.0, _DURATION)).run for k in range(_SEEDS))
     return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs]

@@ -32,7 +32,7 @@ def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: fl
 
 
 def _rest(separation: float, cohesion: float, start: float = 3.5) -> float:
-    """Distance at which they come to rest."""
+    """Return the distance at which two agents come to rest."""
     return float(_distances(separation, cohesion, start)[-1])
 
 

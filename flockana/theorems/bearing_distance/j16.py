@@ -29,7 +29,7 @@ def _positions(law: ZoneFlocking, q: FloatArray, p: FloatArray, steps: int) -> F
 
 
 def _at_walls() -> Claim:
-    """Two agents head on at opposite walls: each slows down for ever before its own, and there both stay.
+    """Two agents head on at opposite walls: each slows down before its wall, and both stay there.
 
     With e = d - d*, the speed and e obey v' = (1 - gδ)v + wδe and e' = e - δv'. Of a matrix with two real eigenvalues
     in (0, 1) all states with e/v above that of the faster mode stay so, with v > 0: e falls, and never to 0.
@@ -59,7 +59,7 @@ def _at_walls() -> Claim:
 
 
 def _circling() -> Claim:
-    """Two lone agents in the box, charitably read: many come to run along the walls, one behind the other."""
+    """Two lone agents in a box, charitable reading: many pairs end up running along the walls in line."""
     law = ZoneFlocking(_RADII, _PRINTED, _WALLED)
     nearest = []
     for seed in range(_SEEDS):
@@ -75,12 +75,12 @@ def _circling() -> Claim:
         stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
         detail=f"from {met} of {_SEEDS} random starts two agents in a box of {_SIDE:g} m meet within "
-        f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which decides nothing about later",
+        f"{0.1 * _STEPS:g} s; the others run along the walls, one behind the other, which leaves later times open",
     )
 
 
 def _lone() -> Claim:
-    """Remark 2: two who fly apart in the open find each other once their radii of attraction grow."""
+    """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
     return of_map(
@@ -90,8 +90,8 @@ def _lone() -> Claim:
         computed={f"distance after two minutes, growth {growth:g} m/s": d for growth, d in gap.items()},
         stated="lone agents part, unless their radii of attraction grow faster than they do so",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
-        detail=f"two lone agents that fly apart are {gap[0.0]:.3g} m apart after two minutes, with radii that grow by "
-        f"{_SLOWER:g} m/s {gap[_SLOWER]:.3g} m (they part by 6 m/s), and by {_GROWTH:g} m/s {gap[_GROWTH]:.3g} m",
+        detail=f"two lone agents that fly apart at 6 m/s are {gap[0.0]:.3g} m apart after two minutes; "
+        f"{gap[_SLOWER]:.3g} m if radii grow by {_SLOWER:g} m/s, {gap[_GROWTH]:.3g} m if by {_GROWTH:g} m/s",
     )
 
 
@@ -101,7 +101,7 @@ def _last_gap(growth: float, q: FloatArray, p: FloatArray) -> float:
 
 
 def _pairs() -> Claim:
-    """Two pairs at their distance of rest and at the desired speed: everyone has a flockmate, and nothing grows."""
+    """Two pairs at rest distance and desired speed: every agent has a flockmate, so no radius grows."""
     law = ZoneFlocking(_RADII, _PRINTED, growth=_GROWTH)
     q = np.array([[0.0, 0.0], [0.0, 2.5], [20.0, 0.0], [20.0, 2.5]])  # 2.5 = c w^ls/(w^ls + g_c): no force
     p = _SPEED * np.array([[-1.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
@@ -116,7 +116,7 @@ def _pairs() -> Claim:
         stated="growing radii of attraction keep the flock one",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {parted:.4g} m "
-        f"apart after a minute, as straight on ({straight:g})",
+        f"apart after a minute, as in straight flight ({straight:g})",
     )
 
 

@@ -17,7 +17,7 @@ _ROUNDING = 1e-9  # relative: of a few hundred steps
 
 
 def _meeting(s: float) -> tuple[float, float, float]:
-    """(when the alien first moves, when the agent first heeds it, their least distance) of an agent head on at it."""
+    """Return (time of the alien's first move, time of the agent's first reaction, least distance), both head on."""
     world = ZoneWorld(aliens=(Alien((_AT, 0.0), detection=_DETECTION, speed=_PURSUIT),))
     law = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0, s=s), ZoneWeights(), world, u_max=1e6)
     q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])
@@ -30,7 +30,7 @@ def _meeting(s: float) -> tuple[float, float, float]:
 
 
 def first_step(happens: npt.NDArray[np.bool_]) -> float:
-    """Number of the first step in which it happens, NaN if it never does: then nothing is decided."""
+    """Return the index of the first step that satisfies a condition, or NaN."""
     return float(np.argmax(happens)) if happens.any() else float("nan")
 
 
@@ -46,7 +46,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=delay,
             stated=predicted,
             witness={"s": _SHORT, "detection": _DETECTION, "approach": _SPEED + _PURSUIT},
-            detail=f"head on, an agent that sees {_SHORT:g} m heeds the alien {delay:.2g} s after it was detected: "
+            detail=f"head on, an agent that sees {_SHORT:g} m reacts {delay:.2g} s after it was detected: "
             f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
         ),
         of_map(
@@ -56,7 +56,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=none,
             stated=0.0,
             witness={"s": _DETECTION, "detection": _DETECTION},
-            detail=f"with s = {_DETECTION:g}, the alien's own range, it reacts within {abs(none):.2g} s: the next step",
+            detail=f"with s = {_DETECTION:g}, the alien's range, agents react within {abs(none):.2g} s: the next step",
         ),
         of_map(
             "nearer",

@@ -135,7 +135,7 @@ def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
         condition("the graph is a spanning tree", case is not None, detail=kind),
     ]
     if case is not None:
-        for name, weights in (("μ > 0", case.mu), ("alignment is at work", case.align)):
+        for name, weights in (("μ > 0", case.mu), ("alignment weights are positive", case.align)):
             least = float(weights.min())
             needs.append(condition(name, least > 0.0, least))
     return needs, case

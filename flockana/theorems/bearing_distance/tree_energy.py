@@ -53,8 +53,8 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
         stated="|x(t)| >= ρ - sqrt(2V(0)/μ) > 0 on edges from the root, with V never rising",
         witness={f"edge {case.links[e]}": {"V(0)": float(V.mid[0, k])} for k, e in enumerate(edges)},
         proof=proof_of(case, seen.m),
-        detail=f"{len(edges)} edges from the root start below μρ²/2; their V rises by {rises:.1g} of that at most "
-        f"from sample to sample, and the shortest is {case.shortest(seen).mid[edges].min():.4g} long at least",
+        detail=f"{len(edges)} edges from the root start below μρ²/2; V rises by at most {rises:.1g} of this from "
+        f"sample to sample, and the shortest of them is never below {case.shortest(seen).mid[edges].min():.4g}",
     )
 
 

@@ -1,4 +1,4 @@
-"""Certificates, from one state, of how a flock on a frozen tree ends: the limit in Theorem 1.
+"""Certificates, from one state, of the limit of a flock on a frozen tree (Theorem 1).
 
 *Undirected, reciprocal forces.* H never rises. While H < ½μρ² on every edge, no edge comes to length 0; then velocities
 match and every |x_e| goes to ρ_e, by LaSalle's principle, as on a tree nothing else is at rest.
@@ -35,7 +35,7 @@ _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
 
 def state(q: FloatArray, p: FloatArray) -> End:
-    """Return a stored state as an end that is exact."""
+    """Return a stored state as an exact final state."""
     return End(q, p, np.zeros(len(q)), np.zeros(len(q)))
 
 
@@ -70,8 +70,8 @@ def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
 def settles(case: TreeCase, end: End) -> Certificate:
     """Return a certificate that all edges reach their desired lengths and all velocity differences decay."""
     share = float(edge_shares(case, end).max())
-    never = "no edge can ever shrink to 0 from here" if share < 1.0 else "an edge might still shrink to 0"
-    text = f"{never}: the energy that one may get is {share:.2g} of what that takes"
+    never = "no edge can shrink to 0 any more" if share < 1.0 else "an edge might still shrink to 0"
+    text = f"{never}: edges have at most {share:.2g} of the energy needed"
     return Certificate(max(-1.0, 1.0 - share), text, _ERROR)
 
 
@@ -86,7 +86,7 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
         stated=stated,
         witness={"time": float(seen.t[-1]), "at the start": float(speeds[0])},
         evidence=evidence(seen.t, speeds, "|x_e'|"),
-        detail=f"velocities match: |x_e'| goes from {speeds[0]:.3g} to {speeds[-1]:.3g} at t = {seen.t[-1]:g}",
+        detail=f"the largest |x_e'| goes from {speeds[0]:.3g} to {speeds[-1]:.3g} at t = {seen.t[-1]:g}",
     )
 
 

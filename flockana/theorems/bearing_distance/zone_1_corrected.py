@@ -32,7 +32,7 @@ def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
         stated="||x_e| - ρ_e| -> 0",
         witness={"time": float(seen.t[-1]), "at the start": float(errors[0])},
         evidence=evidence(seen.t, errors, "the largest length error"),
-        detail=f"every edge goes to its own desired length: off by up to {errors[0]:.3g} ρ at the start and "
+        detail=f"edges are off their desired lengths by up to {errors[0]:.3g} ρ at the start and "
         f"{errors[-1]:.2g} ρ at t = {seen.t[-1]:g}",
     )
 
@@ -88,7 +88,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         return needs, []
     # on a graph that never changes the number of neighbours, and so the spacing, never does
     spacings = f"ρ from {case.rho.min():g} to {case.rho.max():g}"
-    needs.append(condition("each edge has one desired length, for ever", True, detail=spacings))
+    needs.append(condition("each edge has one constant desired length", True, detail=spacings))
     spectrum = tree_spectrum(case, case.on_manifold(seen.run.q[-1]))
     claims = [
         _lengths(case, seen, needs),

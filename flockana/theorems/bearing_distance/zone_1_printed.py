@@ -29,15 +29,15 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
         stated="x -> 0 from any initial condition",
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},
         disproof="bearing-distance-printed",
-        detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): |x_e| stays "
-        f"{case.rho.min():.4g} or more for ever",
+        detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): every |x_e| "
+        f"stays at its value of {case.rho.min():.4g} or more",
     )
 
 
 def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
     length, least = case.lengths(seen.run.q[-1]), kept(case, seen.end)
-    text = f"one edge keeps {least:.4g} of its desired length or more for ever"
+    text = f"one edge never falls below {least:.4g} of its desired length"
     return limit_claim(
         "edges",
         needs,
@@ -75,7 +75,7 @@ def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
         stated="all eigenvalues of A_cl have negative real parts",
         witness={"time": float(seen.t[k]), "|x_e|/ρ": at[k].tolist()},
         detail=f"at t = {seen.t[k]:.4g}, with an edge at {at[k].min():.4g} of its desired length, A_cl has an "
-        f"eigenvalue with real part {abscissa:.4g}; Hurwitz it is only while all edges are too long",
+        f"eigenvalue with real part {abscissa:.4g}; it is Hurwitz only while all edges are longer than desired",
     )
 
 

@@ -44,8 +44,8 @@ def _pair(tolerances: Tolerances) -> Claim:
         computed={"period": measured, "amplitude at the end": amplitude},
         stated={"period": period, "amplitude": _STRETCH},
         witness={"q(0)": start.tolist(), "p(0)": "0"},
-        detail=f"two agents swing about ρ with period {measured:.5g} = 2π/sqrt(2μ), and after {_PERIODS} periods by "
-        f"{amplitude:.4g} still, as at the start",
+        detail=f"two agents swing about ρ with period {measured:.5g} = 2π/sqrt(2μ), with amplitude "
+        f"{amplitude:.4g} after {_PERIODS} periods, as at the start",
     )
 
 

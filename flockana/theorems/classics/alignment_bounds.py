@@ -49,7 +49,7 @@ class Decline:
 
     @property
     def _unit(self) -> float:
-        """λℓ/c, by which integrals over w are multiplied."""
+        """Factor λℓ/c of integrals over w."""
         return self.strength * self.weight.length / self.stretch
 
     def _w(self, s: float) -> float:
@@ -68,7 +68,7 @@ class Decline:
         return value
 
     def beyond(self, start: float) -> float:
-        """∫φ from a number on for ever; infinite for β <= ½."""
+        """Return ∫φ from a number to infinity; infinite for β <= ½."""
         from scipy.special import beta, betainc
 
         power = self.weight.decay - 0.5
@@ -128,16 +128,16 @@ class Guarantee:
 
     @cached_property
     def room(self) -> Enclosure:
-        """∫φ from ‖x(0)‖ on."""
+        """∫φ from ‖x(0)‖ to infinity."""
         return self.phi.beyond_all(self.seen.spread[0])
 
     @cached_property
     def bound(self) -> Enclosure:
-        """x_M."""
+        """Bound x_M of the position spread."""
         return self.phi.reached_by(self.seen.spread[0], self.seen.velocity_spread[0])
 
     def hypothesis(self, name: str) -> Hypothesis:
-        """‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
+        """Hypothesis ‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
         v0 = self.seen.velocity_spread[0]
         if self.room.lo == inf:
             return Hypothesis(
@@ -147,7 +147,7 @@ class Guarantee:
         return positive_room(name, self.room - v0, detail)
 
     def claims(self, names: tuple[str, str, str], needs: list[Hypothesis], proof: str) -> list[Claim]:
-        """Return that positions spread no farther than x_M, that velocities come together at a rate, and the limit."""
+        """Return the claims that positions spread at most to x_M and velocities match, at a rate and in the limit."""
         bounded, rate, limit = names
         return [self._bounded(bounded, needs, proof), self._falls(rate, needs, proof), self._limit(limit, needs, proof)]
 
@@ -167,7 +167,7 @@ class Guarantee:
         )
 
     def _falls(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
-        """From the start to each sample at which ‖v‖ is above its error; between two, ‖x‖ <= x_M makes it fall."""
+        """Return the claim that ‖v‖ falls at the guaranteed rate up to each sample at which it exceeds its error."""
         seen, v, rate = self.seen, self.seen.velocity_spread, self.bound.falling(np.vectorize(self.phi))
         count = seen.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:

@@ -88,7 +88,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     text = (
         f"every distance is {room.min(initial=inf) / law.range:.2g} r or more from r and can still change by "
         f"{drift.max(initial=0.0) / law.range:.2g} r: the net "
-        + ("stays as it is for ever" if margin > error else "may change again")
+        + ("never changes again" if margin > error else "may change again")
     )
     return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 

@@ -1,4 +1,4 @@
-"""Two agents of the Cucker-Smale law on a line: an invariant tells which pairs match and which part for ever."""
+"""Two agents of the Cucker-Smale law on a line: an invariant decides which pairs match and which separate."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _along(way: float, series: FloatArray, error: FloatArray) -> Enclosure:
 def _invariant(
     seen: Observed, psi: Decline, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
 ) -> Claim:
-    """That w + ∫λψ stays what it was."""
+    """Return the claim that w + ∫λψ is conserved."""
     start = float(x.mid[0])
     passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
     off = abs((w + passed) / w[0] - 1.0)
@@ -72,23 +72,23 @@ def _sides(
     slow: Hypothesis,
     fast: Hypothesis,
 ) -> list[Claim]:
-    """The claims of both sides of the threshold: that the start is not on is vacuous."""
+    """Return the claims for both sides of the threshold; the claim for the other side is vacuous."""
     far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - room).mid)
     bounded = limit_claim(
         "bounded",
         [*needs, slow],
         computed=float(x.mid[-1]),
-        stated="the two match, at a distance that is known",
+        stated="the two match, and their distance tends to a known one",
         proof="cucker-smale",
-        detail=f"{slow.detail}: they end {far:.6g} apart, and got to {x.mid[-1]:.6g}",
+        detail=f"{slow.detail}: x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
     )
     parts = limit_claim(
         "parts",
         [*needs, fast],
         computed=float(w.mid[-1]),
-        stated="the two part for ever",
+        stated="the two never match and separate",
         proof="cucker-smale",
-        detail=f"{fast.detail}: their relative speed never falls below {least:.6g}, and ended at {w.mid[-1]:.6g}",
+        detail=f"{fast.detail}: their relative speed is {w.mid[-1]:.6g} at the end and never below {least:.6g}",
     )
     return [
         vacuous("bounded", slow) if slow.status == "unmet" else bounded,

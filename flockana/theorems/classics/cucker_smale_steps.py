@@ -27,7 +27,7 @@ def _law(seen: Observed) -> Hypothesis:
 
 
 def _short_step(seen: Observed, strength: float) -> Hypothesis:
-    """The hypothesis h λ <= 1: no step takes more of a relative velocity than there is."""
+    """Return the hypothesis h λ <= 1, under which no step reverses a relative velocity."""
     most = Enclosure.around(seen.law.dt * strength, _ROUNDING * seen.law.dt * strength)
     return positive_room("h λ <= 1", 1.0 + 2.0 * _ROUNDING - most, f"h λ = {float(most.mid):.6g}")
 

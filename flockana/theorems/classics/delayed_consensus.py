@@ -1,4 +1,4 @@
-"""Olfati-Saber and Murray: consensus bears a delay up to π/(2 λ_n), held against the library's delay margin."""
+"""Olfati-Saber and Murray: consensus tolerates a delay up to π/(2 λ_n), compared with the library's delay margin."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
 
 
 def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """Return the rightmost root a hundredth beside the margin, by discretising the delayed state."""
+    """Return the rightmost root for a delay 1 % off the margin, by discretising the delayed state."""
     share = 1.0 + sign * float(_AROUND)
     margin, error, off, listed = np.inf, 0.0, 0.0, {}
     for net, (system, largest) in nets.items():

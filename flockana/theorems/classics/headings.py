@@ -19,6 +19,7 @@ from flockana.theorems.classics.averaging import (
     permanently_connected,
     permanently_separated,
 )
+from flockana.theorems.headline import does_not_hold
 from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.limits import Certificate, limit_claim
 from flockana.theorems.observed import Observed
@@ -29,7 +30,7 @@ _EVERY = 1e-6  # of a step: samples that are one step apart
 
 
 def _plain(law: HeadingAveraging) -> Hypothesis:
-    """The mean of the headings themselves, and no noise."""
+    """Return the hypothesis that headings are averaged as numbers, without noise."""
     plain = law.average == "headings" and law.noise == 0.0
     return condition("headings are averaged as numbers, without noise", plain, detail=f"{law.average}, η = {law.noise}")
 
@@ -41,19 +42,19 @@ def _every_step(run: Trajectory) -> Hypothesis:
 
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
-    """Joint connectivity over windows without end: shown, shown to fail, or seen so far."""
+    """Return the hypothesis of joint connectivity over all later windows: proved, disproved or assumed from the run."""
     name = "the nets are jointly connected over contiguous bounded windows, for ever"
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
     if connected.certain:
         return Hypothesis(name, "met", connected.margin, f"{seen}; {connected.text}")
     if parted.certain:
-        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, and no more: {parted.text}")
+        return Hypothesis(name, "unmet", -parted.margin, f"{seen}, none can follow: {parted.text}")
     return Hypothesis(name, "assumed", None, f"{seen}; what comes after the run is not known")
 
 
 def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
-    """No heading leaves the span of those before: means are kept in it to the bit, so that no rounding counts."""
+    """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
     least, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
     return by_count(
@@ -69,7 +70,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
 
 
 def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hypothesis]) -> Claim:
-    """Over each block of n − 1 windows the span shrinks by what its nets guarantee, but for rounding."""
+    """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
     missed = [b for b in found if not span[b.stop] <= b.factor * span[b.start] + b.error or not b.mixes]
@@ -90,7 +91,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
         proof=_PROOF,
         detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
         if found
-        else f"{enough.name}: {enough.detail}",
+        else does_not_hold(enough.name),
     )
 
 

@@ -29,12 +29,12 @@ def _turned() -> Claim:
         stated="turning the whole flock need not turn the mean headings with it",
         witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
         detail=f"two neighbours at {_AWAY} of a turn to either side of angle 0 both take {turned_round} of a turn: "
-        "they turn round; turned by 1/24 or more they go straight on",
+        "they turn round; with the flock turned by 1/24 or more they keep straight on",
     )
 
 
 def _clear() -> Claim:
-    """Headings that the turn takes through no direction 0: each is counted as it was, and the turn added."""
+    """Return the claim that the mean turns with the flock as long as no heading passes the direction of angle 0."""
     import sympy as sp
 
     n, turn, k = sp.Symbol("n", positive=True, integer=True), sp.Symbol("t", real=True), sp.Symbol("k", integer=True)
@@ -50,7 +50,7 @@ def _clear() -> Claim:
 
 
 def _vectors() -> Claim:
-    """Vicsek's angle of the mean unit vector, of any pair and turn."""
+    """Return the claim that the mean unit vector (Vicsek's rule) turns with the flock, whatever the turn."""
     import sympy as sp
 
     a, b, turn = sp.symbols("a b t", real=True)

@@ -1,4 +1,4 @@
-"""A run as seen from its virtual leader: who is informed, whose links last, and what of the motion dies out."""
+"""Run in the frame of its virtual leader: informed agents, lasting links, velocities that decay."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def constant_velocity(run: Trajectory) -> Hypothesis:
     feedforward = np.array([[target.state(float(t))[1], target.rate(float(t))] for t in run.path.t])
     spread = float(np.abs(feedforward - feedforward[0, 1]).max())
     if spread > 64.0 * EPS * float(np.abs(feedforward).max()):
-        return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or is not what is told")
-    return Hypothesis(name, "assumed", detail="it is, at all steps")
+        return Hypothesis(name, "unmet", -spread, f"it changes by {spread:.3g}, or differs from the reported one")
+    return Hypothesis(name, "assumed", detail="constant at all steps of the run")
 
 
 def as_the_leader_sees(seen: Observed) -> Observed:

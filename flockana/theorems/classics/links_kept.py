@@ -25,7 +25,9 @@ def _joined(seen: Observed) -> Hypothesis:
     """The hypothesis that the links join all agents."""
     ends = np.array(seen.law.links, dtype=np.int32).reshape(-1, 2)
     parts = len({*components(seen.n, ends).tolist()})
-    return condition("the links join all agents", parts == 1, float(1 - parts), f"{parts} parts, {len(ends)} links")
+    return condition(
+        "the links join all agents", parts == 1, float(1 - parts), f"{parts} component(s), {len(ends)} links"
+    )
 
 
 def longest_link(seen: Observed) -> Enclosure:
@@ -63,8 +65,8 @@ def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     law, joined, energy = seen.law, _joined(seen), seen.energy[0]
     longest = energy.rising(np.vectorize(law.longest, otypes=[float])).scaled_out(64.0 * EPS)
-    level = f"no link is longer than the {longest.mid:.5g} at which it alone has H(0) = {energy.mid:.5g}"
-    whole = "the links, all shorter than r, join all agents always"
+    level = f"no link is longer than {longest.mid:.5g}, at which one link alone has the energy H(0) = {energy.mid:.5g}"
+    whole = "the links, all shorter than r, always join all agents"
     damped = condition("c > 0", law.c > 0.0, law.c, f"c = {law.c:g}")
     return [joined, damped], [
         never_rises(seen, [], proof=_PROOF),

@@ -1,4 +1,4 @@
-"""Su, Wang and Lin (2009): Algorithm 2 when a few agents only know of the virtual leader, who keeps its velocity."""
+"""Su, Wang and Lin (2009): Algorithm 2 with few informed agents and a virtual leader of constant velocity."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "n
 
 
 def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
-    """That uninformed agents are linked to informed ones again and again, and which: a run sees its own end only."""
+    """Return the hypothesis that uninformed agents are linked to informed ones in all windows, and a mask of these."""
     who = linked_to_informed(run) & ~informed(run)
     count, of = int(who.sum()), int((~informed(run)).sum())
     text = f"{count} of {of} uninformed agents, in each of {WINDOWS} windows of the last half of the run"

@@ -40,10 +40,10 @@ def convergence_rate(gains: Gains) -> float:
 
 def _only_told(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that the law is Algorithm 2 with feedforward (not needed at constant velocity)."""
-    name, law = "the law is Algorithm 2, and all agents are told the leader's acceleration", run.law
+    name, law = "the law is Algorithm 2, with the leader's acceleration fed forward to all agents", run.law
     if type(law) is Algorithm2:
         steady = constant_velocity(run)
-        return Hypothesis(name, steady.status, steady.margin, f"it is not told; {steady.name}: {steady.detail}")
+        return Hypothesis(name, steady.status, steady.margin, f"no feedforward; {steady.name}: {steady.detail}")
     terms = [type(term) for term in law.terms]
     alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
     known = alike and type(law.alpha) is AlphaInteraction

@@ -67,7 +67,7 @@ def comes_to_rest(
 
 
 def out_of_range(seen: Observed) -> Enclosure:
-    """Return H(0)/V(R): as many pairs can its energy ever put out of range, at most."""
+    """Return H(0)/V(R), an upper bound of the number of pairs that can ever leave the range."""
     far = float(seen.law.potential.energy(seen.law.r**2))
     energy = seen.energy[0].widened(_energy_error(seen, *np.triu_indices(seen.n, 1)))
     return energy / far if far > 0.0 else Enclosure.of(inf)

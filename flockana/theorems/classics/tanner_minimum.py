@@ -1,4 +1,4 @@
-"""Erratum: what the flock tends to is extremal, and need not minimise any agent's potential."""
+"""Erratum: a flock's limit is a critical point of each agent's potential, not always a minimum."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail=f"the second derivative of the middle agent's potential to the side is {hill} k/d² < 0; the total "
             "falls there as well, so that all but a thin set of starts leave",
         ),
-        equal("corrected", outer, stated="the total potential is extremal: no force acts", detail="and on no agent"),
+        equal("corrected", outer, stated="the total potential is extremal", detail="no force acts on any agent"),
         equal(
             "second-order",
             _own_block(),

@@ -64,7 +64,7 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
 
 
 def settling(end: Components) -> Certificate:
-    """Return a certificate that each component settles by itself, and no two of them meet."""
+    """Return a certificate that each component settles, and no two of them meet."""
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 

@@ -49,7 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING,
             about="all",
             disproof="turned-axes",
-            detail=f"read by components, turning the axes changes the force by {printed_change:.3g} of itself",
+            detail=f"as a product by components: turning the axes changes the force by {printed_change:.3g} of itself",
         ),
         of_state(
             "corrected",

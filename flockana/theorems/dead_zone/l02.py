@@ -37,7 +37,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "corrected",
             -attraction,
             _ROUNDING,
-            detail=f"with n = q_j - q_i their force is {attraction:.4g} of that of a contact: it repels",
+            detail=f"with n = q_j - q_i the same agents' force is {attraction:.4g} of that of a contact: it repels",
         ),
     ]
 

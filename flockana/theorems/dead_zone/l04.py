@@ -1,4 +1,4 @@
-"""Erratum L4: nothing keeps the flock together: two agents may part for ever, and wide starts do not connect."""
+"""Erratum L4: nothing keeps the flock together: two agents may separate, and wide starts do not connect."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SEEDS = 10  # of each box
 
 
 def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0) -> int:
-    """Number of seeds from which a flock ends connected, with q(0) uniform in [0, box]²."""
+    """Return the number of seeds from which a flock ends connected, with q(0) uniform in [0, box]²."""
     law, count = DeadZoneFlocking(), 0
     for seed in range(seeds):
         generator = np.random.default_rng(seed)
@@ -28,7 +28,7 @@ def connected_count(box: float, *, seeds: int, n: int = 50, t_end: float = 60.0)
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """A pair of agents that part for ever, and the share of flocks that end connected by the width of their start."""
+    """Check a pair of agents that separates, and the share of flocks that end connected by the width of their start."""
     law, q, p = parting_pair()
     seen = observed(law, q, p, (0.0, 10.0))
     end = final_components(seen, law)
@@ -43,7 +43,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=radius,
             stated="no agent farther than r from the leader",
             disproof=PROOF,
-            detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} part for ever: at t = 10 "
+            detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} separate: at t = 10 "
             f"they are {radius:.4g} from their centre",
         ),
         of_map(

@@ -48,7 +48,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=bound.mid.tolist(),
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
             proof=PROOF,
-            detail=f"the explicit bound is attained where nothing is lost: the two agree to "
+            detail=f"without damping distances attain the explicit bound, to "
             f"{gap.mid.max():.1g}, and it falls exponentially with the energy",
         ),
     ]

@@ -47,7 +47,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _printed() -> Claim:
-    """Two agents that have different leaders, under (9): it has none, and bonds them."""
+    """Return the claim that (9), which has no leaders, bonds two agents that should follow different ones."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
     return limit_claim(
@@ -107,13 +107,13 @@ def _fraction() -> Claim:
         about="all",
         stated="to pin a fraction of the agents makes all follow",
         witness={"force": force, "distance": float(q[1, 0])},
-        detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, feels nothing "
-        f"and never will: r = {r:g}. What counts is that each has a path in the net to a pinned one",
+        detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, never feels a "
+        f"force, as r = {r:g}: each agent needs a path in the net to a pinned one",
     )
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """What (9) does, the energy of a law with leaders, and that law with one leader, two, and one that turns."""
+    """Check (9), the energy of a law with leaders, and this law with one leader, two leaders, and a turning one."""
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
@@ -124,8 +124,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "energy",
             residuals,
             stated="dH/dt = -k₂ pᵀL̂p within groups - c₂ Σ h_i ‖p_i - p_l‖² - Σ f_i·p_l, in the frames of the leaders",
-            detail="in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; of different leaders "
-            "neighbours feed or drain it",
+            detail="in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
+            "different leaders add or remove energy",
         ),
         _follow(
             "one-leader",
@@ -143,9 +143,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             deaf - _CLOSE,
             _ROUNDING,
             computed=deaf,
-            stated="at those times they do not, if its acceleration is not known",
-            detail=f"without it some velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} and "
-            f"{late[1]:g}",
+            stated="not all follow a leader that turns if its acceleration is not known",
+            detail=f"without feedforward a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} "
+            f"and {late[1]:g}",
         ),
     ]
 

@@ -30,7 +30,7 @@ def wild_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
 
 
 def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
-    """H̄ over (n − 1) ψ̄(r): a connected flock stays so for ever if it is below 1."""
+    """Return H̄ over (n − 1) ψ̄(r); if it is below 1, a connected flock stays connected."""
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
@@ -56,13 +56,13 @@ def _necessary() -> Claim:
         return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
     detail = (
         "a pair's potential is finite at every distance > 0: every start from distinct places meets it, so that as a "
-        "necessary condition it says nothing. No other is stated, nor the particular case"
+        "necessary condition it excludes nothing; no other one is stated"
     )
     return exact("printed-necessary", not nothing, stated=stated, detail=detail)
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    """The paper's condition on a pair that parts, and that of an energy, sufficient but not necessary."""
+    """Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary."""
     law, q, p = parting_pair()
     away = final_components(observed(law, q, p, (0.0, 10.0)), law)
     wild, x, v = wild_pair()
@@ -77,7 +77,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             escape=away.separation,
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
-            detail=f"two agents meet them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and part for ever: neither "
+            detail=f"two agents satisfy them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: neither "
             "cohesion nor one velocity (L4, L7)",
         ),
         _necessary(),
@@ -94,7 +94,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)],
             computed=share,
-            stated="and is not necessary: a flock with more energy may stay together all the same",
+            stated="the condition is not necessary: a flock with more energy may stay together",
             detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "
             f"they are {min_distance(later.end.q):.3g} apart",
         ),

@@ -39,7 +39,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A component of the net at one instant, and what is certain of it while it meets no other."""
+    """A component of the net at one instant, with certificates that hold while it meets no other."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -51,7 +51,7 @@ class Component:
 
     @property
     def size(self) -> int:
-        """Number of its agents."""
+        """Number of the component's agents."""
         return len(self.q)
 
     @cached_property
@@ -66,26 +66,26 @@ class Component:
 
     @cached_property
     def _out_of_range(self) -> float:
-        """H̄/ψ̄(r), the number of pairs that its energy can put out of range, at most."""
+        """H̄/ψ̄(r), an upper bound of the number of pairs that the energy can put out of range."""
         far = self.law.interaction.far_potential
         energy: float = self.law.hamiltonian(0.0, self.q, self.p) + self.energy_off
         return energy / far if far > 0.0 else inf
 
     @property
     def bond(self) -> Certificate:
-        """Its energy is too small to break it up, and damping makes its velocities match: of the flow alone."""
+        """Certificate that a component cannot break up and its velocities match, by its energy; for flows only."""
         if self.size == 1:
             return Certificate(1.0, "one agent has one velocity")
         if self.dt is not None or self.law.k2 == 0.0:
             return Certificate(-1.0, "no energy holds it together")
         margin = max(-1.0, 1.0 - self._out_of_range / (self.size - 1.0))
-        able = "too few ever to break it up" if margin > 0.0 else "which might break it up"
+        able = "too few to break it up" if margin > 0.0 else "which might break it up"
         text = f"its energy can put {self._out_of_range:.3g} pairs out of range, {able}"
         return Certificate(margin, text, _WHOLE + self.size**2 * EPS)
 
     @property
     def settles(self) -> Certificate:
-        """Its velocities will match: by the better of the two certificates."""
+        """Certificate that the component's velocities will match, the better of two."""
         return self.bond if self.bond.certain else self.basin.certificate
 
     @cached_property
@@ -129,7 +129,7 @@ class Components:
         """Certificate that no two components ever meet, with the clearance of their paths as margin."""
         margin, error = self._clearance
         clear = margin > error
-        return Certificate(float(np.clip(margin, -1.0, 1.0)), f"parts {'never' if clear else 'may'} meet", error)
+        return Certificate(float(np.clip(margin, -1.0, 1.0)), f"components {'never' if clear else 'may'} meet", error)
 
     @cached_property
     def _clearance(self) -> tuple[float, float]:
@@ -164,7 +164,7 @@ class Components:
         The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         """
         if self.count == 1:
-            return Certificate(-1.0, "the flock is in one part")
+            return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed
         blur, drift = 2.0 * float(self._velocity_error.max()) / unit, self.drift / unit**2
         slip = 4.0 * blur * (sqrt(drift) + blur) + 64.0 * EPS * drift

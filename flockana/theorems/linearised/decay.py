@@ -1,4 +1,4 @@
-"""What the linearisation says of a flock near its equilibrium, against nonlinear runs."""
+"""Predictions of the linearisation for a flock near its equilibrium, compared with nonlinear runs."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def lattice_equilibria() -> dict[str, Linearisation]:
 
 
 def row(rates: Decay) -> dict[str, Any]:
-    """A line of the decay table as plain data."""
+    """Return a row of the decay table as plain data."""
     return {
         "law": rates.law,
         "n": rates.n,
@@ -81,7 +81,7 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             stated="K̃ falls at twice the decay rate of the slowest mode, along which the flock was displaced",
             witness=worst.name,
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
-            f"{worst.measured:.6g} for {worst.predicted:.6g})",
+            f"measured {worst.measured:.6g}, predicted {worst.predicted:.6g})",
         ),
         spectral(
             "random",
@@ -90,9 +90,9 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
             computed=other.random_measured,
             stated=other.random_linear,
             witness=other.name,
-            detail="from a random start all modes die out together: late in the run K̃ falls as the linear system's, "
-            f"to {other.random_difference:.2g} at worst ({other.name}: {other.random_measured:.6g} for "
-            f"{other.random_linear:.6g}; its slowest mode has {other.predicted:.6g})",
+            detail="from random starts K̃ falls late in the run at the linear system's rate, up to "
+            f"{other.random_difference:.2g} ({other.name}: measured {other.random_measured:.6g}, predicted "
+            f"{other.random_linear:.6g}; the slowest mode alone decays at {other.predicted:.6g})",
         ),
     ]
 
@@ -164,7 +164,7 @@ _STATEMENT = (
 THEOREM = (
     erratum(
         "linearised-decay",
-        title="The linearisation tells the truth near lattices",
+        title="The linearisation is accurate near lattices",
         statement=_STATEMENT
         + ", and the distance from the linear prediction grows as the square of the perturbation. Checked on hexagonal "
         "patches, an FCC site, and a hexagon at a wall.",
@@ -175,7 +175,7 @@ THEOREM = (
     ),
     Theorem(
         id="linearised-decay-terminal",
-        title="The linearisation tells the truth where a run ends",
+        title="The linearisation is accurate where a run ends",
         statement=_STATEMENT + ". Checked at the equilibrium that the run's last state is near to.",
         source="ours; the statement is textbook knowledge",
         kind="trajectory",

@@ -30,7 +30,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 @dataclass(frozen=True)
 class _Window:
-    """A part of a run, with the sample before it if it begins between two: bounds between samples begin there.
+    """Part of a run, with the sample before it so that bounds between samples cover its beginning.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, 
         computed=int(least[worst]),
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
-        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where {most} may be"
+        detail=f"{what}: {int(least[worst])} at worst, at t = {t[worst]:.4g}, where at most {most} are allowed"
         + (f"; {near}" if open_ else ""),
     )
 

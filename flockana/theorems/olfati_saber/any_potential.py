@@ -1,4 +1,4 @@
-"""Theorems 1 and 3 for every pair potential that has what their proofs use; that of the paper is a special case.
+"""Theorems 1 and 3 for every pair potential with the properties that their proofs use.
 
 They ask for a potential that is C¹ up to its range and at least L, and an adjacency that is nowhere negative. All is
 said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
@@ -50,12 +50,12 @@ def is_paper(seen: Observed) -> bool:
 
 
 def said_by(seen: Observed, claims: list[Claim]) -> list[Claim]:
-    """Return claims of the paper's theorems; of another pair law than the paper's they are extensions of ours."""
+    """Return claims as the paper's; under another pair law than the paper's, as flockana's extensions."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
 
 def potential_needs(seen: Observed) -> list[Hypothesis]:
-    """Return what the theorems ask of a pair potential and its adjacency, as far as it is not proved."""
+    """Return the theorems' hypotheses on the pair potential and its adjacency, without those that are proved."""
     low = meeting(seen).floor > -inf
     needs = [smooth_pair(seen), condition("the pair potential is bounded below", low), weight_nonnegative(seen)]
     return [need for need in [*needs, *least_is_known(seen)] if need.status != "met"]
@@ -132,7 +132,7 @@ def stays_together(seen: Observed) -> Hypothesis:
         if (height := above_least(seen, height)).hi < parted:  # limits are those of the start at that time
             detail = f"at t = {t:.4g} {what} = {height.mid:.5g}: a disconnected state has (n-1) c1α {of} = {parted:.5g}"
             return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
-    return Hypothesis(name, "assumed", detail="this run is connected at every sample; the others are not known")
+    return Hypothesis(name, "assumed", detail="this run is connected at every sample; other solutions are not known")
 
 
 def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
@@ -154,7 +154,7 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
         proof=proof,
-        detail=f"cohesive: R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
+        detail=f"cohesion radius R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
 

@@ -1,4 +1,4 @@
-"""How much energy a collision takes: c* excludes it, twice c* does not."""
+"""Energy of a collision: below c* none is possible, below 2 c* one may happen."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
 
 def _needs(run: Observed) -> list[Hypothesis]:
-    """A pair potential, and an energy that never rises: under Algorithms 1 and 2 with common gains it does not."""
+    """Return the hypotheses: a pair potential, and an energy that never rises."""
     if type(run.law) is not Composition and isinstance(run.law.alpha, AlphaInteraction):
         return alpha_gain(run)
     has_pair = condition("agents have a pair potential", run.law.alpha is not None)

@@ -42,7 +42,7 @@ def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
-    """Return pairs that certainly met, and how far they go past each other: on a line both keep to, they change places.
+    """Return pairs that certainly met, as they changed places on a line that both keep to, and by how much.
 
     How far they go past is known to the error of the run.
     """
@@ -63,7 +63,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 
 
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
-    """Return pairs that may meet, by interval between samples: their paths, error included, come that near."""
+    """Return pairs whose paths, error included, may come within contact, by interval between samples."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
     return seen.cached(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 
@@ -88,7 +88,7 @@ def _near(run: Trajectory, noises: FloatArray) -> list[set[Pair]]:
 
 
 def _intervals(run: Trajectory, distance: FloatArray | float) -> tuple[IndexArray, IndexArray]:
-    """Intervals of the path in which a pair may come so near; and between which samples each of its intervals lies."""
+    """Return path intervals in which a pair may come within contact, and the samples around each interval."""
     lower = run.closest_approach().lower_by_interval
     of_sample = np.searchsorted(run.t, run.path[0][:-1], side="right") - 1
     return np.flatnonzero(~(lower > distance)[of_sample]), of_sample
@@ -139,7 +139,7 @@ def below_the_barrier(seen: Observed, energy: Enclosure) -> Hypothesis:
         low, high = sum(meeting(seen)), np.inf
     status: HypothesisStatus = "met" if energy.hi < low else "unmet" if energy.lo >= high else "assumed"
     detail = f"H(0) = {energy.mid:.5g}; the minimum is at least {low:.5g}"
-    detail += f", and a state of {high:.5g} is known" if np.isfinite(high) else ""
+    detail += f" and at most {high:.5g}" if np.isfinite(high) else ""
     bound = high if status == "unmet" else low
     margin = float(bound - energy.mid)
     return Hypothesis("H(0) < min{V : two agents coincide}", status, margin, detail, float(energy.half_width))
@@ -165,7 +165,7 @@ def no_collision(
         if certain := passed(seen, tolerances):
             pair = max(certain, key=lambda each: certain[each])
             margin = Enclosure.of(-certain[pair])
-            text = f"a collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
+            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
     return judged(
         name,
         margin,
@@ -235,14 +235,14 @@ def pairs_at_one_instant(
 
 
 def _instant_text(together: int, allowed: float) -> str:
-    """How many pairs may coincide at one time, in words."""
+    """Return in words how many pairs may coincide at one time."""
     if not together:
         return "no two agents can coincide at any time"
     return f"at most {together} pairs may coincide at one time; the energy allows {allowed:g} or more at every time"
 
 
 def _at_one_place(q: FloatArray) -> IndexArray:
-    """Pairs at one place to the last bit, at each instant: none where all first components differ, as nearly always."""
+    """Return the number of exactly coincident pairs at each instant."""
     pairs = np.zeros(len(q), dtype=np.intp)
     ties = (np.diff(np.sort(q[:, :, 0], axis=1), axis=1) == 0.0).any(axis=1)
     for k in np.flatnonzero(ties):

@@ -56,7 +56,7 @@ def _below_barrier(tube: Tube) -> Hypothesis:
         if energy < low:
             return condition(name, True, down((low - energy).lower()), text)
         high = gain(tube.law) * coincident_state(alpha, tube.n, tube.m)
-        text = f"H(0) = {float(energy):.6g}; the minimum is at least {float(low):.5g}, a state has {float(high):.5g}"
+        text = f"H(0) = {float(energy):.6g}; the minimum is at least {float(low):.5g} and at most {float(high):.5g}"
         if energy > high:
             return condition(name, False, up((high - energy).upper()), text)
     return Hypothesis(name, "assumed", down((low - energy).lower()), text)
@@ -78,7 +78,7 @@ def _stays_together(tube: Tube) -> Hypothesis:
         return condition(name, False, -down(excess.lower()), "Ω_c holds a disconnected state at rest")
     if room > 0:
         return condition(name, True, down(room.lower()), "H(0) < (n-1) c1α ψ_α(r_α), which a disconnected state has")
-    return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; the others are not known")
+    return Hypothesis(name, "assumed", detail="the starts of this tube may stay connected; other starts are not known")
 
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
@@ -104,7 +104,7 @@ def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) ->
     """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
-        return in_the_limit(case, needs, name="i", stated=stated, detail="an α-lattice in the limit")
+        return in_the_limit(case, needs, name="i", stated=stated)
     with ctx.workprec(BITS):
         strain = rest_strain(case.basin, alpha)
         margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
@@ -180,10 +180,10 @@ def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
         proof="cohesion",
-        detail=f"cohesive: R <= {largest:.5g} {case.until}"
+        detail=f"cohesion radius R <= {largest:.5g} {case.until}"
         if case.basin is None
-        else f"cohesive: R <= {largest:.5g} "
-        f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} for ever",
+        else f"cohesion radius R <= {largest:.5g} "
+        f"up to t = {tube.t[-1]:g}, and the energy allows {float(bound):.5g} at all times",
     )
 
 

@@ -27,7 +27,7 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStat
 
 
 def proved(run: Observed, proof: str = "energy-identities") -> str | None:
-    """The id of the proof of this law's energy identity, which knows walls, spheres and gains common to all agents."""
+    """Return the id of the proof of this law's energy identity, for walls, spheres and common gains; else None."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None
 
@@ -55,7 +55,7 @@ def balance(
         witness={"time": float(seen.t[worst]), "residual": residual},
         proof=proof,
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by "
-        f"{abs(residual) / unit:.2g} of it at most",
+        f"{abs(residual) / unit:.2g} of the largest |H| at most",
     )
 
 
@@ -149,8 +149,8 @@ def never_rises(
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
         witness={"time": float(seen.t[since + worst])},
         proof=proof,
-        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; what falls is at least "
-        f"{share.mid.min():.2g} of the magnitude of its terms{until}",
+        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; -rate is at least "
+        f"{share.mid.min():.2g} of the sum of its terms' sizes{until}",
     )
 
 
@@ -175,12 +175,12 @@ def smooth_where_needed(run: Observed) -> list[Hypothesis]:
 
 
 def pairs_dissipate(run: Observed) -> list[Hypothesis]:
-    """What it takes that pairs add no energy, as far as it is not proved: a C¹ potential, no negative adjacency."""
+    """Return the unproved hypotheses under which pairs add no energy: a C¹ potential, no negative adjacency."""
     return [need for need in (smooth_pair(run), weight_nonnegative(run)) if need.status != "met"]
 
 
 def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
-    """What it takes that no term of the law adds energy, in the frame that the energy is in."""
+    """Return the hypotheses under which no term of the law adds energy, in the energy's own frame."""
     law, needs = run.law, pairs_dissipate(run)
     if law.target is not None and not law.moving:
         needs.append(target_rests(run.run, told=False))  # outside of the moving frame a moving γ-agent does work
@@ -192,7 +192,7 @@ def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
 
 
 def declared(run: Observed) -> list[Hypothesis]:
-    """What the balance needs: outside of the moving frame, that the γ-agent's declared velocity is its own."""
+    """Return the hypotheses of the balance: in the given frame, the γ-agent's declared velocity is its true one."""
     return [declared_rate_is_true(run.run)] if run.law.target is not None and not run.law.moving else []
 
 
@@ -210,7 +210,7 @@ def _law(seen: Observed) -> Hypothesis:
 
 
 def _rates(run: Trajectory) -> FloatArray:
-    """What each term adds to dH/dt at each sample, shape (T, terms)."""
+    """Return each term's part of dH/dt at each sample, shape (T, terms)."""
     rows = zip(run.t.tolist(), run.q, run.p, strict=True)
     return np.array([[term.act(t, q, p, np.zeros_like(q)) for term in run.law.terms] for t, q, p in rows])
 
@@ -222,7 +222,7 @@ def _sizes(run: Trajectory) -> FloatArray:
 
 
 def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
-    """Both claims for a law of the user's: no term is seen to add energy, and the balance is its own."""
+    """Return the two claims about a user's law: no term adds energy, and the energy balances."""
     rates = _rates(seen.run)
     most, largest = float(rates.max(initial=0.0)), float(np.abs(rates).max(initial=0.0))
     status: HypothesisStatus = "unmet" if most > (seen.n**2 + 64) * EPS * largest else "assumed"

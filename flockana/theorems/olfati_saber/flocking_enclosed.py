@@ -53,7 +53,8 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
 
     number, when = _highest(tube, window, count)
     stated = "the net is connected" if name == "flock" else f"at most {most} agents outside the giant component"
-    text = f"{float(number.upper()):.0f} at most, about t = {when:.4g}"
+    what = "components" if name == "flock" else "agents outside the giant component"
+    text = f"{what}: {float(number.upper()):.0f} at most, about t = {when:.4g}"
     return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated, detail=text)
 
 

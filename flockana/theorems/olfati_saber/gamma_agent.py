@@ -69,7 +69,7 @@ def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
 def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
     if moves:
         outside = "it moves, which is outside the theorem"
-        return outside if told else "it moves, or says so: it does work on the flock, of either sign"
+        return outside if told else "it moves, or reports a velocity: it does work on the flock, of either sign"
     though = " though q_r does not move, as printed" if p_r.any() else ""
     return f"q_r is fixed, p_r = {p_r.tolist()}{though}"
 

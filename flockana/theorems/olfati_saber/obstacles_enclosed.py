@@ -111,7 +111,7 @@ def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Cla
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
         proof=proved(_law_of(tube), "theorem6"),
         detail=f"H goes from {float(first):.6g} to {float(last):.6g}; the balance is off by {up(share.upper()):.2g} of "
-        "it at most",
+        "the largest |H| at most",
     )
 
 

@@ -38,8 +38,8 @@ _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolerances: Tolerances) -> Claim:
     """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
-    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
-    links = f"links off d by up to {100.0 * end.strain:.2g} %" if end.links else "no links"
+    kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
+    links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
     return limit_claim(
         "ii",
         needs,
@@ -47,12 +47,12 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
         computed=end.curvature,
         stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
-        detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; as a lattice: {kind}, {links}",
+        detail=f"residual force {end.force:.2g}, curvature {end.curvature:.2g}; {kind}, {links}",
     )
 
 
 def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list[Claim]:
-    """Return what is proved of claim (ii), of every start and of almost every one."""
+    """Return the proved parts of claim (ii), for every start and for almost every start."""
     pieces = Hypothesis("ψ is C², analytic in finitely many pieces", "assumed", detail="proved of the paper's law")
     needs = needs if is_paper(seen) else [*needs, pieces]
     rests = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"

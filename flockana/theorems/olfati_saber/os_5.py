@@ -66,22 +66,22 @@ class Net:
 
     @property
     def crossing_count(self) -> int | str:
-        """How many pairs of links cross, or that there are more than are listed."""
+        """Number of pairs of links that cross, or a text if there are more than are listed."""
         count = len(self.crossings)
         return f"at least {count}" if count >= LISTED else count
 
     @property
     def crossing_text(self) -> str:
-        """That count in words."""
+        """Number of crossings in words."""
         return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
 
 
 def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
     apart, kappa = net.closest / net.d - tolerances.contact, net.r / net.d
-    kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi)
+    kind = classify(net.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     text = f"{kind}: δ/d = {net.strain:.3g}" if len(net.links) else "there are no links"
     return [
-        condition("distinct positions", apart > 0.0, apart, f"shortest {net.closest:.6g}"),
+        condition("distinct positions", apart > 0.0, apart, f"shortest distance {net.closest:.6g}"),
         condition("κ = r/d > 1", kappa > 1.0, kappa - 1.0, f"κ = {kappa:.6g}"),
         condition(
             "q is an α-lattice",
@@ -98,12 +98,12 @@ def _dimension(name: str, holds: bool, net: Net) -> Hypothesis:
 
 def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     margin = net.closest - length / sqrt(2.0)
-    text = f"shortest distance {net.closest:.6g} against {length / sqrt(2.0):.6g}"
+    text = f"shortest distance {net.closest:.6g}, to exceed {length / sqrt(2.0):.6g}"
     # what rounding decides is not taken for met
     return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
 
-def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
+def uncrossed(net: Net, needs: list[Hypothesis], name: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
     if (missed := unmet(needs)) is not None:
@@ -124,7 +124,7 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str, text: str) -> Claim:
         stated="no two links cross",
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
         proof=_CROSSINGS,
-        detail=f"{text}: {net.crossing_text}{near}",
+        detail=f"{net.crossing_text}{near}",
     )
 
 
@@ -177,7 +177,7 @@ def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
         stated="at least one pair is not linked",
         witness=_unlinked(net) if missing else None,
         proof=_COUNTS,
-        detail=f"not complete: {missing} pairs of {net.n} agents are not linked",
+        detail=f"{missing} of {net.n * (net.n - 1) // 2} pairs of agents are not linked",
     )
 
 
@@ -233,7 +233,7 @@ def holds_exactly(net: Net, two: LinkArray) -> bool:
 
 
 def _unless_open(net: Net, claim: Claim) -> Claim:
-    """The claim, inconclusive if it is refuted for positions that may be off: of the links counted some may be none."""
+    """Return the claim, inconclusive instead of refuted where inexact positions leave the links uncertain."""
     if not net.off or claim.status != "refuted":
         return claim
     return replace(claim, status="inconclusive", detail=f"{claim.detail}; positions are known to {net.off:.3g}")
@@ -250,13 +250,13 @@ def check(q: FloatArray, d: float, r: float, tolerances: Tolerances, *, off: flo
     loose = _far_apart(net, longest, "ℓ/√2, ℓ the longest link")
     printed = 3 * net.n - 6
     claims = [
-        uncrossed(net, [*lattice, wide], "i", "edges of an α-lattice do not cross"),
+        uncrossed(net, [*lattice, wide], "i"),
         _graph(net, [*lattice, wide]),
         _bound(net, [*lattice, plane, many], "ii", printed, "3n - 6"),
         _bound(net, [*lattice, plane], "ii-sharp", harborth(net.n), "floor(3n - sqrt(12n - 3))", proof=None),  # cited
         _incomplete(net, [*lattice, more]),
-        uncrossed(net, [far], "extension", "links of pairs farther apart than r/√2 do not cross"),
-        uncrossed(net, [loose], "extension-lengths", "links of pairs farther apart than ℓ/√2 do not cross"),
+        uncrossed(net, [far], "extension"),
+        uncrossed(net, [loose], "extension-lengths"),
         _bound(net, [loose, plane, many], "extension-links", printed, "3n - 6"),
         _quantitative(net),
     ]

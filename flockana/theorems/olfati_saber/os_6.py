@@ -41,12 +41,10 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
     if since >= len(run.t) or run.t[-1] - run.t[since] < run.scales.time:
         worst = float(slack[min(since, len(run.t)) - 1])
-        detail = (
-            f"it is broken at t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, up to the end, by {-worst:.3g}"
-        )
+        detail = f"it fails until t = {run.t[broken[-1]] if broken.size else run.t[0]:.4g}, by {-worst:.3g}"
         return Hypothesis(name, "unmet", worst, detail), len(run.t) - 1
     share = 100.0 * broken.size / len(run.t)
-    before = f"broken at {share:.2g} % of the samples before" if broken.size else "never broken"
+    before = f"broken at {share:.2g} % of the samples before t0" if broken.size else "never broken"
     sure = bool((slack >= rounding)[since:].all())
     detail = f"t0 = {run.t[since]:.6g}, {before}; seen at samples, to the end of this run"
     return Hypothesis(name, "met" if sure else "assumed", float(slack[since:].min()), detail), since

@@ -1,4 +1,4 @@
-"""Directed nets, which the slides allow for and leave: what of Algorithms 1 to 3 still holds, and what fails."""
+"""Directed nets, which the slides allow but do not treat: properties of Algorithms 1 to 3 that hold, and that fail."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _undirected() -> Claim:
         computed=off,
         stated=f"the same input to {_ROUNDING:g} of the largest",
         witness={"agents": 40},
-        detail=f"40 agents with one range for all: Algorithms 1 to 3, to {off:.1g}",
+        detail=f"40 agents with one range for all: the input differs from that of Algorithms 1 to 3 by {off:.1g}",
     )
 
 
@@ -108,8 +108,8 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own.mid[-1])},
-            detail=f"it goes from {size:.4g} to {float(own.mid[-1]):.2g}, and is {climbed.mid.max():.2g} above an "
-            "earlier value at most",
+            detail=f"it goes from {size:.4g} to {float(own.mid[-1]):.2g}, and rises by "
+            f"{climbed.mid.max():.2g} at most on the way",
         ),
         judged(
             "leader",

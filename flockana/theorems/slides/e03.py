@@ -41,7 +41,7 @@ def rhombus_with_double_agent(d: float) -> FloatArray:
 
 
 class _Limit(NamedTuple):
-    """Where a random start flows to: each component of its net, its state, and its strain as far as that is certain."""
+    """Limit of a random start: each component of its net, its state, and its strain where that is certain."""
 
     parts: tuple[tuple[FloatArray, TerminalState, Enclosure], ...]
     converged: bool
@@ -134,7 +134,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
         disproof="strained-thirteen",
         detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
         f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
-        f"agents it takes {least_with_coincidence(known.law.alpha)} at least",
+        f"agents at least {least_with_coincidence(known.law.alpha)} are needed",
     )
 
 

@@ -1,4 +1,4 @@
-"""E4: c < c* excludes collisions, as said, and soon no state is below c*; a barrier that does not go vacuous."""
+"""E4: H < c* excludes collisions, but for large flocks no state is below c*; a barrier without this defect."""
 
 from __future__ import annotations
 
@@ -105,8 +105,8 @@ def _none(alpha: AlphaInteraction) -> Claim:
         stated="for n >= 23 no configuration in the plane has V < c*",
         witness={"[largest n of a lattice below c*, least n without any state], by set and dimension": table},
         proof="n-max",
-        detail=f"what lowers V is {shortest:.4g} to {longest:.4g} long, a ratio of {longest / shortest:.4g} < √2; "
-        f"no four agents are pairwise such, so by Turán V > c* from n = {n} on",
+        detail=f"only pairs {shortest:.4g} to {longest:.4g} apart lower V, a ratio of {longest / shortest:.4g} < √2; "
+        f"no four agents have such distances, so by Turán V > c* from n = {n} on",
     )
 
 
@@ -127,9 +127,9 @@ def _together(alpha: AlphaInteraction) -> Claim:
         stated="H(0) < (n-1) ψ_α(r_α) keeps every solution from there connected",
         witness={"[n of a lattice below, least n without any state], by dimension": table},
         proof="any-potential",
-        detail="the best lattices at rest are below it up to n = "
+        detail="the best lattices at rest are below this energy up to n = "
         + ", ".join(f"{n} ({_SPACES[m]}; no state is from n = {none} on)" for m, (n, none) in table.items())
-        + f", by {min(rooms) / alpha.far_potential:.3g} ψ_α(r_α) at least, which is left for motion",
+        + f", by {min(rooms) / alpha.far_potential:.3g} ψ_α(r_α) at least, left for kinetic energy",
     )
 
 

@@ -66,7 +66,7 @@ def site_links(sites: tuple[Site, ...]) -> tuple[tuple[int, int], ...]:
 
 
 def non_planar_fragments(size: int) -> tuple[int, int]:
-    """How many fragments of that size there are, and how many of them are not planar; exact, in whole numbers."""
+    """Return the number of fragments of a size, and of those that are not planar; exact, in whole numbers."""
     known: dict[tuple[tuple[int, int], ...], bool] = {}
     total = bad = 0
     for sites in fragments(size):

@@ -50,7 +50,7 @@ def _relative(name: str, share: float, witness: str) -> Claim:
 
 
 def _number(name: str, share: float, of: int, count: int, stated: str, witness: str, detail: str) -> Claim:
-    """Return the claim that a share is a whole number of so many."""
+    """Return the claim that a share is a given number of a total."""
     proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
     off = abs(round(of * share) - count)
     return by_count(name, off, computed=share, stated=stated, witness=witness, detail=detail, **proof)

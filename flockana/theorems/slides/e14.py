@@ -24,7 +24,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "printed",
             list(printed.residuals),
             stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
-            detail="what is left over is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
+            detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
         ),
         _example(),
         equal(

@@ -1,4 +1,4 @@
-"""Erratum E15: what the MSN project lays the smaller circle of its case 4 to: the start, and the speed."""
+"""Erratum E15: two causes that the MSN project gives for the smaller circle of its case 4, start and speed."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ _LASTING = 4.5  # time units at least, after half of which what is left of the s
 
 
 def circle_law(speed: float, factor: float) -> Algorithm2:
-    """Algorithm 2 with the project's parameters behind its γ-agent at so many times its speed, p_r = factor dq_r/dt."""
+    """Return Algorithm 2 with the project's parameters, its γ-agent `speed` times as fast, and p_r = factor dq_r/dt."""
     circle = CircleTarget(_CENTRE, _RADIUS, frequency=speed * _FREQUENCY)
     return Algorithm2(_ALPHA, _GAINS, RescaledVelocity(circle, factor))
 
 
 def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclosure:
-    """Return the ratio of the circle of 19 agents that start so many radii from the circle's centre."""
+    """Return the ratio of the circles for 19 agents that start a number of radii from the circle's centre."""
     path: Any = law.target
     start: FloatArray = hexagonal_patch(2, _ALPHA.d) + np.array(_CENTRE) + (away * _RADIUS, 0.0)
     end = max(_PERIODS / path.target.frequency, _LASTING)
@@ -93,12 +93,12 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
         tolerances.agreement - off,
         computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=f"inside or outside, at each speed, with either p_r: off by {off.mid.max():.1g} at most",
+        detail=f"the ratio, inside or outside, at each speed, with either p_r, is off by {off.mid.max():.1g} at most",
     )
 
 
 def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> list[Claim]:
-    """Return what the project holds: that from outside, or at another speed, the circle is not smaller."""
+    """Return the project's claim that a start outside the circle, or another speed, makes the circle not smaller."""
     largest = stacked(others).max()
     return [
         judged(
@@ -109,8 +109,8 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
             stated="from outside the circle the flock's is not smaller",
             witness={"inside": float(inside.mid), "outside": float(outside.mid)},
             disproof=_PROOF,
-            detail=f"from {_AWAY:g} radii away it describes {outside.mid:.4f} of the γ-agent's circle, from the centre "
-            f"{inside.mid:.4f}: smaller wherever it starts",
+            detail=f"the flock describes {outside.mid:.4f} of the γ-agent's circle from {_AWAY:g} radii away, "
+            f"{inside.mid:.4f} from its centre: smaller from both starts",
         ),
         judged(
             "printed-speed",
@@ -119,8 +119,8 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
             computed=_values(others),
             stated="at some other speed the flock's circle is not smaller",
             disproof=_PROOF,
-            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed it is {largest.mid:.4f} of the γ-agent's "
-            "at most: no speed is just great enough",
+            detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed the circle is "
+            f"{largest.mid:.4f} of the γ-agent's at most: smaller at each speed",
         ),
     ]
 
@@ -150,7 +150,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
             proof=_PROOF,
-            detail=f"so never with the true p_r; the project's gains and p_r meet it, {margin:.3g} times over",
+            detail=f"never for the true p_r; for the project's the left side is {margin:.3g} times the right",
         ),
     ]
 

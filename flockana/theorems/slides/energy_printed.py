@@ -17,7 +17,7 @@ from flockana.theorems.theorem import Checked, Theorem, Tolerances
 
 
 def pair_energy(run: Trajectory) -> FloatArray:
-    """Return c1α Σ ψ_α, each pair once, at each sample: what the printed energy has too much."""
+    """Return c1α Σ ψ_α, each pair once, at each sample: the excess of the printed energy."""
     return np.array([run.law.gains.c1_alpha * run.law.alpha.potential_energy(q) for q in run.q])
 
 

@@ -14,7 +14,7 @@ from flockana.theorems.second_runs import DOUBT
 
 
 def measured_ratio(seen: Observed) -> Enclosure:
-    """Return the ratio that a run shows: what the fit leaves over, and by how much two runs differ, are its error."""
+    """Return the ratio that a run shows; its error is the fit's residual and the difference of two runs."""
     (ratio, left), (other, _) = response_ratio(seen.run), response_ratio(seen.other)
     target: Any = seen.law.target
     floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))

@@ -137,7 +137,7 @@ def test_no_collision_below_the_energy_of_one():
         ({"edges": ((0, 1), (1, 2), (2, 0), (0, 3), (0, 4))}, "the graph is a spanning tree"),
         ({"edges": both_ways(TREE)}, "the graph is a spanning tree"),  # means: not reciprocal
         ({"edges": TREE, "mu": 0.0}, "μ > 0"),
-        ({"edges": TREE, "sigma": 0.0}, "alignment is at work"),
+        ({"edges": TREE, "sigma": 0.0}, "alignment weights are positive"),
     ],
 )
 def test_what_is_not_met_makes_it_vacuous(options, missing):

@@ -32,7 +32,7 @@ def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
     assert bounded.needs[-1].margin == pytest.approx(0.6 * room, rel=1e-10)
     assert bounded.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
     end = tan(atan(start) + 0.4 * room / PSI[mean])
-    assert f"they end {end:.6g} apart" in bounded.detail
+    assert f"x along w tends to {end:.6g}, " in bounded.detail
     fast, run = pair(start, 1.5 * room, mean=mean, way=way)
     parts = fast.claim("parts")
     assert fast.claim("bounded").status == "vacuous"
@@ -40,7 +40,7 @@ def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
     assert parts.needs[-1].margin == pytest.approx(0.5 * room, rel=1e-10)
     assert parts.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
     assert parts.computed == pytest.approx(way * float(run.p[-1, 1, 0] - run.p[-1, 0, 0]), rel=1e-7)
-    assert f"their relative speed never falls below {0.5 * room:.6g}" in parts.detail
+    assert f"at the end and never below {0.5 * room:.6g}" in parts.detail
 
 
 def test_at_the_integral_itself_it_is_open():

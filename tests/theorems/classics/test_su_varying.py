@@ -99,5 +99,5 @@ def test_the_law_is_that_of_the_paper_and_told(changes, status):
         **({"pair": AlphaInteraction(), "consensus": 9.0, "navigation": CIRCLE, "feedforward": True} | changes)
     )
     verdict = judged("su-varying", made_up(law, [APART, APART]))
-    assert hypothesis(verdict, "told the leader's acceleration").status == status
+    assert hypothesis(verdict, "acceleration fed forward").status == status
     assert (statuses(verdict)["centre"] == "vacuous") == (status == "unmet")

@@ -234,11 +234,11 @@ def test_in_space_only_a_clearance_above_rounding_is_believed():
     net = Net(q, D, R)
     assert len(net.crossings) == 0
     open_ = Hypothesis("the proof applies", "assumed")  # so that numbers alone decide
-    assert uncrossed(net, [open_], "i", "").status == "inconclusive"
+    assert uncrossed(net, [open_], "i").status == "inconclusive"
     q[3, 2] = q[2, 2] = 1e-3
-    assert uncrossed(Net(q, D, R), [open_], "i", "").status == "verified"
+    assert uncrossed(Net(q, D, R), [open_], "i").status == "verified"
     q[2:, 2] = 0.0
-    claim = uncrossed(Net(q, D, R), [], "i", "")
+    claim = uncrossed(Net(q, D, R), [], "i")
     assert (claim.margin, claim.contradicts) == (-1.0, "theorem5-crossings")
 
 
