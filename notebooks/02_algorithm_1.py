@@ -206,7 +206,7 @@ faster = fl.simulate(stiffer, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 6.0), t_eval
 assert abs(faster.q - couple.q).max() < 1e-5
 parted = run.n * (run.n - 1) // 2 - len(fl.links(run.q[-1], 8.4))
 rims = parted * run.law.gains.c1_alpha * float(run.law.alpha.psi_alpha(run.law.alpha.r_alpha))
-print(parted, rims, run.energy()[-1])
+assert f"{parted} {rims:.0f} {run.energy()[-1]:.0f}" == "762 16823 17052"
 
 # %% [markdown]
 # **Figure 2.3.** The energy falls to a constant, its balance closes to nine digits, and the number of components
@@ -390,7 +390,7 @@ assert f"{rim:.2f} {gain * alpha.potential_energy(ring):.1f} {9.0 * rim:.1f}" ==
 #
 # *Where does the energy of a pair go when it parts?* It stays in $H$. A pair that climbs out of its well keeps
 # $c_1^\alpha\psi_\alpha(r_\alpha)$ as potential energy, although the two never meet again. At the end of the run of
-# forty agents $H = 15941$, and 15568 of it belong to the 705 pairs that are out of range.
+# forty agents $H = 17052$, and 16823 of it belong to the 762 pairs that are out of range.
 #
 # *Can components that have parted meet again?* Yes. While they are out of range their centres move uniformly
 # (exercise 8), so they meet if their courses cross at the right time. Nothing in the law makes them.
