@@ -308,10 +308,10 @@ assert pieces[-1] == 1
 
 # %% [markdown]
 # Behind the sphere one curvature is negative: a **saddle**. By the lemma of lecture 03 it has an unstable pole, and an
-# agent that starts the least bit off the axis slides around the sphere and arrives. It takes its time. The pole solves
-# $s^2 + 2s - 0.057 = 0$, so $s = 0.028$, and a displacement grows tenfold in $\ln10/0.028 = 82$ time units. In the U
-# both curvatures are positive: a **local minimum**, which attracts all states near it, and from which no small
-# disturbance frees an agent.
+# agent that starts the least bit off the axis slides around the sphere and arrives. It takes its time. But for the
+# β-agent's friction, which is next to nothing at this distance, the pole solves $s^2 + 2s - 0.057 = 0$, so $s = 0.028$,
+# and a displacement grows tenfold in $\ln10/0.028 = 82$ time units. In the U both curvatures are positive: a **local
+# minimum**, which attracts all states near it, and from which no small disturbance frees an agent.
 #
 # Is the U to blame, because it is not convex? The curvature *across* the line of the two forces can be had by hand.
 #
@@ -336,8 +336,8 @@ assert pieces[-1] == 1
 # because straying sideways leads away from the obstacle. The obstacle wins exactly if $R_k + y < z$: if it is *more
 # curved than the circle about the target through the agent*. Check: behind the sphere $R_k + y = 14.197$ and $z =
 # 74.197$, so the curvature is $0.01348\cdot(1 - 5.226) = -0.0570$, as computed. A sphere before the target always
-# sheds. But a *flat* face has $R_k = \infty$ and always traps, although it is convex. The back of our U is flat; its
-# arms only keep agents from sliding past. A bar alone will do:
+# sheds. But a *flat* face has $R_k = \infty$ and traps, at the outer balance, although it is convex. The back of our U
+# is flat; its arms only keep agents from sliding past. A bar alone will do:
 
 # %%
 bar = fl.scenario("paper-trapped-convex").law
