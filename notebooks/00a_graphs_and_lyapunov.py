@@ -99,6 +99,14 @@ for name, L in laplacians.items():
 # **Figure 0a.1.** Four nets of six agents, with unit weights. The more links, the larger is $\lambda_2$; the two
 # triangles have two components, hence two eigenvalues 0, hence $\lambda_2 = 0$.
 #
+# *One of them by hand.* On the ring try a wave that closes after six steps, $z_k = \cos(60°k)$. Row $k$ of $Lz$ is
+#
+# $$2\cos(60°k) - \cos(60°(k-1)) - \cos(60°(k+1)) = (2 - 2\cos60°)\cos(60°k),$$
+#
+# by the formula for the sum of two cosines. So the wave is an eigenvector, with the eigenvalue $2 - 2\cos60° = 1$.
+# Shorter waves, with 120° and 180° in the place of 60°, give 3 and 4: *the smoother a vector, the smaller its
+# eigenvalue*, and $\lambda_2$ belongs to the smoothest one that is not constant.
+#
 # ## Consensus
 #
 # Let each robot correct its speed towards those that it sees: $\dot x_i = \sum_j a_{ij}(x_j - x_i)$, that is
@@ -121,8 +129,10 @@ for name, L in laplacians.items():
 # 5. Multiply by $2e^{2\lambda_2t}$: $\tfrac{d}{dt}\bigl(e^{2\lambda_2 t}\|x_\perp\|^2\bigr) \le 0$. So this product
 #    never exceeds its value at 0, which is the claim. $\square$
 #
-# The convoy agrees on the mean of its initial speeds, without anyone having computed it. For two robots
-# $\lambda_2 = 2a_{12}$: the rate that we found by hand.
+# The convoy agrees on the mean of its initial speeds, without anyone having computed it. For two robots $\lambda_2 =
+# 2a_{12}$: the rate that we found by hand. For six the theorem bounds the time in which the disagreement shrinks to a
+# hundredth, $\ln(100)/\lambda_2$: on the complete net $4.6/6 = 0.77$ time units, on the ring 4.6, and on the path, with
+# $\lambda_2 = 0.268$, 17.2. One more link closes the path to a ring, and makes it almost four times as fast.
 
 # %%
 start = np.array([4.0, -1.0, 0.5, 2.0, -3.0, 1.0])
@@ -162,8 +172,15 @@ slider(with_range, np.arange(1.0, 8.1, 0.5), name="r", title="the net of twelve 
 # In a flock the numbers are velocities, $\dot p = -\hat L(q)\,p$ plus other forces, and the net $\hat L(q)$ changes
 # as the agents move. Can one not argue with $\lambda_2$ at each instant? Here, yes, for consensus alone: step 4
 # holds with the $L$ of the instant. But a flock also has position forces, and then a system may have all its
-# eigenvalues in the left half-plane at every instant and grow all the same. One needs a function that falls along
-# every solution.
+# eigenvalues in the left half-plane at every instant and grow all the same. An example of Markus and Yamabe:
+#
+# $$\dot x = \begin{pmatrix} -1 + \tfrac32\cos^2t & 1 - \tfrac32\sin t\cos t \\ -1 - \tfrac32\sin t\cos t &
+#   -1 + \tfrac32\sin^2t\end{pmatrix}x .$$
+#
+# At each instant the trace is $-\tfrac12$ and the determinant is $\tfrac12$, so the eigenvalues are
+# $\tfrac14(-1 \pm i\sqrt7)$, always the same, on the left. But $x = e^{t/2}(\cos t, -\sin t)$ is a solution, as one
+# checks by inserting it, and it grows. The direction in which the system pushes turns along with the state. One needs a
+# function that falls along every solution.
 #
 # ## Lyapunov
 #
@@ -252,6 +269,22 @@ assert parting.y[0, -1] > 20.0
 assert np.all(np.diff(parting.y[0]) > 0.0)
 assert np.abs(np.linalg.eigvalsh(laplacians["two triangles"])[:3]).max() > 1.0  # two zeros, not three
 assert np.abs(np.linalg.eigvalsh(laplacians["two triangles"])[:2]).max() < 1e-12
+assert np.allclose(np.linalg.eigvalsh(laplacians["ring"]), [0.0, 1.0, 1.0, 3.0, 3.0, 4.0])
+assert np.allclose(np.linalg.eigvalsh(laplacians["complete"])[1:], 6.0)
+waits = [np.log(100.0) / np.linalg.eigvalsh(laplacians[name])[1] for name in ("complete", "ring", "path")]
+assert [f"{wait:.2g}" for wait in waits] == ["0.77", "4.6", "17"]
+assert f"{waits[2]:.1f} {waits[2] / waits[1]:.1f}" == "17.2 3.7"
+
+
+def markus_yamabe(t):
+    c, s = np.cos(t), np.sin(t)
+    return np.array([[-1.0 + 1.5 * c * c, 1.0 - 1.5 * s * c], [-1.0 - 1.5 * s * c, -1.0 + 1.5 * s * s]])
+
+
+for instant in (0.0, 0.7, 2.0):
+    c, s = np.cos(instant), np.sin(instant)
+    assert np.allclose(np.linalg.eigvals(markus_yamabe(instant)).real, -0.25)
+    assert np.allclose(markus_yamabe(instant) @ [c, -s], [0.5 * c - s, -0.5 * s - c])
 spread = {name: np.ptp(expm(-L) @ start) for name, L in laplacians.items()}
 assert spread["complete"] < 0.02 < spread["ring"]
 assert np.ptp(expm(-6.0 * laplacians["path"]) @ start) > 0.3
@@ -279,6 +312,21 @@ assert np.ptp(expm(-6.0 * laplacians["path"]) @ start) > 0.3
 # $\int_0^tf = W(0) - W(t)$ has a limit. If $\dot f$ is bounded, then $f$ is uniformly continuous, and $f \to 0$:
 # what dissipates dies out. What does *not* follow is that $W$ tends to 0, or that the state has a limit. Uniform
 # continuity is no detail: a function with ever narrower peaks of height 1 has a finite integral and no limit.
+#
+# ## Questions that come up
+#
+# *What if $a_{ij} \ne a_{ji}$: I see you, and you do not see me?* Then $\mathbf 1^\top L \ne 0$ in general, and the
+# mean is not conserved. If there is one robot whose speed reaches all others, directly or through others, all still
+# agree, but on a weighted mean (lecture 12). The quadratic form, and with it most proofs of this course, needs
+# symmetry.
+#
+# *How does one find a $W$?* In mechanics it is nearly always potential plus kinetic energy, seen from the frame in
+# which the motion is to die out. If it falls by friction, one has a $W$. If not, one looks for the term that does work
+# and asks who pays for it.
+#
+# *Stable, convergent: is that not the same?* No. A marble in a bowl without friction is stable at the bottom and never
+# converges. And there are systems all of whose solutions converge to a point, after first making a long excursion from
+# however near they start: convergent, and not stable. Lyapunov's theorem gives both, LaSalle's only convergence.
 #
 # ## What surprised, and what the theorems do not say
 #

@@ -80,11 +80,12 @@ _ = figures.norms(ax=ax)
 # **Figure 1.2.** On a line the Euclidean norm is $|x|$, with a corner at 0. The σ-norms are parabolas near 0 and
 # straight lines far out.
 #
-# For small $\|z\|$ one has $\|z\|_\sigma \approx \tfrac12\|z\|^2$, for large
-# $\|z\|_\sigma \approx \|z\|/\sqrt\varepsilon$. Despite its name the σ-norm is no norm: twice the vector has not
-# twice the σ-norm. It is a strictly increasing function of $\|z\|$, and that is all that is needed: "nearer than
-# $d$" is the same as "σ-norm below $d_\alpha$" with $d_\alpha = \|d\|_\sigma$, and likewise
-# $r_\alpha = \|r\|_\sigma$.
+# For small $\|z\|$ the root is about $1 + \tfrac12\varepsilon\|z\|^2$, so $\|z\|_\sigma \approx \tfrac12\|z\|^2$. For
+# large $\|z\|$ the 1 under the root does not count, and $\|z\|_\sigma \approx \|z\|/\sqrt\varepsilon$. With
+# $\varepsilon = 0.1$ the change-over is at $1/\sqrt\varepsilon = 3.2$: the σ-norm of 0.1 is 0.0050, half the square;
+# that of 100 is 306, not far from $100/\sqrt{0.1} = 316$. Despite its name the σ-norm is no norm: twice the vector has
+# not twice the σ-norm. It is a strictly increasing function of $\|z\|$, and that is all that is needed: "nearer than
+# $d$" is the same as "σ-norm below $d_\alpha$" with $d_\alpha = \|d\|_\sigma$, and likewise $r_\alpha = \|r\|_\sigma$.
 #
 # ## A bump
 #
@@ -199,6 +200,11 @@ print(f"ψ_α(r_α) = {alpha.psi_alpha(alpha.r_alpha):.6f}: what two agents out 
 # pull at 8.* The pair is a hard wall with a soft leash, and most of what flocks do wrong in this course comes from the
 # leash.
 #
+# Estimate both potentials in the head. From $d_\alpha = 14.29$ to $r_\alpha = 18.38$ it is 4.09, and the rim is 0.736
+# high, so the mean pull is $0.736/4.09 = 0.18$. From 0 to $d_\alpha$ it is 14.29, and the wall is 52.4 high, so the
+# mean push is 3.7, of at most 5. That is how an uneven pair comes from an even $\phi$, with $a = b$: both sides have
+# the same strength 5, but the bump weakens the pull, which comes last, and hardly the push.
+#
 # The two numbers of the figure have names. $c^* = \psi_\alpha(0)$ is what two coincident agents cost; theorems on
 # collisions compare the energy with it. $\psi_\alpha(r_\alpha)$ is what a pair out of range costs, *every* pair out
 # of range, however far apart. That constant looks harmless. It makes flocks fall apart (lecture 02) and bounds void
@@ -253,6 +259,10 @@ assert abs(alpha.psi_alpha(z) - exact) < 1e-12
 assert abs(quad(alpha.phi_alpha, alpha.d_alpha, z, epsabs=0.0, epsrel=1e-13)[0] - exact) < 1e-12
 assert f"{alpha.c_star:.1f} {alpha.psi_alpha(alpha.r_alpha):.2f} {0.1**-0.5:.2f}" == "52.4 0.74 3.16"
 assert abs(alpha.sigma_norm(1e-3) / 0.5e-6 - 1.0) < 1e-6
+assert f"{float(alpha.sigma_norm(0.1)):.4f} {float(alpha.sigma_norm(100.0)):.0f}" == "0.0050 306"
+means = [alpha.psi_alpha(alpha.r_alpha) / (alpha.r_alpha - alpha.d_alpha), alpha.c_star / alpha.d_alpha]
+assert f"{alpha.r_alpha - alpha.d_alpha:.2f} {means[0]:.2f} {means[1]:.1f}" == "4.09 0.18 3.7"
+assert f"{float(alpha.phi_alpha(alpha.sigma_norm(np.linspace(7.0, 8.4, 2001))).max()) / 5.0:.0%}" == "7%"
 at = float(alpha.sigma_norm(8.0))
 assert f"{at:.3f} {alpha.d_alpha:.3f} {alpha.r_alpha:.3f}" == "17.203 14.290 18.383"
 assert f"{(at / alpha.r_alpha - 0.2) / 0.8:.3f} {float(alpha.bump(at / alpha.r_alpha)):.4f}" == "0.920 0.0158"
@@ -339,9 +349,35 @@ assert abs(aside[1] + 1.19) < 0.01
 # lecture 02: below $c^*$ nobody gets over the hill.
 
 # %% [markdown]
+# ## Questions that come up
+#
+# *Why not a potential that is infinite where two agents coincide? Then they could never collide.* True, and such laws
+# exist. The price is a force without bound. A motor has one, and so has a solver's patience: near the pole
+# the steps become tiny. With a finite wall "no collision" is a matter of energy, and one has to check it.
+#
+# *Why is the force $\phi_\alpha n_{ij}$ and not $\psi_\alpha'$ along a unit vector?* It is the same kind of thing,
+# written in the σ-norm. The potential is a function of $\|q_j-q_i\|_\sigma$, and the chain rule brings the gradient of
+# the σ-norm with it, which is $n_{ij}$. Along the unit vector the force is $\phi_\alpha$ times the length of $n_{ij}$.
+#
+# *In which unit is a force measured here?* All agents have the mass 1, so a force is an acceleration, length/time$^2$,
+# and an energy is length$^2$/time$^2$. The gains of lecture 02 carry what is needed to make $\phi_\alpha
+# n_{ij}$ one.
+#
+# *What is a potential good for, if agents only ever compute forces?* For proofs. A force says what happens next; the
+# potential says what can ever happen, without solving an equation. If the sum of potential and kinetic energy never
+# rises, whatever costs more than there is at the start is excluded for all times. That is how each theorem of lectures
+# 02, 03 and 05 begins.
+#
+# *Is $d$ the distance at which agents come to rest?* For a pair, yes. In a crowd, no: each agent feels all agents
+# within $r$, and only if all those pairs can be at $d$ at once is that a rest. Lecture 04 asks when they can.
+#
+# *Why once continuously differentiable, and not smooth?* It is enough for the theorems: solutions are unique if the
+# force is Lipschitz. A smooth bump can be made from $e^{-1/z}$; the cosine is simpler. Integrators of high order notice
+# the kink in $\phi_\alpha'$ and take a smaller step there.
+#
 # ## What surprised, and what the theorem does not say
 #
-# The strongest pull is not at the range, and not in the middle of the attracting zone: the bump has weakened it to 8
+# The strongest pull is not at the range, and not in the middle of the attracting zone: the bump has weakened it to 7
 # % of $a$ before $\phi$ has risen (exercise 4). A link at the length $d$ lies far out on the taper, where the bump
 # is only 0.18, so it is much softer than $\phi'(0) = 5$ suggests (exercise 5). And the theorem speaks of one pair.
 # Of a sum over pairs it says nothing: three agents in a triangle can all have the length $d$, but four in a square

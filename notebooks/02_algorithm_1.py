@@ -33,15 +33,24 @@
 # $$\ddot y = -2c_1^\alpha\,\phi_\alpha(\|y\|_\sigma)\,\frac{y}{\sqrt{1+\varepsilon y^2}} -
 #   2c_2^\alpha\,a_{12}\,\dot y .$$
 #
-# This is a mass in a potential with friction. Multiply by $\tfrac12\dot y$; the first term is then a derivative,
-# $-c_1^\alpha\tfrac{d}{dt}\psi_\alpha(\|y\|_\sigma)$, and
+# This is a mass in a potential with friction. The inner derivative of $\|y\|_\sigma$ is $y/\sqrt{1+\varepsilon y^2}$
+# and $\psi_\alpha' = \phi_\alpha$ (lecture 01), so the potential of the moving pair changes at the rate
+# $\tfrac{d}{dt}\psi_\alpha(\|y\|_\sigma) = \phi_\alpha(\|y\|_\sigma)\,\tfrac{y}{\sqrt{1+\varepsilon y^2}}\,\dot y$.
+# Multiply the equation by $\tfrac12\dot y$; its first term is then $-c_1^\alpha$ times this rate, and
 #
 # $$\frac{d}{dt}\Bigl[c_1^\alpha\psi_\alpha(\|y\|_\sigma) + \tfrac14\dot y^2\Bigr] = -c_2^\alpha\,a_{12}\,\dot y^2
 #   \le 0 .$$
 #
-# The bracket is the energy $H$ of the pair. Without friction it is constant, so a motion runs along a level curve of
-# it. If the energy is below $c_1^\alpha\psi_\alpha(r_\alpha)$, the height of the rim, the pair swings for ever; if
-# it is above, the pair gets out of range, feels nothing any more, and never comes back.
+# The bracket is the energy $H$ of the pair. Why $\tfrac14$? With the centre at rest each agent moves at half the
+# relative speed, so their kinetic energy is $2\cdot\tfrac12(\tfrac12\dot y)^2 = \tfrac14\dot y^2$. Without friction $H$
+# is constant, so a motion runs along a level curve of it. If the energy is below
+# $c_1^\alpha\psi_\alpha(r_\alpha)$, the height of the rim, the pair swings for ever; if it is above, the pair gets out
+# of range, feels nothing any more, and never comes back.
+#
+# *With numbers.* Let $c_1^\alpha = 1$ and $c_2^\alpha = 0.2$. The rim is $\psi_\alpha(r_\alpha) = 0.736$ high. A pair
+# at rest 6.6 apart has the energy 0.635, below the rim, and stays together. At rest 6.5 apart it has 0.967, above the
+# rim: without friction it parts. Only 0.1 of a length lies between the two fates, because the potential is steep where
+# agents are too close, and its rim is low.
 
 # %%
 import numpy as np
@@ -147,9 +156,14 @@ print(fl.verify("E1").status)
 # it feels nothing.
 #
 # So the centre $q_c = \tfrac1n\sum_iq_i$ moves uniformly, and nothing is lost by riding with it: put
-# $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Distances are the same, $V(x) = V(q)$; and since $\sum_iv_i = 0$,
+# $x_i = q_i - q_c$ and $v_i = p_i - p_c$. Distances are the same, $V(x) = V(q)$. The kinetic energy splits:
 #
-# $$\tfrac12\sum_i\|p_i\|^2 = \tfrac12\sum_i\|v_i\|^2 + \tfrac n2\|p_c\|^2 .$$
+# $$\begin{aligned}
+# \tfrac12\sum_i\|p_i\|^2 &= \tfrac12\sum_i\|v_i + p_c\|^2 && \text{definition of } v_i \\
+# &= \tfrac12\sum_i\|v_i\|^2 + \langle\sum_iv_i, p_c\rangle + \tfrac n2\|p_c\|^2 &&
+#   \text{multiply out} \\
+# &= \tfrac12\sum_i\|v_i\|^2 + \tfrac n2\|p_c\|^2 . && \sum_iv_i = 0
+# \end{aligned}$$
 #
 # The last term is constant. So $H(x,v) = c_1^\alpha V(x) + \tfrac12\sum\|v_i\|^2$ falls at the same rate,
 # $\dot H = -c_2^\alpha\,v^\top\hat L v$.
@@ -185,6 +199,14 @@ assert [f"{each:.2f}" for each in inputs[[0, 2], 0]] == ["-1.96", "1.96"]
 assert abs(inputs[1, 0]) < 1e-12
 assert f"{float(np.sum(inputs * speeds)):.2f}" == "-3.93"
 assert couple.energy()[0] < law.alpha.psi_alpha(law.alpha.r_alpha)  # inside the separatrix
+heights = [law.alpha.r_alpha, law.alpha.sigma_norm(6.6), law.alpha.sigma_norm(6.5)]
+assert [f"{float(law.alpha.psi_alpha(z)):.3f}" for z in heights] == ["0.736", "0.635", "0.967"]
+stiffer = fl.Algorithm1(gains=fl.Gains(c1_alpha=100.0, c2_alpha=2.0))
+faster = fl.simulate(stiffer, [[0.0], [6.6]], [[0.0], [0.0]], (0.0, 6.0), t_eval=couple.t / 10.0)
+assert abs(faster.q - couple.q).max() < 1e-5
+parted = run.n * (run.n - 1) // 2 - len(fl.links(run.q[-1], 8.4))
+rims = parted * run.law.gains.c1_alpha * float(run.law.alpha.psi_alpha(run.law.alpha.r_alpha))
+assert f"{parted} {rims:.0f} {run.energy()[-1]:.0f}" == "762 16823 17052"
 
 # %% [markdown]
 # **Figure 2.3.** The energy falls to a constant, its balance closes to nine digits, and the number of components
@@ -194,7 +216,8 @@ assert couple.energy()[0] < law.alpha.psi_alpha(law.alpha.r_alpha)  # inside the
 #
 # A group is *cohesive* if one ball about its centre holds it at all times; it is a *flock* while its net is
 # connected. An *α-lattice* is a configuration in which every agent is exactly $d$ away from each of its neighbours
-# (lecture 04).
+# (lecture 04). A *critical point* of $V$ is an $x$ with $\nabla V(x) = 0$: all pair forces on each agent balance.
+# *Almost every* start means every start outside a set of measure zero, which a start drawn at random does not hit.
 #
 # > **Theorem 1** (Olfati-Saber 2006). Let $\Omega = \{(x, v) : H(x, v) \le H_0\}$ be such that every solution of
 # > Algorithm 1 that starts in it is a cohesive flock for all times. Then (i) almost every solution that starts in
@@ -243,12 +266,21 @@ print(fl.verify("os-1", run))
 #
 # ## Which flocks Theorem 1 is about
 #
-# No run shows what all solutions do, but energy does. If a net falls into parts of $k$ and $n - k$ agents, $k(n-k) \ge
-# n - 1$ pairs are out of range, and each of them costs $\psi_\alpha(r_\alpha)$. So below
+# No run shows what all solutions do, but energy does.
 #
-# $$H(0) < (n-1)\,c_1^\alpha\,\psi_\alpha(r_\alpha)$$
+# > **Proposition.** If $H(0) < (n-1)\,c_1^\alpha\,\psi_\alpha(r_\alpha)$, the net is connected at all times, and no
+# > agent is ever farther than $(n-1)r$ from another.
 #
-# no solution ever falls into parts: the hypothesis is *met*, and (ii) is a theorem about that start. How much energy is
+# *Proof.*
+#
+# 1. Suppose that at some time the net is in two parts, of $k$ and $n-k$ agents, with no link between them. All
+#    $k(n-k)$ pairs across are out of range.
+# 2. $k(n-k) - (n-1) = (k-1)(n-k-1) \ge 0$ for $1 \le k \le n-1$: multiply out. So there are at least $n-1$ such pairs.
+# 3. Each of them costs $c_1^\alpha\psi_\alpha(r_\alpha)$, and all other terms of $H$ are non-negative, so
+#    $H \ge (n-1)c_1^\alpha\psi_\alpha(r_\alpha) > H(0)$ at that time. But $H$ does not rise.
+# 4. In a connected net a chain of at most $n-1$ links, each shorter than $r$, joins any two agents. $\square$
+#
+# Under this condition the hypothesis of Theorem 1 is *met*, and (ii) is a theorem about that start. How much energy is
 # left for motion, once the best lattice of $n$ agents has its own?
 
 # %%
@@ -257,16 +289,19 @@ print(" n  V of the best lattice  limit  speed left (length/time)")
 for n in range(2, 8):
     V = gain * alpha.potential_energy(fl.lattice.hexagonal_spiral(n, alpha.d))
     limit = gain * (n - 1) * alpha.far_potential
-    speed = f"{np.sqrt(2.0 * (limit - V) / n):.2f}" if limit > V else "none: the hypothesis is not met"
+    speed = f"{np.sqrt(2.0 * (limit - V) / n):.2f}" if limit > V else "none: energy does not decide"
     print(f"{n:2d}  {V:21.2f}  {limit:5.1f}  {speed}")
 
 triangle = alpha.d * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 print(fl.verify("os-1", law=fl.Algorithm1(), q0=1.01 * triangle, p0=[[1, 0], [0, 1], [-1, -1]], t_span=(0.0, 2.0)))
 
 # %% [markdown]
-# So Theorem 1 is certainly about lattices of up to five agents in the plane (three on a line, six in space: erratum E4)
-# that move slowly. Of larger flocks the hypothesis can be unmet, as above, or open. Claim (i) needs a certificate of
-# its own, which a run as short as this one does not give.
+# The table can be had by counting. In a lattice only pairs without a link cost anything. Five agents have 10 pairs, the
+# best lattice in the plane links 7 of them, 3 are left, and 3 is less than $n - 1 = 4$. Six have 15 pairs and 9 links:
+# 6 are left, and 6 is not less than 5. A row of three has 1 pair left, of 2; a row of four has 3, of 3. So Theorem 1 is
+# certainly about slow lattices of up to five agents in the plane, and of three on a line. Of larger flocks the
+# hypothesis can be unmet, as for the forty agents above, or open. Claim (i) needs a certificate of its own, which a run
+# as short as this one does not give.
 #
 # Nothing in (ii) depends on the formula of $\psi_\alpha$. It takes a potential that is $C^1$, bounded below and
 # constant beyond its range, and weights $a_{ij} > 0$ within it. `any-potential` says so of any formula, such as
@@ -331,17 +366,43 @@ for speed in (0.0, 5.0, 20.0):
     outcome.append(len(set(fl.components(6, fl.links(tried.q[-1], 8.4)))))
 assert outcome[0] == outcome[1] == 1
 assert outcome[2] > 1
+rim = gain * alpha.far_potential
+assert f"{rim:.2f} {gain * alpha.potential_energy(ring):.1f} {9.0 * rim:.1f}" == "22.08 198.7 198.7"
 
 # %% [markdown]
-# The ring survives a speed of 5 and breaks at 20. To cut it in two costs two links, that is two rims of
-# $c_1^\alpha\psi_\alpha(r_\alpha) = 22$ each; the kinetic energy at 5 is 75, more than that, and yet the ring holds:
-# friction was faster than the agents. So energy gives a condition that is *sufficient* for staying together, as
-# above, and far from necessary. Theorems of this kind, with a hypothesis that can be checked before the run, are the
-# right way to repair Theorem 1 (see also Tanner, Jadbabaie and Pappas; lecture 12). They are modest: they protect
-# small flocks with small energies, and say nothing about the forty agents of Figure 2.2.
+# The ring survives a speed of 5 and breaks at 20. How the energies come about: a ring of six with the side 7 has 15
+# pairs, 6 of them linked at the distance $d$, where they cost nothing, and 9 out of range, which cost 22.08 each,
+# together 198.7. The kinetic energy is $6\cdot\tfrac12\cdot5^2 = 75$, or $6\cdot\tfrac12\cdot20^2 = 1200$. To cut it in
+# two costs two links, that is two rims of $c_1^\alpha\psi_\alpha(r_\alpha) = 22$ each; the kinetic energy at 5 is 75,
+# more than that, and yet the ring holds: friction was faster than the agents. So energy gives a condition that is
+# *sufficient* for staying together, as above, and far from necessary. Theorems of this kind, with a hypothesis that can
+# be checked before the run, are the right way to repair Theorem 1 (see also Tanner, Jadbabaie and Pappas; lecture 12).
+# They are modest: they protect small flocks with small energies, and say nothing about the forty agents of Figure 2.2.
 #
 # What the experiment does not show is where the boundary lies. Three runs are no statistics; lecture 10 does that
 # properly.
+#
+# ## Questions that come up
+#
+# *The energy falls and is bounded below, so it converges. Why do the velocities not agree then?* The rate of loss
+# contains linked pairs only. It is 0 as soon as velocities agree *within* each component, however much they differ
+# between components. Two components that drift apart lose no energy by it, and keep their two velocities.
+#
+# *Where does the energy of a pair go when it parts?* It stays in $H$. A pair that climbs out of its well keeps
+# $c_1^\alpha\psi_\alpha(r_\alpha)$ as potential energy, although the two never meet again. At the end of the run of
+# forty agents $H = 17052$, and 16823 of it belong to the 762 pairs that are out of range.
+#
+# *Can components that have parted meet again?* Yes. While they are out of range their centres move uniformly
+# (exercise 8), so they meet if their courses cross at the right time. Nothing in the law makes them.
+#
+# *Would a larger $c_1^\alpha$ hold the flock together? It raises the rim.* Not if the flock starts at rest. Measure
+# time in units of $1/\sqrt{c_1^\alpha}$: the law becomes $\ddot q = -\nabla V - (c_2^\alpha/\sqrt{c_1^\alpha})\hat
+# L\dot q$. Force and rim grow alike, and what counts is $c_2^\alpha/\sqrt{c_1^\alpha}$. So a larger $c_1^\alpha$ alone
+# makes the friction relatively *weaker*. The pair of Figure 2.1 with $c_1^\alpha = 100$ and $c_2^\alpha = 2$ moves
+# along the same path, ten times as fast.
+#
+# *Is Theorem 1 wrong?* (ii) and (iii) are proved above. (i) is false as printed. But the more important defect is
+# another one: for most flocks nobody can tell whether the theorem applies.
 #
 # ## What surprised, and what the theorem does not say
 #

@@ -65,6 +65,11 @@
 #    $\dot v_i = u_i^\alpha - c_1^\gamma(q_i - q_c) - c_2^\gamma(p_i - p_c)$, in which $q_r$ and $p_r$ have
 #    cancelled. $\square$
 #
+# *With numbers.* Three agents on a line at $-4$, $1$ and $6$, all at rest, the γ-agent at rest in $10$, $c_1^\gamma =
+# 1.1$. The centre is at $q_c = 1$, so $x = (-5, 0, 5)$. The γ-agent pulls with $1.1\cdot(14, 9, 4) = (15.4, 9.9, 4.4)$.
+# The mean of the three pulls is $9.9 = 1.1\cdot(10 - 1)$: that moves the centre. What is left over is $(5.5, 0, -5.5) =
+# -1.1\,x$: it presses the three together, and would be the same with the γ-agent anywhere else.
+#
 # Step 3 is where linearity is used. Algorithm 3 of lecture 05 bounds the pull by a nonlinear function, and the split
 # is lost. The library checks the split symbolically:
 
@@ -144,10 +149,13 @@ _ = figures.target_pull(ax=ax)
 # positive, because $s^2$ dominates. So at some $s > 0$ it is 0: there is $\nu \ne 0$ with $(s^2I + sD + S)\nu = 0$,
 # and $\tilde x = e^{st}\nu$ solves the equation. $\square$
 #
-# Solutions that converge to a point with such a pole lie on its stable manifold, which has a lower dimension, hence
-# measure 0. That excludes saddles whose other eigenvalues are not 0. What it does not exclude are critical points
-# with further zero curvatures, and convergence to a *set* of critical points instead of to one; the paper's "almost
-# every" passes over both. $\square$
+# What is the use of such a pole? Take one coordinate, $\ddot{\tilde x} + 2\dot{\tilde x} - 3\tilde x = 0$, with the
+# poles 1 and $-3$. All solutions are sums of multiples of $e^t$ and $e^{-3t}$, and only those without $e^t$ converge
+# to 0. They start on the line $\dot{\tilde x} = -3\tilde x$ of the plane of states, and a start drawn at random is not
+# on a line. In more dimensions, and for the nonlinear law, the line becomes a curved surface, the *stable manifold* of
+# the saddle. Its dimension is lower than that of the space of states, so its measure is 0. That excludes saddles whose
+# other eigenvalues are not 0. What it does not exclude are critical points with further zero curvatures, and
+# convergence to a *set* of critical points instead of to one; the paper's "almost every" passes over both. $\square$
 #
 # *Proof of (iv), as far as it is true.* Let $k+1$ pairs coincide *at one time*. Each costs
 # $c_1^\alpha\psi_\alpha(0) = c^*$, and all other terms are non-negative, so $H_\lambda \ge (k+1)c^* > H_\lambda(0)$,
@@ -206,6 +214,9 @@ assert f"{level:.1f} {np.sqrt(2.0 * level / two.gains.c1_gamma):.1f}" == "49.6 9
 drawn = fl.simulate(two, [[-5.0], [5.0]], [[0.0], [0.0]], (0.0, 10.0))
 assert abs(drawn.energy()[0] - level) < 1e-6
 assert np.abs(drawn.q).max() <= 5.0 + 1e-9
+row = np.array([[-4.0], [1.0], [6.0]])
+felt = [fl.Algorithm2(target=fl.StaticTarget((place,))).acceleration(0.0, row, 0.0 * row) for place in (1.0, 10.0)]
+assert np.allclose(felt[1] - felt[0], 9.9)  # the same on all three
 
 # %% [markdown]
 # The shapes agree to many digits. For a designer this is good news: cohesion, matching and the pattern can be tuned
@@ -239,9 +250,9 @@ symbolic.transfer_function(sympy.Symbol("k_v"))
 # ## Two cases of a project
 #
 # A course project (`fl.cite(fl.scenario("msn-case1"))`) asks for four simulations of 100 agents; assignment A1 sets
-# them all. Here are two. **A target at rest, no damping** ($c_2^\gamma = 0$): the flock swings through the target
-# and back, for $\zeta = 0$. The period must be $2\pi/\omega_n = 2\pi$. Measure it: the velocity of the centre
-# changes its sign after half a period.
+# them all. Here are two. **A target at rest, no damping** ($c_2^\gamma = 0$): the flock swings through the target and
+# back, for $\zeta = 0$. Here $c_1^\gamma = 1$, so the period must be $2\pi/\omega_n = 2\pi$. Measure it: the velocity
+# of the centre changes its sign after half a period.
 
 # %%
 case2 = fl.scenario("msn-case2").run()
@@ -301,6 +312,10 @@ found = [np.linalg.norm(r.q[-1].mean(axis=0) - 50.0) / 100.0 for r in (case4, tr
 assert np.allclose(found, [gain(0.009, omega), gain(1.0, omega)], atol=2e-3)
 assert f"{gain(0.009, omega):.2f} {gain(1.0, omega):.2f}" == "0.85 1.11"
 assert abs(2.0 * half - 2.0 * np.pi) < 1e-3
+assert f"{omega:.3f} {omega**2:.2f} {c2:.2f} {0.009 * c2 * omega:.2f} {c2 * omega:.1f}" == "3.491 12.18 16.73 0.53 58.4"
+assert f"{gain(0.009, omega):.3f} {gain(1.0, omega):.3f} {np.hypot(70.0, c2 * omega):.1f}" == "0.852 1.109 91.2"
+assert gain(1.0, 0.999 * np.sqrt(2.0 * c1)) > 1.0 > gain(1.0, 1.001 * np.sqrt(2.0 * c1))
+assert f"{np.sqrt(2.0 * c1):.1f}" == "11.8"
 shares = bound / flock.metrics()["cohesion_radius"].values
 assert 5.0 < shares.min() < shares.max() < 25.0
 
@@ -309,6 +324,25 @@ assert 5.0 < shares.min() < shares.max() < 25.0
 # the $\omega$ of case 4. With $k_v = 0.009$ the ratio is 0.85; with the true velocity it is 1.11, and the flock's
 # circle would be *larger* than the target's.
 #
+# *By hand.* The gains are $c_1^\gamma = 70$ and $c_2^\gamma = 2\sqrt{70} = 16.73$, so the damping is critical and the
+# denominator is the square $(s + \omega_n)^2$, of modulus $\omega^2 + \omega_n^2$ at $s = i\omega$. Here $\omega =
+# 3.491$ and $\omega^2 = 12.18$, so the modulus is $12.18 + 70 = 82.18$. The numerator is $70 +
+# 0.009\cdot16.73\cdot3.491\,i$, whose imaginary part, 0.53, hardly counts: the ratio is $70/82.18 = 0.852$. With the
+# true velocity the imaginary part is $58.4$, the modulus $\sqrt{70^2 + 58.4^2} = 91.2$, and the ratio $91.2/82.18 =
+# 1.109$.
+#
+# Is a flock that knows the true velocity always on a larger circle? At critical damping and with $k_v = 1$
+#
+# $$\begin{aligned}
+# \Bigl|\frac{q_c}{q_r}\Bigr|^2 &= \frac{\omega_n^4 + 4\omega_n^2\omega^2}{(\omega^2 + \omega_n^2)^2} &&
+#   c_2^\gamma = 2\omega_n \\
+# &= 1 + \frac{\omega^2\,(2\omega_n^2 - \omega^2)}{(\omega^2 + \omega_n^2)^2} , && \text{denominator taken out}
+# \end{aligned}$$
+#
+# which is above 1 exactly for $\omega < \sqrt2\,\omega_n = 11.8$. The reason is visible in the law: on a circle the
+# velocity points along the tangent, and whoever copies it a little late is carried outwards. For faster circles the
+# mass of the flock wins.
+#
 # Neither the start nor the speed as such explains it. What comes from the start is a solution of the homogeneous
 # equation, and decays with the poles.
 #
@@ -316,8 +350,20 @@ assert 5.0 < shares.min() < shares.max() < 25.0
 #
 # The same $\lambda$ that holds the flock together presses on every link. Beyond a ratio $c_1^\gamma/c_1^\alpha$ that
 # falls with $n$, some agents share one place, in a strict local minimum of $U_\lambda$ (erratum E11). Theorem 3 is
-# not violated: it promises a minimum of $U_\lambda$, and no lattice. Move the ratio, and watch nineteen agents; a
-# number beside an agent counts those in its place:
+# not violated: it promises a minimum of $U_\lambda$, and no lattice.
+#
+# > **Proposition (two agents).** Two agents have only one equilibrium, in which they coincide, exactly if
+# > $c_1^\gamma \ge 2c_1^\alpha|\phi_\alpha(0)|$.
+#
+# *Proof.* At the distance $y \le d$ the force on their distance is $-y\,\bigl[2c_1^\alpha
+# \phi_\alpha(\|y\|_\sigma)/\sqrt{1+\varepsilon y^2} + c_1^\gamma\bigr]$, by the second section. The first term in the
+# bracket is negative and rises with $y$ to 0 at $d$: $|\phi_\alpha|$ falls and the root grows. So the bracket rises,
+# from $c_1^\gamma - 2c_1^\alpha|\phi_\alpha(0)|$ at $y = 0$. If that is negative, it vanishes at one distance $0 < y <
+# d$, where the pair rests apart; else only $y = 0$ is left. Beyond $d$ all forces attract. $\square$
+#
+# With $a = b = 5$ one has $|\phi_\alpha(0)| = 4.99$, so the ratio is $9.98$ for two. For nineteen it is much lower: the
+# agents in the middle are pressed together by all those outside, and each pair force is bounded. Move the ratio, and
+# watch nineteen agents; a number beside an agent counts those in its place:
 
 # %%
 from flockana.course.frames import slider
@@ -347,8 +393,32 @@ slider(at_rest, ratios, name="c1γ/c1α", title="nineteen agents at rest", size=
 # %% tags=["facts"]
 places = len(np.unique(np.round(settled[3.0].q, 4), axis=0))
 assert 1 < places < 19  # some share a place, not all
+needed = 2.0 * abs(float(fl.AlphaInteraction().phi_alpha(0.0)))
+assert f"{needed:.2f}" == "9.98"
+assert fl.min_distance(settle(patch[:2], 0.99 * needed).q) > 0.1
+assert fl.min_distance(settle(patch[:2], 1.1 * needed).q) < 1e-6
 
 # %% [markdown]
+# ## Questions that come up
+#
+# *Does cohesion mean that the flock ends as one net?* No. Cohesion says that a ball holds all agents. But at rest one
+# can say more. Add up the forces on all agents of one component: the pair forces cancel, and
+# $-c_1^\gamma\sum x_i = 0$ is left, so *every component has its centre at the centre of the flock*. Two components side
+# by side are excluded. A ring about a smaller component is not excluded by this argument.
+#
+# *Velocities tend to 0. So does each agent come to rest at one place?* In the frame of the centre the velocity
+# tends to 0, but $\ln(1+t)$ has a velocity that tends to 0, too, and it does not converge. LaSalle's theorem gives
+# convergence to a *set*. Lecture 13 proves more near a minimum.
+#
+# *What if the agents have different gains $c_1^\gamma$?* Step 3 of the split fails: the mean of
+# $c_i(q_i - q_r)$ is not a gain times $q_c - q_r$. Then the shape feels the target, and one has to begin anew.
+#
+# *Do we still need the friction between neighbours, $c_2^\alpha$?* Not for Theorem 3: set it to 0, and each line of the
+# proof still holds. It matters for how *fast* the links calm down (lecture 06).
+#
+# *The pull has no end of range. Is that realistic?* Each agent must know $q_r$ and $p_r$, by radio or from a common
+# plan. That is the price of the one-line proof of cohesion. Lecture 12 has laws in which few agents know the target.
+#
 # ## What surprised, and what the theorem does not say
 #
 # Cohesion has a one-line proof, and its constant is useless for design: here the bound is some ten times the radius.

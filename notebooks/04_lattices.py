@@ -27,9 +27,10 @@
 # ## Two robots, three, four
 #
 # Two robots 7 apart are fine. Three form a triangle of side 7. A fourth can stand on the other side of one edge: a
-# rhombus, whose long diagonal is $7\sqrt3 = 12.1$. Is that allowed? Only if the two robots at its ends do not see
-# each other, that is if $r \le 12.1$, because *all* neighbours have to be at the distance 7. A square of side 7 has
-# diagonals of 9.9, so it is allowed for $r \le 9.9$. The range decides.
+# rhombus, whose long diagonal is twice the height of the triangle, $2\cdot\tfrac{\sqrt3}2\cdot7 = 12.1$. Is that
+# allowed? Only if the two robots at its ends do not see each other, that is if $r \le 12.1$, because *all* neighbours
+# have to be at the distance 7. A square of side 7 has diagonals of 9.9, so it is allowed for $r \le 9.9$. The range
+# decides.
 #
 # > **Definition** (Olfati-Saber 2006). An *α-lattice* of scale $d$ and ratio $\kappa = r/d > 1$ is a configuration
 # > in which $\|q_j - q_i\| = d$ for all neighbours, that is for all pairs with $\|q_j - q_i\| < r$.
@@ -102,7 +103,10 @@ _ = figures.crossing_links(ax=ax)
 # least is no more than $1/\sqrt2 = 0.71$; here it is 0.62.
 #
 # *Proof of (ii).* A planar drawing of a connected net of $n \ge 3$ agents with $e$ links divides the plane into $f$
-# faces, the outer one included, with $n - e + f = 2$ (Euler).
+# faces, the outer one included, with $n - e + f = 2$ (Euler). Why? Draw the net link by link, from a single agent on,
+# always one that touches what is drawn. For the single agent $1 - 0 + 1 = 2$. A link to a new agent raises $n$ and $e$
+# by 1. A link between two agents that are there already closes a circuit and cuts one face in two: it raises $e$ and
+# $f$ by 1. Neither changes $n - e + f$.
 #
 # 1. Every face has at least 3 links on its boundary, counted twice if the face lies on both sides, because there are
 #    no double links and $n \ge 3$.
@@ -120,7 +124,13 @@ _ = figures.crossing_links(ax=ax)
 #    them in $\mathbb R^m$. Contradiction. $\square$
 #
 # **The sharp count.** $3n - 6$ is never reached by an α-lattice: the outer face is large. Harborth (1974) proved the
-# sharp bound $\lfloor 3n - \sqrt{12n-3}\rfloor$, which hexagonal spirals reach. For the 37 agents:
+# sharp bound $\lfloor 3n - \sqrt{12n-3}\rfloor$, which hexagonal spirals reach.
+#
+# *By hand.* Seven agents, one in the middle of six: six spokes and six links around make 12, and $3\cdot7 - \sqrt{81} =
+# 12$. A hexagon with $k$ rings has $n = 3k^2 + 3k + 1$ agents, so $12n - 3 = (6k+3)^2$ is a square, and the bound is
+# $3n - 6k - 3 = 9k^2 + 3k$: 12, 42, 90 for $k = 1, 2, 3$. Where does the root come from? It counts what is missing at
+# the rim. An agent inside has six links; if all had, there would be $3n$ of them. The $6k$ agents of the rim lack two
+# each, the six corners one more, together $12k + 6$ ends, that is $6k + 3$ links. For the 37 agents:
 
 # %%
 print(f"3n − 6 = {lattice.planar_bound(37)}, Harborth {lattice.harborth(37)}, the patch has {len(pairs)} links")
@@ -164,10 +174,12 @@ print(f"links {length.min():.2f} to {length.max():.2f} long, crossings {len(latt
 #
 # $$E(q) = \frac{1}{e+1}\sum_{\text{links}}\bigl(\|q_j - q_i\| - d\bigr)^2,$$
 #
-# with $e$ the number of terms, each link counted in both orders. If every term is at most $\delta^2$, the mean is,
-# so $E \le \delta^2$ for a quasi-lattice. The converse fails: one bad link among hundreds hardly shows in $E$.
-# Whoever reports $E$ alone hides the worst link, and whoever reports $\delta$ alone lets one link speak for all.
-# Look at both.
+# with $e$ the number of terms, each link counted in both orders. If every term is at most $\delta^2$, the mean is, so
+# $E \le \delta^2$ for a quasi-lattice. Take three links of the lengths 7, 7 and 8.1. The worst one gives $\delta =
+# 1.1$. The mean has $e = 6$ terms, of which two are not 0: $E = 2\cdot1.1^2/7 = 0.346$, and $\sqrt E = 0.59$, about
+# half of $\delta$. With thirty links instead of three $\sqrt E$ would be $0.2$. The converse fails: one bad link among
+# hundreds hardly shows in $E$. Whoever reports $E$ alone hides the worst link, and whoever reports $\delta$ alone lets
+# one link speak for all. Look at both.
 
 # %%
 worst = abs(length - d).max()
@@ -215,6 +227,11 @@ assert abs(mean - 2 * np.sum((length - d) ** 2) / (2 * len(net) + 1)) < 1e-12
 assert length.max() / np.sqrt(2) < fl.min_distance(end) < r / np.sqrt(2)
 assert all(len(lattice.links(lattice.hexagonal_spiral(n, d), r)) == lattice.harborth(n) for n in range(3, 61))
 assert lattice.max_ratio("bcc") < 1.2
+assert [lattice.harborth(3 * k * k + 3 * k + 1) for k in (1, 2, 3)] == [12, 42, 90]
+assert [len(lattice.links(lattice.hexagonal_patch(k, d), r)) for k in (1, 2, 3)] == [12, 42, 90]
+missing = 6 - lattice.coordination(len(q), pairs)
+assert sorted(missing.tolist())[-18:] == [2] * 12 + [3] * 6
+assert f"{2 * 1.1**2 / 7:.3f} {np.sqrt(2 * 1.1**2 / 7):.2f} {np.sqrt(2 * 1.1**2 / 61):.1f}" == "0.346 0.59 0.2"
 assert lattice.rigidity(lattice.square(2, 2, d), lattice.links(lattice.square(2, 2, d), r)).flexes == 1
 assert lattice.rigidity(q, pairs).self_stresses == 19
 assert lattice.coordination(len(end), net).max() == 6
@@ -249,9 +266,12 @@ _ = plots.configuration(fragment, d=d, r=r, ax=ax, bar=False)
 #
 # Does a lattice hold its shape? Let the agents have velocities $p_i$. A link keeps its length to first order if
 # $\langle q_j - q_i, p_j - p_i\rangle = 0$: one linear equation for each link, in $nm$ unknowns. The matrix of these
-# equations is the *rigidity matrix*. Translations and rotations always solve them, in the plane 3 dimensions. If
-# there are no other solutions, the framework is *infinitesimally rigid*; that needs at least $2n - 3$ links. A
-# triangle has $3 = 2\cdot3 - 3$ and is rigid. A square has 4, one short of $5$, and shears into a rhombus.
+# equations is the *rigidity matrix*. Translations and rotations always solve them, in the plane 3 dimensions. If there
+# are no other solutions, the framework is *infinitesimally rigid*; that needs at least $2n - 3$ links. A triangle has
+# $3 = 2\cdot3 - 3$ and is rigid. A square has 4, one short of $5$, and shears into a rhombus: let the lower two agents
+# rest and the upper two move to the right with the velocity $(1, 0)$. The lower link has $\langle(7, 0), (0,
+# 0)\rangle = 0$, the upper one too, as its ends move alike, and the two sides have $\langle(0, 7), (1, 0)\rangle = 0$.
+# All four equations hold, and the motion is neither a translation nor a rotation.
 
 # %%
 for name, places in (("square", lattice.square(2, 2, d)), ("patch of 37", q)):
@@ -276,6 +296,22 @@ for name, places in (("square", lattice.square(2, 2, d)), ("patch of 37", q)):
 # them, and then the law is no longer one of *all neighbours*, but of a graph that somebody has planned (formation
 # control; the directed trees of lecture 08 are an example). What this lecture says about crossings matters there
 # too: a planar net can be drawn on a map for the operator, and messages can be routed along its faces.
+#
+# ## Questions that come up
+#
+# *Is there an α-lattice for every $n$?* Yes. Leave agents out of a lattice: the condition is one on pairs, so what is
+# left is a lattice again. It may have fewer links, and may even be disconnected. In the extreme, agents that are all
+# out of each other's range form an α-lattice without links: the definition does not ask for a connected net.
+#
+# *Theorem 5 says "with distinct nodes". Can nodes of a lattice coincide?* No: two agents in one place are nearer than
+# $r$, so they are neighbours, and their distance is 0 instead of $d$. The words are a reminder and no further
+# hypothesis.
+#
+# *Does (iii) say that a flock of five in the plane cannot all see each other?* Only if it is a lattice. Five agents
+# that are squeezed into one place all see each other, and lecture 03 has shown what squeezes them.
+#
+# *A bound with a floor, a bound with a root: which one should I remember?* $3n$. Each agent inside has six neighbours,
+# and each link is shared by two. Everything else is about the rim.
 #
 # ## What surprised, and what the theorem does not say
 #

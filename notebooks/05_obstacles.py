@@ -30,8 +30,15 @@
 # repels the robot while $y$ is below a distance $d'$, and brakes it by friction between the two. The robot's energy
 # is its kinetic energy, plus the potential of the repulsion, plus that of the drive; the wall does no work, because
 # the β-agent does not move along the line; friction dissipates. So the robot comes to rest where drive and repulsion
-# balance. That is all of this lecture, apart from two questions that a line does not pose: how does the β-agent move
-# when the robot moves *along* the wall, and what if the balance is not where we want it?
+# balance. In formulas, with the potential $c_1^\beta\psi_\beta$ of the repulsion, a friction $b \ge 0$ that ends at
+# $d'$ too, and the drive $c_1^\gamma$:
+#
+# $$\ddot y = -c_1^\beta\frac{d\psi_\beta}{dy} - c_2^\beta b\,\dot y - c_1^\gamma, \qquad
+#   \frac{d}{dt}\Bigl[\tfrac12\dot y^2 + c_1^\beta\psi_\beta + c_1^\gamma y\Bigr] = -c_2^\beta b\,\dot y^2 \le 0 ,$$
+#
+# the second equation being the first times $\dot y$. That is all of this lecture, apart from two questions that a line
+# does not pose: how does the β-agent move when the robot moves *along* the wall, and what if the balance is not where
+# we want it?
 #
 # ## β-agents
 #
@@ -69,8 +76,14 @@ _ = figures.projections(axes=axes)
 # $\hat p_{ik}$ (diamond), on a sphere and on a wall (grey). On the wall the β-agent keeps the whole velocity along
 # it; on the sphere it is slower.
 #
-# With $d_\beta = \|d'\|_\sigma$, $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ and the bump of lecture 01, the β-agents repel,
-# and brake, within the distance $d'$:
+# *With numbers.* A sphere of radius 3 about the origin, an agent at $(0, 5)$ with the velocity $(2, -1)$. Then
+# $e = (0, 1)$ and $\mu = \tfrac35$; $P$ keeps the first component, so $Pp_i = (2, 0)$, and the β-agent sits at $(0, 3)$
+# with the velocity $(1.2, 0)$. Friction between the two pulls the agent's velocity along
+# $\hat p_{ik} - p_i = (-0.8, 1)$: a little against its motion along the sphere, and fully against its motion
+# towards it. Its power is $\langle p_i, \hat p_{ik} - p_i\rangle = -1.6 - 1 = -2.6$, a loss.
+#
+# With $d_\beta = \|d'\|_\sigma$, $\sigma_1(z) = z/\sqrt{1+\|z\|^2}$ for numbers and vectors, and the bump of lecture
+# 01, the β-agents repel, and brake, within the distance $d'$:
 #
 # $$\phi_\beta(z) = \rho_h(z/d_\beta)\,(\sigma_1(z-d_\beta)-1) \le 0, \qquad b_{ik} = \rho_h(\|\hat
 #   q_{ik}-q_i\|_\sigma/d_\beta), \qquad \hat n_{ik} = \frac{\hat q_{ik}-q_i}{\sqrt{1+\varepsilon\|\hat
@@ -79,7 +92,9 @@ _ = figures.projections(axes=axes)
 # $$u_i^\beta = c_1^\beta\sum_k \phi_\beta(\|\hat q_{ik}-q_i\|_\sigma)\,\hat n_{ik} + c_2^\beta\sum_k b_{ik}(\hat
 #   p_{ik}-p_i), \qquad u_i^\gamma = -c_1^\gamma\,\sigma_1(q_i-q_r) - c_2^\gamma(p_i-p_r),$$
 #
-# and $u_i = u_i^\alpha + u_i^\beta + u_i^\gamma$, where $u_i^\alpha$ is Algorithm 1. Because of $\sigma_1$ the pull
+# and $u_i = u_i^\alpha + u_i^\beta + u_i^\gamma$, where $u_i^\alpha$ is Algorithm 1. The potential of the repulsion is
+# $\psi_\beta(z) = \int_{d_\beta}^z\phi_\beta \ge 0$: it is 0 from $d_\beta$ on, and $\psi_\beta(0)$ is the height of
+# the wall. Because of $\sigma_1$ the pull
 # of a distant γ-agent is bounded by $c_1^\gamma$; and because $\sigma_1$ is not linear, the split of lecture 03 does
 # not hold here.
 #
@@ -96,7 +111,10 @@ _ = figures.projections(axes=axes)
 #
 # **Whether it gets through on the way.** With the energy $\tfrac12p^2$ at the distance $d'$ and a constant pull
 # $c_1^\gamma$, an agent reaches the wall only if $\tfrac12p^2 + c_1^\gamma d' \ge c_1^\beta\psi_\beta(0)$: kinetic
-# energy and the work of the pull must pay for the whole wall. Friction only helps.
+# energy and the work of the pull must pay for the whole wall. Friction only helps. By hand, with the numbers of the
+# flock below, $c_1^\beta = 1500$, $d' = 4.2$, and a pull of 12: $\psi_\beta(0) = 11.93$, so the wall is
+# $1500\cdot11.93 = 17898$ high; the pull pays $12\cdot4.2 = 50$ of it; what is left, 17848, needs the speed
+# $\sqrt{2\cdot17848} = 189$.
 
 # %%
 beta = fl.BetaInteraction(d=4.2, r=5.04, eps=0.1, h=0.9)
@@ -113,10 +131,10 @@ print(f"strongest repulsion {wall_force.max():.0f}, rests at {outer:.2f}, breaks
 
 # %% [markdown]
 # **Figure 5.2.** The repulsion of a wall over the distance, with the gains of this lecture, and a pull of 12. They
-# balance near 4.2 and once more close to the wall, where the balance is unstable.
+# balance at 4.19 and once more at 0.004, close to the wall, where the balance is unstable.
 #
-# With $c_1^\beta = 1500$ the wall is stronger than the pull by a factor of hundreds, and an agent would need a speed
-# of about a hundred to break through. That is the reason for the large gain, and its price is a stiff equation: the
+# With $c_1^\beta = 1500$ the strongest repulsion, 6564, is 547 times the pull, and an agent would need a speed
+# of 189 to break through. That is the reason for the large gain, and its price is a stiff equation: the
 # integrator must take small steps while an agent touches a wall. In the flocks below nobody comes near such a speed.
 # For 37 agents the energies add up, and the same bound, applied to the whole flock, says nothing any more.
 #
@@ -155,8 +173,7 @@ _ = plots.components(run, ax=axes[1])
 #
 # ## Theorem 6
 #
-# Let the γ-agent be static at $q_r = q_d$ and report the velocity $p_r = p_d$. With
-# $\psi_\beta(z) = \int_{d_\beta}^z\phi_\beta$ put
+# Let the γ-agent be static at $q_r = q_d$ and report the velocity $p_r = p_d$. Put
 #
 # $$V_\alpha = c_1^\alpha V, \qquad V_\beta = c_1^\beta\sum_{i,k}\psi_\beta(\|\hat q_{ik}-q_i\|_\sigma), \qquad
 #   V_\gamma = c_1^\gamma\sum_i\bigl(\sqrt{1+\|q_i-q_d\|^2}-1\bigr),$$
@@ -204,8 +221,23 @@ _ = plots.components(run, ax=axes[1])
 #
 # The first term is $\le 0$ by the quadratic form, the second by 3, the third by the condition. $\square$
 #
-# With $p_d = 0$ the condition is trivial. Otherwise note the words *for all $t \ge t_0$*: they ask about the whole
-# future, and one instant at which the condition holds proves nothing (exercise 3).
+# With $p_d = 0$ the condition is trivial. Otherwise, what does it ask? Split $T = \tfrac n2\|p_c\|^2 + K$ with the
+# mismatch $K = \tfrac12\sum\|p_i - p_c\|^2$, as in lecture 02. Then
+#
+# $$\begin{aligned}
+# \tfrac n2\langle p_c, p_d\rangle \le T
+#   &\iff \|p_c\|^2 - \langle p_c, p_d\rangle + \tfrac2nK \ge 0 && \text{divide by } \tfrac n2 \\
+# &\iff \bigl\|p_c - \tfrac12p_d\bigr\|^2 \ge \tfrac14\|p_d\|^2 - \tfrac2nK . && \text{complete the square}
+# \end{aligned}$$
+#
+# For a flock that flies as one, $K = 0$: *its velocity must lie outside the ball that has the segment from 0 to $p_d$
+# as a diameter*. So the condition fails exactly while the flock is slower, roughly, than the γ-agent says it should be:
+# then the γ-agent does work on it. Take $p_d = (5, 0)$ and 37 agents with the common velocity $(2, 1)$, on a lattice
+# away from all obstacles. The square on the left is $(-0.5)^2 + 1^2 = 1.25 < 6.25$, so the condition fails, and with
+# $c_2^\gamma = 2$ the energy *rises* at the rate $-2\cdot(37\cdot5 - 37\cdot10) = 370$.
+#
+# Note also the words *for all $t \ge t_0$*: they ask about the whole future, and one instant at which the condition
+# holds proves nothing (exercise 3).
 #
 # ## The U-shaped obstacle
 
@@ -257,8 +289,10 @@ print(f"an agent that starts 0.1 off the axis passes the sphere at t = {past.t[n
 
 # %% tags=["facts"]
 assert wall_force.max() > 100.0 * 12.0
-assert 3.9 < outer < 4.2
-assert 50.0 < through < 200.0
+assert f"{outer:.2f} {through:.0f} {wall_force.max():.0f} {wall_force.max() / 12.0:.0f}" == "4.19 189 6564 547"
+tip = (np.sqrt(1.0 + 0.1 * 0.004**2) - 1.0) / 0.1
+assert abs(1500.0 * -float(beta.phi_beta(tip)) * 0.004 - 12.0) < 0.1
+assert f"{float(beta.psi_beta(0.0)):.2f} {1500.0 * float(beta.psi_beta(0.0)):.0f}" == "11.93 17898"
 assert np.allclose(curvatures(pillar, [behind, 0.0]), [-0.057, 742.0], rtol=0.01)
 assert curvatures(cup, inside)[0] > 0.1
 assert np.linalg.norm(past.q[-1, 0] - [-60.0, 0.0]) < 1e-6
@@ -273,10 +307,60 @@ assert max(pieces) == 3
 assert pieces[-1] == 1
 
 # %% [markdown]
-# Behind the sphere one curvature is negative: a **saddle**. By the lemma of lecture 03 it has an unstable pole, here
-# slow, and an agent that starts the least bit off the axis slides around the sphere and arrives. In the U both
-# curvatures are positive: a **local minimum**, which attracts all states near it, and from which no small
-# disturbance frees an agent. Around a convex obstacle one meets saddles, on the axis; a nonconvex one makes minima.
+# Behind the sphere one curvature is negative: a **saddle**. By the lemma of lecture 03 it has an unstable pole, and an
+# agent that starts the least bit off the axis slides around the sphere and arrives. It takes its time. But for the
+# β-agent's friction, which is next to nothing at this distance, the pole solves $s^2 + 2s - 0.057 = 0$, so $s = 0.028$,
+# and a displacement grows tenfold in $\ln10/0.028 = 82$ time units. In the U both curvatures are positive: a **local
+# minimum**, which attracts all states near it, and from which no small disturbance frees an agent.
+#
+# Is the U to blame, because it is not convex? The curvature *across* the line of the two forces can be had by hand.
+#
+# > **Proposition (saddle or trap).** Let one agent in the plane rest at the distance $y$ from an obstacle that lies
+# > between it and a static γ-agent at the distance $z$, with $p_d = 0$. Let $R_k$ be the radius of curvature of the
+# > obstacle where the agent is nearest to it. Across the line of the forces the potential has the curvature
+# >
+# > $$\frac{c_1^\gamma}{\sqrt{1+z^2}}\Bigl(1 - \frac{z}{R_k+y}\Bigr) .$$
+#
+# *Proof.*
+#
+# 1. Let a potential depend only on the distance from a point, $f(z)$. A small step $q_\perp$ across changes the
+#    distance to $\sqrt{z^2+q_\perp^2} = z + \tfrac{1}{2z}q_\perp^2 + \dots$, hence the potential by
+#    $\tfrac12\tfrac{f'(z)}{z}q_\perp^2 + \dots$. So its curvature across is $f'(z)/z$.
+# 2. The pull has $f(z) = c_1^\gamma\sqrt{1+z^2}$ and $f'(z) = c_1^\gamma z/\sqrt{1+z^2}$: its share is
+#    $c_1^\gamma/\sqrt{1+z^2}$.
+# 3. The repulsion depends on the distance from the obstacle, so near the agent on that from the centre of curvature,
+#    which is $R_k + y$. At rest its slope balances that of the pull, so it is $-c_1^\gamma z/\sqrt{1+z^2}$. By 1 its
+#    share is this over $R_k + y$. $\square$
+#
+# The pull holds the agent on the axis, because straying sideways leads away from the target; a round obstacle sheds it,
+# because straying sideways leads away from the obstacle. The obstacle wins exactly if $R_k + y < z$: if it is *more
+# curved than the circle about the target through the agent*. Check: behind the sphere $R_k + y = 14.197$ and $z =
+# 74.197$, so the curvature is $0.01348\cdot(1 - 5.226) = -0.0570$, as computed. A sphere before the target always
+# sheds. But a *flat* face has $R_k = \infty$ and traps, at the outer balance, although it is convex. The back of our U
+# is flat; its arms only keep agents from sliding past. A bar alone will do:
+
+# %%
+bar = fl.scenario("paper-trapped-convex").law
+flat = fl.Algorithm3(gains=bar.gains, target=bar.target, obstacles=bar.obstacles)
+before = brentq(lambda x: flat.acceleration(0.0, [[x, 0.0]], [[0.0, 0.0]])[0, 0], 50.0, 54.5, xtol=1e-13)
+by_hand = bar.gains.c1_gamma / np.sqrt(1.0 + (120.0 - before) ** 2)
+print(f"before the bar, at {before:.4f}: curvatures {curvatures(flat, [before, 0.0]).round(4)}, by hand {by_hand:.4f}")
+
+# %% tags=["facts"]
+assert abs(curvatures(flat, [before, 0.0])[0] / by_hand - 1.0) < 1e-3
+reach, height = behind + 60.0, behind
+assert f"{height:.3f} {reach:.3f} {reach / height:.3f}" == "14.197 74.197 5.226"
+assert f"{1.0 / np.hypot(1.0, reach):.5f} {(1.0 - reach / height) / np.hypot(1.0, reach):.4f}" == "0.01348 -0.0570"
+assert f"{curvatures(pillar, [behind, 0.0])[0]:.4f}" == "-0.0570"
+pole = np.linalg.eigvals(np.asarray(pillar.jacobian(0.0, [[behind, 0.0]], [[0.0, 0.0]]))).real.max()
+assert f"{np.sqrt(1.057) - 1.0:.3f}" == f"{pole:.3f}"
+assert f"{pole:.3f} {np.log(10.0) / pole:.0f}" == "0.028 82"
+slow = fl.Algorithm3(gains=law.gains, target=fl.StaticTarget((0.0, 0.0), p=(5.0, 0.0)))
+brief = fl.simulate(slow, start, np.tile([2.0, 1.0], (len(start), 1)), (0.0, 1e-3))
+lattice_rate = (brief.energy()[-1] - brief.energy()[0]) / 1e-3
+assert abs(lattice_rate - 370.0) < 1.0
+
+# %% [markdown]
 # Khatib's potential fields of 1986 have the same disease, and it is a theorem that every smooth potential with
 # obstacles has saddles: one for each obstacle at least, if it is a disc in the plane.
 #
@@ -305,6 +389,22 @@ _ = plots.energy(run, ax=ax)
 # **Figure 5.6.** The energy of the flock that follows a *moving* γ-agent. It rises and falls: the γ-agent does work
 # on the flock, and Theorem 6, which supposes a static one, is vacuous.
 #
+# ## Questions that come up
+#
+# *Is a β-agent a device?* No. An agent that measures the nearest point of an obstacle, and knows its own velocity, can
+# compute it: $P$ needs the direction to that point, and $\mu$ the radius of curvature.
+#
+# *What if two points of an obstacle are equally near, as in a corner of the U?* Then a single β-agent would jump from
+# one to the other, and the force with it. The U here is made of three bars, each convex and with a β-agent of its own.
+# To a convex set the nearest point is unique and moves continuously.
+#
+# *Why is the pull bounded here, when lecture 03 made use of its growth?* Because of the walls. A spring to a target
+# that is 1000 away pulls with $1000\,c_1^\gamma$, and no wall of finite height withstands that. $V_\gamma$ still grows
+# without bound, so cohesion about a *static* target survives (exercise 9).
+#
+# *The flock split at the pillar. Did it fail?* That depends on the task. Every agent passed, none came near the pillar,
+# and at the end there is one net. What failed for a while is connectedness, which Theorem 6 does not mention.
+#
 # ## What surprised, and what the theorem does not say
 #
 # The braking term makes the energy fall although the β-agents move: a moving partner could drive, and projection is
@@ -317,8 +417,8 @@ _ = plots.energy(run, ax=ax)
 # - β-agents are projections of the agent on the obstacle; they repel and brake, and never drive.
 # - Theorem 6 bounds the energy only: it promises neither arrival nor a way around. Its condition must hold at all
 #   later times.
-# - A rest behind an obstacle is a saddle, which disturbances undo, or a local minimum, which they do not; the
-#   curvatures tell which.
+# - A rest behind an obstacle is a saddle, which disturbances undo, or a local minimum, which they do not. An obstacle
+#   that is flatter than the circle about the target through the agent traps it, convex or not.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises

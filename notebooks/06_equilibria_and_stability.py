@@ -38,11 +38,14 @@
 # $$\ddot{\tilde x} + 2c_2^\alpha\,a_{12}(d)\,\dot{\tilde x} +
 #   2c_1^\alpha\,\phi_\alpha'(d_\alpha)\,\frac{d^2}{1+\varepsilon d^2}\,\tilde x = 0 .$$
 #
-# With the numbers of lecture 01, $\phi_\alpha'(d_\alpha) = 0.896$, $a_{12}(d) = 0.179$, and gains $c_1^\alpha = 30$,
-# $c_2^\alpha = 2\sqrt{30}$, this is an oscillator with $\omega_n = 21.1$ and $\zeta = 0.093$: a stiff spring, weakly
-# damped. The gain $2\sqrt{30}$ looks as if somebody had aimed at critical damping; but the bump has cut the friction
-# to 18 %, and the factor $d^2/(1+\varepsilon d^2) = 8.3$ has raised the stiffness. One does not see that in the law.
-# One sees it in the linearisation.
+# Compare with $\ddot{\tilde x} + 2\zeta\omega_n\dot{\tilde x} + \omega_n^2\tilde x = 0$. With the numbers of lecture
+# 01, $\phi_\alpha'(d_\alpha) = 0.896$, $a_{12}(d) = 0.179$, and the gains $c_1^\alpha = 30$, $c_2^\alpha = 2\sqrt{30} =
+# 10.95$, one has $\omega_n^2 = 2\cdot30\cdot0.896\cdot49/5.9 = 447$ and $2\zeta\omega_n = 2\cdot10.95\cdot0.179 =
+# 3.93$, so $\omega_n = 21.1$ and $\zeta = 3.93/42.3 = 0.093$: a stiff spring, weakly damped. A swing loses the factor
+# $e$ in $2/3.93 = 0.51$ time units, and in this time goes to and fro $21.1\cdot0.51/2\pi = 1.7$ times. The gain
+# $2\sqrt{30}$ looks as if somebody had aimed at critical damping; but the bump has cut the friction to 18 %, and the
+# factor $d^2/(1+\varepsilon d^2) = 8.3$ has raised the stiffness. One does not see that in the law. One sees it in the
+# linearisation.
 #
 # ## The linearised flock
 #
@@ -124,6 +127,11 @@ _ = plots.pole_map(flock.eigenvalues)
 # %% [markdown]
 # **Figure 6.2.** The poles of nineteen agents. All lie in the open left half-plane but one, at 0: the rotation.
 #
+# How to read the output. The *residual* is the largest force that is left, relative to the forces of the law: 0 up
+# to rounding. A zero mode is *semisimple* if it makes no term that grows like $t$ (step 4 of the proof). The decay rate
+# is $-\operatorname{Re}s$ of the slowest pole, zero modes apart; that *of the structure* leaves out the motion of the
+# centre.
+#
 # `find_equilibrium` minimises $U_\lambda$. The hexagon is a minimum, a little smaller than the lattice: the γ-agent
 # compresses it. It is *semi-stable*: the shape converges, and the flock ends somewhere on a circle of equilibria.
 # The four slowest modes are the centre of mass, critically damped by our choice $c_2^\gamma = 2\sqrt{c_1^\gamma}$,
@@ -188,6 +196,10 @@ print(f"predicted {slow.decay_rate:.4f}, measured {measured:.4f}")
 # \omega\tau &= \arctan\bigl(c_2^\gamma\omega/c_1^\gamma\bigr) && \text{compare phases: this gives } \tau
 # \end{aligned}$$
 #
+# With $c_1^\gamma = 1.1$ and $c_2^\gamma = 2\sqrt{1.1}$ the first line reads $\omega^4 = 1.21 + 4.4\,\omega^2$, so
+# $\omega^2 = \tfrac12(4.4 + \sqrt{19.36 + 4.84}) = 4.66$ and $\omega = 2.159$; the second gives
+# $\omega\tau = \arctan4.116 = 1.332$ and $\tau^* = 0.617$.
+#
 # For a flock, a Chebyshev discretisation finds the rightmost roots.
 
 # %%
@@ -201,8 +213,9 @@ alone = np.arctan(law.gains.c2_gamma * w / law.gains.c1_gamma) / w
 print(f"the centre of mass alone would bear {alone:.4f}")
 
 # %% [markdown]
-# The flock bears far less delay than its centre. Stiff links are fast oscillators, and a fast oscillator tolerates
-# little delay: its phase margin is used up at $\omega\tau$ of a fraction of a radian.
+# The flock bears far less delay than its centre: 0.0127 against 0.617. If the time unit is a second, the twentieth of a
+# second of our scene is four times too much, and the picture shakes itself to pieces. Stiff links are fast oscillators,
+# and a fast oscillator tolerates little delay: its phase margin is used up at $\omega\tau$ of a fraction of a radian.
 #
 # A delay margin computed by a discretisation deserves a check of its own. For the single agent the equation is short
 # enough to integrate by hand: remember the past, and step.
@@ -267,10 +280,14 @@ assert late(1.1 * alone) > 5.0
 #    $\tfrac12\Delta t d's^2$ cancel, and the equation above is left.
 #
 # It is the equation of a flow whose damping has *grown*, by $\tfrac12\Delta t\,\omega'^2$, and yet sampling
-# destabilises. For the circle is not the half-plane: $|z|^2$ is the product of the two roots,
-# $1 - \Delta t d' + \tfrac12\Delta t^2\omega'^2$, so a mode that swings decays exactly if
-# $\Delta t < 2d'/\omega'^2$. The stiffer the mode and the weaker its damping, the shorter the period. For the whole
-# flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
+# destabilises. For the circle is not the half-plane: $|z|^2$ is the product of the two roots, $1 - \Delta t d' +
+# \tfrac12\Delta t^2\omega'^2$, so a mode that swings, whose two $z$ are conjugate, decays exactly if $\Delta t <
+# 2d'/\omega'^2$. A mode that does not swing has two real $z$, and the danger is that one of them passes $-1$, so that
+# the mode changes its sign at every sample. Put $z = -1$, that is $s = -2/\Delta t$, into the equation: $4/\Delta t^2 -
+# 2d'/\Delta t - \omega'^2 + \omega'^2 = 0$, so $\Delta t = 2/d'$, whatever the stiffness. Together: *a mode decays
+# exactly for $\Delta t < \min(2d'/\omega'^2,\ 2/d')$.* Take $\omega'^2 = 450$. With $d' = 4$ the first bound is 0.018
+# and binds; with $d' = 40$ it is 0.18, but the second one is 0.05. The stiffer the mode and the weaker its damping, the
+# shorter the period. For the whole flock, whose $S$ and $D$ do not commute, a computer finds the multipliers.
 
 # %%
 held = stability.sampling_margin(law, rest)
@@ -297,9 +314,17 @@ for share in (0.95, 1.05):
 # $$\dot\Sigma = A\Sigma + \Sigma A^T + g^2\operatorname{diag}(0, I) ,$$
 #
 # the first two terms from the motion, the third from the noise, and in the long run $\dot\Sigma = 0$. This is a linear
-# equation for $\Sigma$, *Lyapunov's*. For one mode it is solved by hand: its coordinate has the variance
-# $g^2/(2d'\omega'^2)$. The square root of the trace of $\Sigma$, for $g = 1$, is the *$H_2$ norm* from the forces to
-# the shape.
+# equation for $\Sigma$, *Lyapunov's*. For one mode it is solved by hand. Write $\langle\cdot\rangle$ for means:
+#
+# $$\begin{aligned}
+# 0 = \tfrac{d}{dt}\langle\tilde x^2\rangle &= 2\langle\tilde x\tilde v\rangle && \langle\tilde x\tilde v\rangle = 0 \\
+# 0 = \tfrac{d}{dt}\langle\tilde v^2\rangle &= -2\omega'^2\langle\tilde x\tilde v\rangle - 2d'\langle\tilde v^2\rangle
+#   + g^2 && \langle\tilde v^2\rangle = g^2/(2d') \\
+# 0 = \tfrac{d}{dt}\langle\tilde x\tilde v\rangle &= \langle\tilde v^2\rangle - \omega'^2\langle\tilde x^2\rangle -
+#   d'\langle\tilde x\tilde v\rangle && \langle\tilde x^2\rangle = g^2/(2d'\omega'^2)
+# \end{aligned}$$
+#
+# The square root of the trace of $\Sigma$, for $g = 1$, is the *$H_2$ norm* from the forces to the shape.
 #
 # One caution: the zero mode. Nothing brings the orientation back, so noise turns the flock like a random walk and its
 # variance grows for ever. Lengths of links do not see this. So let the model predict how much each of the 42 links
@@ -371,7 +396,18 @@ assert abs(measured - slow.decay_rate) < 5e-4
 pair = fl.linearise(fl.Algorithm1(), [[0.0], [7.0]]).modes[0]
 assert abs(pair.damping_ratio - 0.0929) < 1e-4
 assert abs(abs(pair.eigenvalue) - 21.13) < 0.02
-assert margin.delay < 0.2 * alone
+assert f"{margin.delay:.4f} {alone:.3f} {w:.3f} {w * alone:.3f} {w**2:.2f}" == "0.0127 0.617 2.159 1.332 4.66"
+assert f"{abs(pair.eigenvalue) ** 2:.0f} {-2.0 * pair.eigenvalue.real:.2f}" == "447 3.93"
+
+
+def grows(period, stiffness, damping):
+    moved, pushed = [1.0, period], [-stiffness, -damping]
+    step = np.array([np.add(moved, period**2 / 2.0 * np.array(pushed)), [period * pushed[0], 1.0 + period * pushed[1]]])
+    return bool(np.abs(np.linalg.eigvals(step)).max() > 1.0)
+
+
+assert [grows(share * 0.0177778, 450.0, 4.0) for share in (0.99, 1.01)] == [False, True]
+assert [grows(share * 0.05, 450.0, 40.0) for share in (0.99, 1.01)] == [False, True]
 assert slow.name == "breathing"
 
 # %% [markdown]
@@ -379,6 +415,23 @@ assert slow.name == "breathing"
 # decay rate grows until about $c_2^\gamma = 16$, to 8.6, and falls to 5.1 at 20 and to 0.87 at 100.
 #
 # So "more damping is better" is false twice: for the centre beyond 2.1, for the structure beyond 16.
+#
+# ## Questions that come up
+#
+# *Does stability of the linear model prove that of the flock?* Near the equilibrium, yes: if all poles are in the open
+# left half-plane, the nonlinear law converges from a neighbourhood. With a zero mode of a symmetry one first divides
+# the symmetry out. How large the neighbourhood is, the poles do not say.
+#
+# *Rate, damping ratio, frequency: which one does a customer ask for?* "How long until the picture stands" is the rate:
+# to a hundredth in $\ln100$, that is 4.6, times its inverse. "Does it tremble" is the damping ratio. "How fast must the
+# computer be" is the frequency.
+#
+# *Why not simply make all links softer?* Softer links bear more delay, longer periods and weaker friction. But then the
+# wind moves them more: the variance of a mode is $g^2/(2d'\omega'^2)$.
+#
+# *The model has the same delay for everything. And if only the neighbours are late, not the agent's own sensors?* Then
+# the diagonal terms of $D$ and $S$ act at once, only the others are late, and the margin is another one. State what
+# is late before you compute.
 #
 # ## What surprised, and what the theorems do not say
 #

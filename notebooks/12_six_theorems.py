@@ -276,7 +276,7 @@ _ = ax.set(xlabel="delay times the eigenvalue, $\\lambda_k\\tau$", ylabel="decay
 
 # %% tags=["facts"]
 assert abs(shares[decay.argmax()] - 1.0 / np.e) < 0.02
-assert abs(-consensus_root(1.0, np.exp(-1.0) - 1e-9).real - np.e) < 1e-3
+assert abs(-consensus_root(1.0, np.exp(-1.0)).real - np.e) < 1e-12
 assert consensus_root(1.0, 1.55).real < 0.0 < consensus_root(1.0, 1.59).real
 
 # %% [markdown]

@@ -36,7 +36,7 @@
 #
 # ## Three agents
 #
-# Three agents under Algorithm 2, one of them off its place by a push. Does *this* start flock?
+# Three agents under Algorithm 2 stand near a triangle, each of them off its place. Does *this* start flock?
 
 # %%
 import tempfile
@@ -65,13 +65,14 @@ run.player(height=420)
 #
 # ## A basin
 #
-# In the frame of the centre of mass (lecture 03) $\dot x = v$, $\dot v = -\nabla U(x) - D(x)v$ with
-# $U = c_1^\alpha V + \tfrac12 c_1^\gamma\|x\|^2$ and $D = c_2^\gamma I + c_2^\alpha\hat L(x)$. Turning the triangle
-# costs nothing, so it is not one equilibrium but an *orbit* of equilibria, a circle in the space of all positions.
-# Let $x^*$ be the point of the orbit nearest to $x$, and $\tilde x = x - x^*$ the displacement. Suppose that we have
-# a function $\underline S(\xi)$ with this property: *at every state at the distance $\xi \le \xi_0$ from the orbit
-# the curvature of $U$ in the direction of its displacement is at least $\underline S(\xi)$*. Integrate it twice:
-# $G'' = \underline S$, $G(0) = G'(0) = 0$.
+# In the frame of the centre of mass (lecture 03) $\dot x = v$, $\dot v = -\nabla U(x) - D(x)v$ with $U = c_1^\alpha V +
+# \tfrac12 c_1^\gamma\|x\|^2$ and $D = c_2^\gamma I + c_2^\alpha\hat L(x)$. Turning the triangle costs nothing, so it is
+# not one equilibrium but an *orbit* of equilibria, a circle in the space of all positions. Let $x^*$ be the point of
+# the orbit nearest to $x$, and $\tilde x = x - x^*$ the displacement. Suppose that we have a function $\underline
+# S(\xi)$ with this property: *at every state at the distance $\xi \le \xi_0$ from the orbit the curvature of $U$ in the
+# direction of its displacement is at least $\underline S(\xi)$*. (The curvature in the direction of a unit vector $e$
+# is the second derivative of $U(x + \xi e)$ with respect to $\xi$.) Integrate it twice: $G'' = \underline S$, $G(0) =
+# G'(0) = 0$. For the spring of the beginning $\underline S = 1$, so $G = \tfrac12\xi^2$ and $G(2) = 2$.
 #
 # > **Lemma.** At every state at a distance $\|\tilde x\| \le \xi_0$ from the orbit
 # >
@@ -79,9 +80,10 @@ run.player(height=420)
 #
 # *Proof.* Let $e = \tilde x/\|\tilde x\|$ and $f(\xi) = U(x^* + \xi e)$ for $0 \le \xi \le \|\tilde x\|$.
 #
-# 1. The nearest point of the orbit to $x^* + \xi e$ is still $x^*$: a nearer one would be nearer to $x$ too, by the
-#    triangle inequality. So $e$ is the direction of the displacement all along the ray, and
-#    $f''(\xi) \ge \underline S(\xi)$.
+# 1. The nearest point of the orbit to $x^* + \xi e$ is still $x^*$. Suppose that some $x'$ of the orbit is nearer, at
+#    less than $\xi$. From $x^* + \xi e$ to $x$ it is $\|\tilde x\| - \xi$, so by the triangle inequality $x'$ is less
+#    than $\xi + \|\tilde x\| - \xi = \|\tilde x\|$ from $x$: nearer than the nearest, a contradiction. So $e$ is the
+#    direction of the displacement all along the ray, and $f''(\xi) \ge \underline S(\xi)$.
 # 2. $x^*$ is an equilibrium, so $f'(0) = \langle\nabla U(x^*), e\rangle = 0$. Integrate 1: $f'(\xi) \ge G'(\xi)$.
 # 3. Integrate again: $f(\xi) - U^* \ge G(\xi)$. At $\xi = \|\tilde x\|$ this is the first claim.
 # 4. $\langle\nabla U, \tilde x\rangle = \|\tilde x\|f'(\|\tilde x\|) \ge \|\tilde x\|G'(\|\tilde x\|)$ by 2.
@@ -118,10 +120,26 @@ _ = figures.orbit_ball_level(ax=ax)
 #
 # ## Where do the bounds come from?
 #
-# The curvature of $U$ is a sum over pairs. For one pair with the distance $y$ and force $f(y)$ along it, the
-# curvature in any direction lies between the slope $f'(y)$ along the pair and the *stress* $f(y)/y$ across it. If
-# agents move by at most $\xi$ together, the length of a pair changes by at most $\sqrt2\,\xi$. So one needs bounds
-# of $f'$ and $f/y$ over an *interval* of lengths.
+# The curvature of $U$ is a sum over pairs. Take one pair with the distance $y$, the potential $\psi(y)$ and the force
+# $f = \psi'$ along it (negative where it repels). Let $e$ be the unit vector along the pair, and let the difference of
+# the two positions change by a small vector $z$, with the part $z_\perp$ across $e$:
+#
+# 1. The new distance is $\|ye + z\| = y + \langle e, z\rangle + \tfrac1{2y}\|z_\perp\|^2 + \dots$: moving across
+#    lengthens a pair, too, but only to second order.
+# 2. Put this into $\psi$ and collect the terms of second order:
+#    $\tfrac12\bigl[f'(y)\,\langle e, z\rangle^2 + \tfrac{f(y)}y\|z_\perp\|^2\bigr]$.
+#
+# So the curvature of a pair is its *slope* $f'$ along the pair, its *stress* $f/y$ across it, and in between in all
+# other directions. A pair at the distance $d$ has no force, hence no stress: it resists being stretched, with the slope
+# $f'(7) = 223$ here, and does not resist being turned. A compressed pair has a negative stress, $-3.5$ at 6.9: like a
+# rod under pressure it wants to give way sideways. Stiff slopes and the γ-agent must outweigh that.
+#
+# How much can a length change? If the agents move by at most $\xi$ together, then
+#
+# $$\|\tilde x_j - \tilde x_i\| \le \|\tilde x_i\| + \|\tilde x_j\| \le
+#   \sqrt2\,\sqrt{\|\tilde x_i\|^2 + \|\tilde x_j\|^2} \le \sqrt2\,\xi .$$
+#
+# So one needs bounds of $f'$ and $f/y$ over an *interval* of lengths.
 #
 # Numbers of a computer round; intervals need not. In *interval arithmetic* every quantity is a pair of bounds, and
 # every operation rounds the lower one down and the upper one up. So $[1,2] + [3,4] = [4,6]$,
@@ -139,6 +157,12 @@ print(f"U + |v|^2/2 - U* is at most {float(basin.overshoot):.3g} exp(-{2 * float
 print(f"the net stays connected: {basin.connected}")
 
 # %% [markdown]
+# Read the lines by hand. The radius is $0.0592\cdot7 = 0.414$. The sides of the triangle are 6.989 long, so within the
+# basin every length lies between $6.989 - \sqrt2\cdot0.414 = 6.403$, the least distance of the first line, and 7.574.
+# That is below $r = 8.4$, so no link can break: this is the third line. The second one says that the energy above $U^*$
+# has certainly fallen to a thousandth after $\ln(1770)/0.24 = 31$ time units. The run did that in about one: a
+# certified rate is a lower bound, too.
+#
 # Is our start in it? `above` gives upper bounds of the distance to the orbit and of the energy above it; `holds` is
 # `True` only if both are certainly small enough.
 
@@ -172,8 +196,21 @@ for t, q, p in zip(run.t, run.q, run.p, strict=True):
 # the mean of values in a box, which is convex, is in that box. By hypothesis that is in the *interior* of $[y]$: a
 # contradiction. The last claim is the same integral at $\Delta t$. $\square$
 #
-# So a wild guess, once checked, is a proof. The box that results grows in every step, so one uses Taylor's formula
-# instead of its first term, with the remainder bounded on $[y]$, and carries the box in turning coordinates.
+# *By hand.* Let $\dot x = -x$ and $[x] = [0.9, 1]$, and step by $\Delta t = 0.1$.
+#
+# 1. Guess $[y] = [0.8, 1.05]$. On it $[f] = [-1.05, -0.8]$, so $x + [0, \Delta t][f]$ reaches down to
+#    $0.9 - 0.105 = 0.795 < 0.8$. The inclusion fails. That says nothing about the solution: the guess was too small.
+# 2. Guess $[y] = [0.75, 1.05]$. Now $[f] = [-1.05, -0.75]$, all values lie in $[0.795, 1]$, and that is in the interior
+#    of $[y]$. So it is proved that the solutions stay in $[0.75, 1.05]$.
+# 3. At the end they lie in $[0.9 - 0.105,\ 1 - 0.075] = [0.795, 0.925]$.
+#
+# The truth is $[0.9e^{-0.1}, e^{-0.1}] = [0.8144, 0.9048]$, narrower than at the start, while the box has become
+# *wider*: 0.13 instead of 0.1. The reason is that it lets a solution start at 0.9 and move with the speed that only one
+# at 1.05 has. One more term of Taylor's formula knows better. As $\ddot x = x$, one has
+# $x(\Delta t) \in (1 - \Delta t)x + \tfrac12\Delta t^2[y]$, which is $[0.81375, 0.90525]$, of width 0.0915.
+#
+# So a wild guess, once checked, is a proof. The box from the first term alone grows in every step, so one uses Taylor's
+# formula, with the remainder bounded on $[y]$, and carries the box in turning coordinates.
 # `enclose` does that, with a second-order step where a pair crosses a distance at which its law changes its piece.
 # Three agents at rest, none in the others' range, first numerically, then rigorously:
 
@@ -217,6 +254,20 @@ assert 0.05 < basin.share < 0.07
 assert verdict.claim("ii").status == verdict.claim("iii").status == "verified"
 assert not basin.holds(run.q[0], run.p[0])
 assert any(basin.holds(q, p) for q, p in zip(run.q, run.p, strict=True))
+side, moved = fl.min_distance(rest.q), np.sqrt(2.0) * float(basin.radius)
+assert f"{side:.3f} {side - moved:.3f} {side + moved:.3f}" == "6.989 6.403 7.574"
+assert abs(float(basin.distance) - (side - moved)) < 2e-3
+assert f"{np.log(1e3 * float(basin.overshoot)) / (2.0 * float(basin.rate)):.0f}" == "31"
+at_first = float(basin.above(run.q[0], run.p[0])[1])
+fallen = next(t for t, q, p in zip(run.t, run.q, run.p, strict=True) if float(basin.above(q, p)[1]) < 1e-3 * at_first)
+assert 0.8 < fallen < 1.0
+
+
+def force(y):
+    return 30.0 * float(law.alpha.phi_alpha(law.alpha.sigma_norm(y))) * y / np.sqrt(1.0 + 0.1 * y * y)
+
+
+assert f"{force(6.9) / 6.9:.1f} {(force(7.0 + 1e-6) - force(7.0 - 1e-6)) / 2e-6:.0f}" == "-3.5 223"
 
 # %% [markdown]
 # Compare with lecture 00, where the same words stood beside a *numeric* run. The word `interval` is the difference:
@@ -252,6 +303,9 @@ print(box.status, "-", box.message)
 sampled = fl.sample_basin(basin, np.linspace(0.03, 0.9, 7) * 7.0, runs=8, t_end=10.0)
 _ = plots.sampled_basin(sampled)
 
+# %% tags=["facts"]
+assert (sampled.shares[sampled.distances < 0.62 * 7.0] == 1.0).all()
+
 # %% [markdown]
 # **Figure 13.4.** Share of random starts at a distance from the orbit that return to it, with intervals of
 # confidence; the vertical line is the certified radius.
@@ -274,6 +328,25 @@ of_tube = [step for step in fl.check_certificate(of_run).steps if not step.start
 print(*of_tube, sep="\n")
 
 # %% [markdown]
+# ## Questions that come up
+#
+# *Does the basin hold for a triangle that is turned, or elsewhere, or that follows a moving γ-agent?* Turned: yes, the
+# distance is that from the whole orbit. Elsewhere and moving: yes, because by the split of lecture 03 the shape does
+# not see where the centre is, nor the γ-agent. Only bounds on the agents' places would need the centre's filter.
+#
+# *Could a longer tube replace the basin?* No. A tube ends at a finite time, and convergence is a statement about all
+# times. Nor can the basin replace the tube: it is small, and most starts are outside.
+#
+# *The tube of seven agents broke. Is that flock unstable?* Nothing is said about the flock. The *bounds* became
+# useless. A method that proves is silent when it fails; it does not refute.
+#
+# *Why is the certified radius so small?* Each step gives something away. A bound takes the worst pair in the worst
+# direction over the whole interval of lengths, although no displacement is the worst for all pairs at once, and the
+# ball must fit where the basin is narrowest.
+#
+# *The measured start of real drones is not exact. What then?* Give the tube a box as its start. Then the statement
+# holds for all starts in the box, and the question becomes how long a box of that size can be carried.
+#
 # ## What surprised, and what the theorems do not say
 #
 # To prove convergence for all time was easier than to prove the first second. The basin needs no solution, the tube

@@ -75,7 +75,8 @@ def consensus_root(eigenvalue: float, delay: float) -> complex:
     from scipy.special import lambertw
 
     eigenvalue, delay = ensure_positive("eigenvalue", eigenvalue), ensure_positive("delay", delay)
-    return complex(lambertw(-eigenvalue * delay)) / delay
+    product = eigenvalue * delay  # at 1/e two roots meet, and scipy returns NaN
+    return complex(-1.0 if product == np.exp(-1.0) else lambertw(-product)) / delay
 
 
 def _ensure_laplacian(laplacian: Any) -> FloatArray:

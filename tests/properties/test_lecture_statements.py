@@ -80,3 +80,15 @@ def test_what_sets_the_rate_of_late_consensus():
     rates = [-consensus_root(value, tau).real for value in values]
     assert min(rates) == rates[0]  # the smallest positive eigenvalue, for small delays
     assert "for small $\\tau$ that of $\\lambda_2$" in TEXT["12"]
+
+
+def test_a_flat_obstacle_traps_one_agent_though_it_is_convex():
+    bar = fl.scenario("paper-trapped-convex").law
+    alone = fl.Algorithm3(gains=bar.gains, target=bar.target, obstacles=bar.obstacles)
+    face = alone.obstacles[0].clearance(np.array([[50.0, 0.0]]))[0]
+    settled = fl.simulate(alone, [[50.0, 0.5]], [[0.0, 0.0]], (0.0, 400.0))
+    assert face > 4.2  # it starts out of the bar's reach
+    assert np.linalg.norm(settled.p[-1]) < 1e-6
+    assert abs(settled.q[-1, 0, 1]) < 1e-3  # back on the axis, before the bar
+    assert settled.q[-1, 0, 0] < 51.0
+    assert "*flat* face has $R_k = \\infty$ and traps, at the outer balance, although it is convex" in TEXT["05"]

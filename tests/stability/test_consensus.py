@@ -75,6 +75,13 @@ def test_the_root_is_one_and_no_other_is_to_its_right(share):
     assert (root.real > 0.0) == (share > 1.0)
 
 
+@pytest.mark.parametrize("delay", [1.0, 0.25, 4.0])
+def test_the_double_root_is_exact(delay):
+    assert consensus_root(1.0 / delay / np.e, delay) == -1.0 / delay
+    for beside in (np.nextafter(1.0 / np.e, 0.0), np.nextafter(1.0 / np.e, 1.0)):  # a square root: half of the digits
+        assert abs(consensus_root(beside / delay, delay) + 1.0 / delay) < 3e-8 / delay
+
+
 def test_roots_at_zero_are_counted_for_each_component():
     assert consensus_system(net(3, [(0, 1), (1, 2)])).neutral == 4
     assert consensus_system(net(3, [(0, 1)])).neutral == 5
