@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
@@ -41,6 +42,65 @@ def test_gains_of_noisy_positions_lie_within_a_few_standard_errors():
     assert found.misfit == pytest.approx(1.0, abs=0.15)
     assert found.errors["c1_alpha"] < 0.2 * TRUE.c1_alpha
     assert np.ptp(found.intervals["c1_alpha"]) == pytest.approx(2.0 * 1.96 * found.errors["c1_alpha"], rel=0.02)
+
+
+PULLS = ("c1_gamma", "c2_gamma")
+
+
+def place(t, x, v, c1, c2):
+    """Place of a damped oscillator from x with velocity v, in closed form: one agent that a γ-agent at 0 pulls."""
+    x, v, w = np.asarray(x), np.asarray(v), np.sqrt(c1 - 0.25 * c2**2)
+    return np.exp(-0.5 * c2 * t) * (x * np.cos(w * t) + (v + 0.5 * c2 * x) / w * np.sin(w * t))
+
+
+def pulled(c1=2.0, c2=0.6):
+    return fl.Algorithm2(gains=fl.Gains(0.0, 0.0, c1_gamma=c1, c2_gamma=c2), target=fl.StaticTarget((0.0,)))
+
+
+@pytest.mark.parametrize("stated", [0.04, 0.01, None])
+def test_standard_errors_are_those_of_least_squares_by_the_closed_form(stated):
+    """A noise of 0.02 that is stated too small, or not at all, is taken from the residuals."""
+    t = np.arange(80) * 0.05
+    x = place(t, 3.0, -1.0, 2.0, 0.6) + np.random.default_rng(0).normal(0.0, 0.02, 80)
+
+    def off(z):  # two windows of 40 samples with starts of their own
+        return np.concatenate([place(t[:40], *z[:2], *z[4:]), place(t[:40], *z[2:4], *z[4:])]) - x
+
+    best = least_squares(off, [3.0, -1.0, -1.0, -1.0, 2.0, 0.6], jac="3-point", x_scale="jac")
+    variance = best.fun @ best.fun / 74
+    covariance = np.linalg.inv(best.jac.T @ best.jac)[4:, 4:] * (variance if stated != 0.04 else 0.04**2)
+    found = fl.fit(fl.Recording(t, x[:, None, None], sd=stated), pulled(1.8, 0.7), free=PULLS, window=2.0)
+    errors = np.sqrt(np.diag(covariance))
+    assert found.freedom == 74
+    assert found.misfit == pytest.approx(np.sqrt(variance) / (stated or np.nan), rel=1e-3, nan_ok=True)
+    np.testing.assert_allclose([found.errors[name] for name in PULLS], errors, rtol=0.01)
+    np.testing.assert_allclose(found.correlation, covariance / np.outer(errors, errors), atol=0.01)
+    for k, name in enumerate(PULLS):
+        assert found.values[name] == pytest.approx(best.x[4 + k], abs=0.1 * errors[k])
+        width = 1.99254 * errors[k]  # Student's quantile of 74 degrees
+        assert np.ptp(found.intervals[name]) == pytest.approx(2.0 * width, rel=0.01)
+
+
+def test_errors_of_steps_count_how_agents_differ_once_there_are_two_for_each_parameter():
+    """Places and velocities after a step of 0.1 are those of the closed form; two agents that feel only the pull."""
+    h, noise = 0.1, np.random.default_rng(0).normal(0.0, 0.02, (3, 30, 2))
+    q, later = (place(np.arange(30)[:, None] * h + e, [3.0, -2.0], [-1.0, 0.0], 2.0, 0.6) for e in (0.0, 1e-5))
+    q, p = q + noise[0], (later - q) / 1e-5 + noise[1]
+
+    def off(c2, n):
+        before, at, after = (place(h + e, q[:-1, :n], p[:-1, :n], 2.0, c2) for e in (-1e-5, 0.0, 1e-5))
+        return np.stack([(q[1:, :n] - at) / h, p[1:, :n] - (after - before) / 2e-5])
+
+    for n in (1, 2):
+        rec = fl.Recording(np.arange(30) * h, q[:, :n, None], p[:, :n, None], bound=0.1)
+        found = fl.fit(rec, pulled(), free=("c2_gamma",))
+        best = least_squares(lambda c, n=n: off(c[0], n).ravel(), [0.6], jac="3-point")
+        rest, slope = best.fun.reshape(-1, n), best.jac.reshape(-1, n)
+        plain = np.sum(rest**2) / (rest.size - 1) * np.sum(slope**2)
+        spread = plain if n == 1 else np.sum(np.sum(slope * rest, axis=0) ** 2)
+        assert found.freedom == rest.size - 1
+        assert found.values["c2_gamma"] == pytest.approx(best.x[0], rel=1e-4)
+        assert found.errors["c2_gamma"] == pytest.approx(np.sqrt(spread) / np.sum(slope**2), rel=1e-3)
 
 
 def test_what_the_data_cannot_tell_is_said():
