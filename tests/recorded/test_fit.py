@@ -8,6 +8,7 @@ from scipy.optimize import least_squares
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.recorded.shooting import _Rate
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
 NAMES = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
@@ -79,6 +80,14 @@ def test_standard_errors_are_those_of_least_squares_by_the_closed_form(stated):
         assert found.values[name] == pytest.approx(best.x[4 + k], abs=0.1 * errors[k])
         width = 1.99254 * errors[k]  # Student's quantile of 74 degrees
         assert np.ptp(found.intervals[name]) == pytest.approx(2.0 * width, rel=0.01)
+
+
+def test_slopes_are_carried_by_three_terms_of_the_exponential():
+    """Place and velocity of one agent, and a parameter that forces it: h A with A = [[0, 1, 0], [-2, -0.5, 3], 0]."""
+    rate = _Rate(np.array([[-2.0]]), np.array([[-0.5]]), np.array([[0.0, 0.0, 3.0]]))
+    a = 0.2 * np.array([[0.0, 1.0, 0.0], [-2.0, -0.5, 3.0], [0.0, 0.0, 0.0]])
+    series = np.eye(3) + a + a @ a / 2.0 + a @ a @ a / 6.0
+    np.testing.assert_allclose(rate.carried(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
 
 
 def test_errors_of_steps_count_how_agents_differ_once_there_are_two_for_each_parameter():
