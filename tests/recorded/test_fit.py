@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.recorded.parameters import Free
-from flockana.recorded.shooting import Window, _differences, _fine_enough, _nearby_laws, _Rate, _share
+from flockana.recorded.shooting import Window, _differences, _fine_enough, _nearby_laws, _Normal, _Rate, _share
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
 NAMES = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
@@ -121,6 +121,21 @@ def test_a_step_leaves_positive_parameters_a_tenth_of_themselves():
     share = _share(theta, moved, np.array([1.0, 1.0, -1.0]))
     assert (theta + share * moved)[0] == pytest.approx(0.2, abs=2e-6)
     assert _share(theta, -moved, np.array([1.0, -1.0, -1.0])) == 1.0
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+def test_a_step_solves_the_damped_normal_equations_of_all_starts_at_once(damping):
+    slopes, residuals = np.random.default_rng(3).normal(size=(2, 9, 4)), np.random.default_rng(4).normal(size=(2, 9))
+    dense, off = np.zeros((18, 6)), residuals.ravel()
+    dense[:9, :2], dense[9:, 2:4], dense[:, 4:] = slopes[0, :, :2], slopes[1, :, :2], slopes[:, :, 2:].reshape(18, 2)
+    whole = dense.T @ dense
+    whole *= 1.0 + damping * np.eye(6)
+    z = np.linalg.solve(whole, dense.T @ off)
+    normal = _Normal.of(list(slopes), 2, damping)
+    moved, starts, promised = normal.step(list(residuals))
+    np.testing.assert_allclose([*starts[0], *starts[1], *moved], z)
+    assert promised == pytest.approx(z @ dense.T @ off)
+    np.testing.assert_allclose(normal.covariance, np.linalg.inv(whole)[4:, 4:])
 
 
 def test_differences_of_a_polynomial_are_its_slopes():
