@@ -5,7 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.recorded.schemes import kinematic_scheme
+from flockana.recorded.schemes import kinematic_scheme, scheme_by_law
 from flockana.recorded.variants import variants
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
 
@@ -153,11 +153,19 @@ def test_shares_errors_and_ranks_are_those_of_one_regression():
     assert fl.recognise(fl.Recording(T[:9], q, p, half), {"double": law}).best is None
 
 
-def test_uneven_samples_and_free_flight_show_no_scheme():
+def test_forms_of_the_pull_bend_at_the_unit_of_length_of_the_law():
+    law, q = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))), np.array([[3.0, 4.0]])
+    other = fl.rescale(law, length=1000.0)
+    for one, two in zip(variants(law)[-2:], variants(other)[-2:], strict=True):
+        np.testing.assert_allclose(two.acts(0.0, 1000.0 * q, q), 1000.0 * one.acts(0.0, q, q), rtol=1e-12)
+
+
+def test_uneven_times_and_free_flight_show_no_scheme():
     run = fl.simulate(fl.ExplicitEuler(LAW, 0.01), Q0, P0, (0.0, 0.3))
-    some = np.delete(np.arange(31), 7)
-    for rec in (
-        fl.Recording(run.t[some], run.q[some], run.p[some]),
-        fl.Recording(T, Q0 + T[:, None, None] * P0, np.tile(P0, (len(T), 1, 1))),
-    ):
-        assert kinematic_scheme(rec) is None
+    late = fl.Recording(run.t + 0.005 * (np.arange(31) > 7), run.q, run.p)
+    flight = fl.Recording(T, Q0 + T[:, None, None] * P0, np.tile(P0, (len(T), 1, 1)))
+    assert kinematic_scheme(late) is None
+    assert kinematic_scheme(flight) is None
+    run = fl.simulate(LAW, Q0, P0, (0.0, 1.0), method="RK4", dt=0.04, t_eval=np.arange(26) * 0.04)
+    late = fl.Recording(run.t + 0.02 * (np.arange(26) > 7), run.q, run.p)
+    assert scheme_by_law(late, LAW) is None
