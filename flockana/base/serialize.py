@@ -40,7 +40,7 @@ def to_data(value: Any) -> Any:
         kind = type(value)
         ours = kind.__module__.startswith("flockana.")
         if ours and parameter_classes().get(kind.__qualname__) is not kind:
-            raise ArgumentError(f"cannot write {value!r} to a file: expected laws and what they are made of")
+            raise ArgumentError(f"cannot write {value!r}: expected laws and their parts; rec.save writes recordings")
         return {"type": f"{'flockana' if ours else kind.__module__}:{kind.__qualname__}", **data}
     if isinstance(value, np.ndarray):
         return value.tolist()

@@ -80,7 +80,7 @@ def test_functions_cannot_be_written():
         to_data(law)
     with pytest.raises(ArgumentError, match="expected parameters made of numbers"):
         to_data({1, 2})
-    with pytest.raises(ArgumentError, match="expected laws and what they are made of"):
+    with pytest.raises(ArgumentError, match="expected laws and their parts"):
         to_data(Tolerances())  # it would be written, and never read
 
 

@@ -5,6 +5,8 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
+from flockana.recorded.schemes import kinematic_scheme, scheme_by_law
+from flockana.recorded.variants import variants
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
 
 T = np.linspace(0.0, 2.0, 101)
@@ -97,3 +99,73 @@ def test_too_few_samples_are_refused():
         fl.compare(fl.Recording([0.0], Q0[None], P0[None]), LAW)
     with pytest.raises(ArgumentError, match="expected 4 or more"):
         fl.compare(fl.Recording([0.0, 1.0], np.stack([Q0, Q0])), LAW)
+
+
+@pytest.mark.parametrize("size", [1.0, 2.0])
+def test_the_forms_that_are_tried_are_those_that_their_findings_name(size):
+    """Two agents (3, 4) apart or twice as far, where only a force that is cut off by the distance's own r_α is left."""
+    alpha, x, v = fl.AlphaInteraction(), size * np.array([3.0, 4.0]), np.array([1.0, -2.0])
+    s, near = 5.0 * size, size == 1.0
+    inner = near * alpha.phi_alpha((np.sqrt(1.0 + 0.1 * s**2) - 1.0) / 0.1)
+    forms = {
+        "coordinate by coordinate": inner * x / np.sqrt(1.0 + 0.1 * x**2),
+        "φ_α is given the distance": alpha.phi_alpha(s) * x / np.sqrt(1.0 + 0.1 * s**2),
+        "n_ij is the unit vector": inner * x / s,
+        "count alike in the consensus": near * v,
+        "proportional to each coordinate's σ₁": -x / np.sqrt(1.0 + x**2),
+        "bounded by σ₁ of the vector, not linear": -x / np.sqrt(1.0 + s**2),
+        "is linear, not bounded by σ₁": -x,
+    }
+    q, p, found = np.array([x, 2.0 * x]), np.array([[0.0, 0.0], v]), {}
+    for law in (fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))), fl.Algorithm3(target=fl.StaticTarget((0.0, 0.0)))):
+        found |= {variant.finding: variant.acts(0.0, q, p) for variant in variants(law)}
+        assert ["not to the vector's" in text for text in found if "each coordinate" in text][-1] == isinstance(
+            law, fl.Algorithm3
+        )
+    for text, expected in forms.items():
+        (u,) = [u for finding, u in found.items() if text in finding][:1]
+        np.testing.assert_allclose(u[0], expected, rtol=1e-12, atol=1e-12, err_msg=text)
+        if "σ₁" not in text:
+            np.testing.assert_allclose(u[1], -expected, rtol=1e-12, atol=1e-12, err_msg=text)
+
+
+def test_shares_errors_and_ranks_are_those_of_one_regression():
+    """u = 2 x + rest at the samples, x the law as a whole: the gain, its error over agents, and what is left."""
+    law, rng = fl.CuckerSmale(), np.random.default_rng(2)
+    q, p, rest = rng.normal(0.0, 2.0, (3, 9, 5, 2))
+    x = np.array([law.acceleration(0.0, *state) for state in zip(q, p, strict=True)])
+    u = 2.0 * x + 0.1 * rest
+    seen = fl.compare(fl.Recording(T[:9], q, p, u), law)
+    gain = np.sum(x * u) / np.sum(x**2)
+    scores = np.sum(x * (u - gain * x), axis=(0, 2))
+    error = np.sqrt(np.sum(scores**2)) / np.sum(x**2)
+    assert seen.shares[0].found == pytest.approx(gain)
+    assert seen.shares[0].error == pytest.approx(error)
+    assert f"= {gain:.5g} ± {2.0 * error:.2g}, 1 in the law" in str(seen)
+    assert seen.explained == pytest.approx(1.0 - np.sum((u - x) ** 2) / np.sum(u**2))
+    assert seen.explained_refitted == pytest.approx(1.0 - np.sum((u - gain * x) ** 2) / np.sum(u**2))
+    assert seen.to_dict()["explained"] == seen.explained
+    np.testing.assert_allclose(seen.by_agent, np.sqrt(np.mean(np.sum((u - x) ** 2, axis=2), axis=0)))
+    np.testing.assert_allclose(seen.by_time, np.sqrt(np.mean(np.sum((u - x) ** 2, axis=2), axis=1)))
+    exact = fl.recognise(fl.Recording(T[:9], q, p, 2.0 * x), {"double": law, "other": fl.CuckerSmale(mean=True)})
+    assert str(exact).startswith("  100.00% (75.00% with its own gains)  ")
+    half = x + rest * np.linalg.norm(x) / np.linalg.norm(rest)
+    assert fl.recognise(fl.Recording(T[:9], q, p, half), {"double": law}).best is None
+
+
+def test_forms_of_the_pull_bend_at_the_unit_of_length_of_the_law():
+    law, q = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0))), np.array([[3.0, 4.0]])
+    other = fl.rescale(law, length=1000.0)
+    for one, two in zip(variants(law)[-2:], variants(other)[-2:], strict=True):
+        np.testing.assert_allclose(two.acts(0.0, 1000.0 * q, q), 1000.0 * one.acts(0.0, q, q), rtol=1e-12)
+
+
+def test_uneven_times_and_free_flight_show_no_scheme():
+    run = fl.simulate(fl.ExplicitEuler(LAW, 0.01), Q0, P0, (0.0, 0.3))
+    late = fl.Recording(run.t + 0.005 * (np.arange(31) > 7), run.q, run.p)
+    flight = fl.Recording(T, Q0 + T[:, None, None] * P0, np.tile(P0, (len(T), 1, 1)))
+    assert kinematic_scheme(late) is None
+    assert kinematic_scheme(flight) is None
+    run = fl.simulate(LAW, Q0, P0, (0.0, 1.0), method="RK4", dt=0.04, t_eval=np.arange(26) * 0.04)
+    late = fl.Recording(run.t + 0.02 * (np.arange(26) > 7), run.q, run.p)
+    assert scheme_by_law(late, LAW) is None

@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.recorded.parameters import Free
+from flockana.recorded.shooting import Window, _differences, _fine_enough, _nearby_laws, _Normal, _Rate, _share
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
 NAMES = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
@@ -41,6 +44,125 @@ def test_gains_of_noisy_positions_lie_within_a_few_standard_errors():
     assert found.misfit == pytest.approx(1.0, abs=0.15)
     assert found.errors["c1_alpha"] < 0.2 * TRUE.c1_alpha
     assert np.ptp(found.intervals["c1_alpha"]) == pytest.approx(2.0 * 1.96 * found.errors["c1_alpha"], rel=0.02)
+
+
+PULLS = ("c1_gamma", "c2_gamma")
+
+
+def place(t, x, v, c1, c2):
+    """Place of a damped oscillator from x with velocity v, in closed form: one agent that a γ-agent at 0 pulls."""
+    x, v, w = np.asarray(x), np.asarray(v), np.sqrt(c1 - 0.25 * c2**2)
+    return np.exp(-0.5 * c2 * t) * (x * np.cos(w * t) + (v + 0.5 * c2 * x) / w * np.sin(w * t))
+
+
+def pulled(c1=2.0, c2=0.6):
+    return fl.Algorithm2(gains=fl.Gains(0.0, 0.0, c1_gamma=c1, c2_gamma=c2), target=fl.StaticTarget((0.0,)))
+
+
+@pytest.mark.parametrize("stated", [0.04, 0.01, None])
+def test_standard_errors_are_those_of_least_squares_by_the_closed_form(stated):
+    """A noise of 0.02 that is stated too small, or not at all, is taken from the residuals; gaps weigh nothing."""
+    t = np.arange(80) * 0.05
+    x = place(t, 3.0, -1.0, 2.0, 0.6) + np.random.default_rng(0).normal(0.0, 0.02, 80)
+    x[[20, 21, 22, 70]] = np.nan
+    seen = ~np.isnan(x)
+
+    def off(z):  # two windows of 40 samples with starts of their own
+        return (np.concatenate([place(t[:40], *z[:2], *z[4:]), place(t[:40], *z[2:4], *z[4:])]) - x)[seen]
+
+    best = least_squares(off, [3.0, -1.0, -1.0, -1.0, 2.0, 0.6], jac="3-point", x_scale="jac")
+    variance = best.fun @ best.fun / 70
+    covariance = np.linalg.inv(best.jac.T @ best.jac)[4:, 4:] * (variance if stated != 0.04 else 0.04**2)
+    found = fl.fit(fl.Recording(t, x[:, None, None], sd=stated), pulled(1.8, 0.7), free=PULLS, window=2.0)
+    errors = np.sqrt(np.diag(covariance))
+    assert found.freedom == 70
+    assert found.misfit == pytest.approx(np.sqrt(variance) / (stated or np.nan), rel=1e-3, nan_ok=True)
+    np.testing.assert_allclose([found.errors[name] for name in PULLS], errors, rtol=0.01)
+    np.testing.assert_allclose(found.correlation, covariance / np.outer(errors, errors), atol=0.01)
+    for k, name in enumerate(PULLS):
+        assert found.values[name] == pytest.approx(best.x[4 + k], abs=0.1 * errors[k])
+        width = 1.99444 * errors[k]  # Student's quantile of 70 degrees
+        assert np.ptp(found.intervals[name]) == pytest.approx(2.0 * width, rel=0.01)
+
+
+def test_slopes_are_carried_by_three_terms_of_the_exponential():
+    """Place and velocity of one agent, and a parameter that forces it: h A with A = [[0, 1, 0], [-2, -0.5, 3], 0]."""
+    rate = _Rate(np.array([[-2.0]]), np.array([[-0.5]]), np.array([[0.0, 0.0, 3.0]]))
+    a = 0.2 * np.array([[0.0, 1.0, 0.0], [-2.0, -0.5, 3.0], [0.0, 0.0, 0.0]])
+    series = np.eye(3) + a + a @ a / 2.0 + a @ a @ a / 6.0
+    np.testing.assert_allclose(rate.carried(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
+
+
+def test_slopes_are_differences_of_solutions_to_the_second_power_of_a_block():
+    law, start, t = fl.Algorithm1(), np.array([0.0, 6.0, 1.0, -1.0]), np.arange(65) * 0.005
+    free = Free.of(law, ("c1_alpha", "c2_alpha"))
+    part = Window(t, np.zeros((65, 2, 1)), np.ones((65, 2)), start)
+    z = np.concatenate([start, free.values])
+    by_hand = _differences(lambda z: part.solution(free.with_values(z[4:]), z[:4], 4)[0].ravel(), z)
+    off = []
+    for samples in (16, 8):
+        block = 1.01 * samples * 0.005 / law.scales.time
+        slopes = part.slopes(law, _nearby_laws(free.with_values, free.values), start, 4, block)
+        off.append(np.linalg.norm((slopes - by_hand) / np.abs(by_hand).max(axis=0)))
+    assert off[0] > 3.5 * off[1]
+
+
+def test_steps_are_halved_until_their_error_is_a_twentieth_of_a_standard_error():
+    t, deviation = np.arange(9) * 2.0, 1e-5
+    exact = place(t, 3.0, -1.0, 2.0, 0.6)
+    part = Window(t, exact[:, None, None], np.full((9, 1), 1.0 / deviation), np.array([3.0, -1.0]))
+    finer = _fine_enough([part], pulled())
+    off = [np.linalg.norm(part.residual(pulled(), part.start, steps)) for steps in (finer, finer // 2)]
+    assert off[0] < 0.06 < off[1]
+
+
+def test_a_step_leaves_positive_parameters_a_tenth_of_themselves():
+    theta, moved = np.array([2.0, 1.0, -1.0]), np.array([-9.0, 5.0, -80.0])
+    share = _share(theta, moved, np.array([1.0, 1.0, -1.0]))
+    assert (theta + share * moved)[0] == pytest.approx(0.2, abs=2e-6)
+    assert _share(theta, -moved, np.array([1.0, -1.0, -1.0])) == 1.0
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+def test_a_step_solves_the_damped_normal_equations_of_all_starts_at_once(damping):
+    slopes, residuals = np.random.default_rng(3).normal(size=(2, 9, 4)), np.random.default_rng(4).normal(size=(2, 9))
+    dense, off = np.zeros((18, 6)), residuals.ravel()
+    dense[:9, :2], dense[9:, 2:4], dense[:, 4:] = slopes[0, :, :2], slopes[1, :, :2], slopes[:, :, 2:].reshape(18, 2)
+    whole = dense.T @ dense
+    whole *= 1.0 + damping * np.eye(6)
+    z = np.linalg.solve(whole, dense.T @ off)
+    normal = _Normal.of(list(slopes), 2, damping)
+    moved, starts, promised = normal.step(list(residuals))
+    np.testing.assert_allclose([*starts[0], *starts[1], *moved], z)
+    assert promised == pytest.approx(z @ dense.T @ off)
+    np.testing.assert_allclose(normal.covariance, np.linalg.inv(whole)[4:, 4:])
+
+
+def test_differences_of_a_polynomial_are_its_slopes():
+    found = _differences(lambda x: np.array([[x[0, 0] ** 2 + 3.0 * x[1, 0]], [x[1, 0]]]), np.array([[2.0], [5.0]]))
+    np.testing.assert_allclose(found, [[4.0, 3.0], [0.0, 1.0]], atol=1e-8)
+
+
+def test_errors_of_steps_count_how_agents_differ_once_there_are_two_for_each_parameter():
+    """Places and velocities after a step of 0.1 are those of the closed form; two agents that feel only the pull."""
+    h, noise = 0.1, np.random.default_rng(0).normal(0.0, 0.02, (3, 30, 2))
+    q, later = (place(np.arange(30)[:, None] * h + e, [3.0, -2.0], [-1.0, 0.0], 2.0, 0.6) for e in (0.0, 1e-5))
+    q, p = q + noise[0], (later - q) / 1e-5 + noise[1]
+
+    def off(c2, n):
+        before, at, after = (place(h + e, q[:-1, :n], p[:-1, :n], 2.0, c2) for e in (-1e-5, 0.0, 1e-5))
+        return np.stack([(q[1:, :n] - at) / h, p[1:, :n] - (after - before) / 2e-5])
+
+    for n in (1, 2):
+        rec = fl.Recording(np.arange(30) * h, q[:, :n, None], p[:, :n, None], bound=0.1)
+        found = fl.fit(rec, pulled(), free=("c2_gamma",))
+        best = least_squares(lambda c, n=n: off(c[0], n).ravel(), [0.6], jac="3-point")
+        rest, slope = best.fun.reshape(-1, n), best.jac.reshape(-1, n)
+        plain = np.sum(rest**2) / (rest.size - 1) * np.sum(slope**2)
+        spread = plain if n == 1 else np.sum(np.sum(slope * rest, axis=0) ** 2)
+        assert found.freedom == rest.size - 1
+        assert found.values["c2_gamma"] == pytest.approx(best.x[0], rel=1e-4)
+        assert found.errors["c2_gamma"] == pytest.approx(np.sqrt(spread) / np.sum(slope**2), rel=1e-3)
 
 
 def test_what_the_data_cannot_tell_is_said():

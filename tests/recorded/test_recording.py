@@ -110,6 +110,8 @@ def test_a_recording_is_drawn_and_played_without_a_law(run, tmp_path):
     assert rec.player(d=7.0, r=8.4).save(str(tmp_path / "it.html")).stat().st_size > 10_000
     assert rec.trajectory(d=7.0, r=8.4).metric("connectivity")[0] == fl.connectivity(run.q[0], 8.4)
     assert "bound" in repr(rec)
+    with pytest.raises(ArgumentError, match=r"cannot write UnknownLaw.*; rec\.save writes recordings"):
+        rec.trajectory().save(tmp_path / "it.nc")
 
 
 @pytest.mark.parametrize("accuracy", [{}, {"bound": 0.1, "p_bound": 0.2}, {"sd": 0.3, "estimated": True}])
