@@ -10,7 +10,7 @@ from flockana.ensemble.dataset import share_cells, shares
 _HEADS = ("parameters", "claim", "runs", "verified, %", "refuted, %", "vacuous", "inconclusive")
 
 
-class Runs(xarray.Dataset):
+class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
     """Dataset of an ensemble: it prints as the shares of runs in which claims hold, its repr is xarray's."""
 
     __slots__ = ()
