@@ -133,6 +133,16 @@ def _environment():
     return {**os.environ, "PYTHONPATH": str(Path(fl.__file__).resolve().parent.parent)}
 
 
+def test_a_flock_is_filmed_and_exported(tmp_path):
+    flock = fl.Flock(LAW, start, t_span=(0, 1))
+    assert fl.animate(flock, tmp_path / "three.gif", seconds=0.2).stat().st_size > 1000
+    with pytest.raises(ArgumentError, match="expected the one or the other"):
+        fl.animate(flock, tmp_path / "three.gif", law=LAW, q0=PAIR)
+    made = fl.export_lammps(flock, folder=tmp_path / "made")
+    again = fl.export_lammps(LAW, start(0), t_span=(0, 1), folder=tmp_path / "again")
+    assert [path.read_text() for path in made.files] == [path.read_text() for path in again.files]
+
+
 def test_gif_lasts_as_long_as_asked(tmp_path):
     from PIL import Image
 

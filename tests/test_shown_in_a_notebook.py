@@ -45,3 +45,19 @@ def test_a_large_linearisation_is_shown_without_its_poles():
 
 def test_a_run_writes_its_film(run, tmp_path):
     assert run.animate(tmp_path / "run.gif", seconds=0.2).stat().st_size > 1000
+
+
+def test_an_ensemble_is_a_table_of_shares():
+    law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
+    flock = fl.Flock(law, lambda seed: np.random.default_rng(seed).normal(0.0, 6.0, (4, 2)), t_span=(0.0, 1.0))
+    runs = fl.ensemble(flock, range(2), theorems=["energy"], parameters={"gains.c1_gamma": [0.5, 1.0]}, jobs=1)
+    first, heads, *rows = str(runs).splitlines()
+    assert first.endswith(": 4 runs")
+    assert heads.split() == ["parameters", "claim", "runs", "verified,", "%", "refuted,", "%"]
+    assert rows[-1].split()[:6] == ["gains.c1_gamma", "=", "1.0", "energy:balance", "2", "100.0"]
+    assert len(rows) == 2 * runs.claim.size
+    html = runs._repr_html_()
+    assert html.startswith("<table>")
+    assert html.partition("</table>")[0].count("<tr>") == 1 + len(rows)
+    part = runs[["margin"]]
+    assert str(part) == repr(part)

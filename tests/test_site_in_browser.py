@@ -81,6 +81,10 @@ def test_a_page_is_quiet_fits_and_can_be_read_by_all(visit, name, width, scheme)
     unnamed = "[...document.images].filter(i => !i.alt && i.getAttribute('role') !== 'presentation').length"
     assert tab.evaluate(unnamed) == 0
     assert too_wide(tab) <= 0
+    cut = (
+        "[...document.querySelectorAll('.bd-breadcrumbs .ellipsis')].filter(e => e.scrollWidth > e.clientWidth).length"
+    )
+    assert tab.evaluate(cut) == 0
     tab.add_script_tag(path=str(HERE / "axe" / "axe.min.js"))
     found = tab.evaluate("axe.run('main', {preload: false, iframes: false, runOnly: ['wcag2a', 'wcag2aa']})")
     assert [(one["id"], one["nodes"][0]["html"][:120]) for one in found["violations"]] == []

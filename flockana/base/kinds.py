@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from numbers import Real
 from typing import Any, ParamSpec, TypeVar
 
 from flockana.base.checks import ensure_kind, real_array
@@ -34,6 +35,7 @@ _EXAMPLES = {
     "Trajectory": "a run, as simulate(...) gives it",
 }
 _ARRAYS = ("ArrayLike", "FloatArray")
+_SYMBOLIC = ("Expr", "Matrix", "IndexedBase")  # of sympy; numbers will do
 _PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence}
 
 
@@ -56,7 +58,7 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     called = inspect.signature(function)
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
-    kinds = {name: kind for name, kind in kinds.items() if kind in _EXAMPLES or kind in _ARRAYS}
+    kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
 
     @functools.wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -64,6 +66,8 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
         for name, kind in kinds.items():
             if name in given and kind in _ARRAYS:
                 _ensure_numbers(name, given[name])
+            elif name in given and kind in _SYMBOLIC:
+                _ensure_symbolic(name, given[name])
             elif name in given:
                 ensure_kind(name, given[name], _PROTOCOLS.get(kind, kind), _EXAMPLES[kind])
         return function(*args, **kwargs)
@@ -77,3 +81,10 @@ def _ensure_numbers(name: str, value: Any) -> None:
         real_array(value)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} = {format_value(value)}: expected an array of real numbers") from None
+
+
+def _ensure_symbolic(name: str, value: Any) -> None:
+    """Raise unless a value is a sympy expression or matrix, or a number."""
+    classes = {each.__name__ for each in type(value).__mro__}
+    if not (isinstance(value, Real) or classes & {"Expr", "MatrixBase"}):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected a sympy expression, such as sympy.Symbol('z')")

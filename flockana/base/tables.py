@@ -71,6 +71,20 @@ def _cell(text: str) -> str:
     return f'<td style="text-align:left;vertical-align:top">{mark}{escape(text)}</td>'
 
 
+def text_table(rows: Iterable[Sequence[str]], heads: Sequence[str]) -> str:
+    """Return a table as lines of text with aligned columns.
+
+    Examples
+    --------
+    >>> print(text_table([["os-3", "verified"], ["energy", "refuted"]], ["theorem", "status"]))
+    theorem  status
+    os-3     verified
+    energy   refuted
+    """
+    padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in zip(heads, *rows, strict=True)]
+    return "\n".join("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+
+
 def number(value: float | None) -> str:
     """Return a margin as text of four digits; empty for None."""
     return "" if value is None else f"{value:.4g}"

@@ -32,6 +32,7 @@ from flint import arb, ctx, fmpq
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
+from flockana.base.tables import facts_text
 from flockana.certified.alignment import centred, rotated_to, unique_projection
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.balls import ball, square
@@ -102,6 +103,10 @@ class Basin:
     distance: Fraction
     connected: bool
     proof: Proved = field(repr=False)
+
+    def __str__(self) -> str:
+        names = ("radius", "level", "curvature", "damping", "rate", "overshoot", "distance")
+        return facts_text("Basin", {name: f"{float(getattr(self, name)):.4g}" for name in names})
 
     @property
     def share(self) -> float:

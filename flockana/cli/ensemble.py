@@ -82,7 +82,7 @@ def ensemble_command(
     if as_json:
         show_json(share_rows(table))
     else:
-        _show(runs, table, axes)
+        _show(runs, table)
     if save_to is not None:  # in memory first: HDF5 tears itself apart on a disk that fills
         write_atomic(save_to, runs.to_netcdf(None, engine="h5netcdf"))
     if plot is not None:
@@ -158,9 +158,9 @@ def _telling(table: xarray.Dataset) -> list[str]:
     return [str(table.claim.values[k]) for k in sorted(most.tolist())]
 
 
-def _show(runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
+def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
     bad = runs.run.values != 0
-    tables = [share_table(table, axes)] if table.claim.size else []
+    tables = [share_table(table)] if table.claim.size else []
     console = show(f"{runs.attrs['scenario']}: {bad.size} runs", *tables)
     if tables:
         console.print(
@@ -188,37 +188,22 @@ def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
-def share_table(table: xarray.Dataset, axes: list[str]) -> Table:
+def share_table(table: xarray.Dataset) -> Table:
     """Return a table of the shares of each claim for every combination of parameters."""
-    from itertools import product
-
     from rich.text import Text
 
+    from flockana.ensemble.dataset import share_cells
     from flockana.report.tables import column, headed_table
 
     columns = (column(heading, right=True) for heading in ("runs", "verified, %", "refuted, %", "vac.", "inc."))
     grid = headed_table(column("claim", wraps=True), *columns, collapse_padding=True)
-    for values in product(*(table[name].values.tolist() for name in axes)):
-        part = table.sel(dict(zip(axes, values, strict=True)))
-        if axes:
-            point = ", ".join(f"{name} = {value}" for name, value in zip(axes, values, strict=True))
-            grid.add_row(Text(point, style="bold"))
-        before = ""
-        for label in table.claim.values.tolist():
-            counts = part.sel(claim=label)
-            theorem, _, claim = label.partition(":")
-            if not int(counts.runs):
-                continue
-            if theorem != before:
-                grid.add_row(Text(theorem))
-            before = theorem
-            neither = (str(int(counts[of]) or "") for of in ("vacuous", "inconclusive"))
-            cells = [interval_text(counts.sel(of=of)) for of in ("verified", "refuted")]
-            grid.add_row(f"  {claim}", str(int(counts.runs)), *cells, *neither)
+    point = before = ""
+    for where, label, *cells in share_cells(table):
+        theorem, _, claim = label.partition(":")
+        if where != point:
+            grid.add_row(Text(where, style="bold"))
+        if (where, theorem) != (point, before):
+            grid.add_row(Text(theorem))
+        point, before = where, theorem
+        grid.add_row(f"  {claim}", *cells)
     return grid
-
-
-def interval_text(entry: xarray.Dataset) -> str:
-    """Return a share and its interval in per cent."""
-    share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
-    return f"{share:.1f} [{low:.1f}, {high:.1f}]"

@@ -11,6 +11,7 @@ import typer
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
 from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,6 +25,7 @@ _SHORT, _LONGEST = 10.0, 600.0
 DENSE = 1200  # n m above which only the slowest modes are sought, without a dense matrix
 
 
+@one_thread_for_matrices()
 def stability_command(
     source: SourceName,
     start: Start = None,

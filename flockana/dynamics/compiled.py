@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.stepper import Stepper
@@ -54,10 +55,11 @@ class Engine(Stepper):
         if self._system.reach[0] > 0.0 and self.pairs.made >= self._sorted + _LISTS:
             self._sort()
         judged = checks.judged(self.order)
-        made = advance(
-            self._system, self._method, self.block, self._room, self._h, (self.pairs, checks.near), self.stops,
-            self.due, judged,
-        )  # fmt: skip
+        with defer_sigint():  # raised while numba makes the result of a kernel, it crashes the process
+            made = advance(
+                self._system, self._method, self.block, self._room, self._h, (self.pairs, checks.near), self.stops,
+                self.due, judged,
+            )  # fmt: skip
         self._h, self.pairs, checks.near, self._samples = made.h, made.pairs, made.near, (made.states, made.work)
         self.evaluations, self.redone = self.evaluations + made.evaluations, self.redone + made.redone
         t = float(self.block.t[made.steps])

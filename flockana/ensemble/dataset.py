@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,8 @@ def to_dataset(
 ) -> xarray.Dataset:
     """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
+
+    from flockana.ensemble.shown import Runs  # loads xarray
 
     dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))
     claims = list(dict.fromkeys(name for record in records for name in record.claims))
@@ -91,7 +93,7 @@ def to_dataset(
         "mathematics": request.mathematics,
         "flockana_version": __version__,
     }
-    return xarray.Dataset(of_claims | of_runs | measured, coords, attributes)
+    return Runs(of_claims | of_runs | measured, coords, attributes)
 
 
 def metric_name(name: str) -> str:
@@ -180,3 +182,25 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
     table = {"share": share, "low": judged.copy(data=low), "high": judged.copy(data=high), "runs": runs}
     table |= {"incomplete": incomplete, **counts}
     return xarray.Dataset(table, attrs=dataset.attrs | {"level": level}).assign_coords(of=["verified", "refuted"])
+
+
+def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str, str, str]]:
+    """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each claim that was checked.
+
+    Shares are in per cent, with their intervals; the last two are numbers of runs.
+    """
+    axes = [str(name) for name in table.runs.dims if name != "claim"]
+    for values in product(*(table[name].values.tolist() for name in axes)):
+        point = dict(zip(axes, values, strict=True))
+        for label in table.claim.values.tolist():
+            counts = table.sel(point | {"claim": label})
+            if int(counts.runs):
+                vacuous, inconclusive = (str(int(counts[of]) or "") for of in ("vacuous", "inconclusive"))
+                verified, refuted = (_interval(counts.sel(of=of)) for of in ("verified", "refuted"))
+                where = ", ".join(f"{name} = {value}" for name, value in point.items())
+                yield where, label, str(int(counts.runs)), verified, refuted, vacuous, inconclusive
+
+
+def _interval(entry: xarray.Dataset) -> str:
+    share, low, high = (100.0 * float(entry[name]) for name in ("share", "low", "high"))
+    return f"{share:.1f} [{low:.1f}, {high:.1f}]"

@@ -66,10 +66,10 @@ class LammpsExport:
 
 def export_lammps(
     law: Any,
-    q0: Any,
-    p0: Any,
-    t_span: Any,
-    folder: str | os.PathLike[str],
+    q0: Any = None,
+    p0: Any = None,
+    t_span: Any = None,
+    folder: str | os.PathLike[str] = "",
     *,
     points: int = 20_000,
     inner: float | None = None,
@@ -85,10 +85,10 @@ def export_lammps(
 
     Parameters
     ----------
-    law : Law
-        A sum of terms with a pair term, such as Algorithm 1, 2 or 3.
+    law : Law, Flock or Scenario
+        A sum of terms with a pair term, such as Algorithm 1, 2 or 3; a flock has a start and a time span, too.
     q0, p0 : array_like, shape (n, m)
-        Initial positions and velocities.
+        Initial positions and velocities; at rest by default.
     folder : path
         Folder to write to; it is made if it is not there. An export from before is replaced, another's file is not.
     points : int
@@ -119,10 +119,13 @@ def export_lammps(
     >>> [path.name for path in told.files], told.force_error < 1e-4, len(told.missing)
     (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
     """
+    flock = law.scenario() if hasattr(law, "scenario") else law
+    if hasattr(flock, "q0"):  # a flock or a scenario, of a layer above
+        law, q0, p0, t_span = flock.law, flock.q0, flock.p0, flock.t_span
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
     _ensure_own(folder / name for name in (SCRIPT, DATA, TABLE, README))
-    q0, p0 = ensure_state(q0, p0)
+    q0, p0 = ensure_state(q0, np.zeros(np.shape(q0)) if p0 is None else p0)
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_points, ensure_positive
+from flockana.base.kinds import check_kinds
 from flockana.base.vectors import centres, lengths, scaled_near_one
 from flockana.kernels.components import labelled, squared_excess, unite
 from flockana.kernels.instants import greatest_distances, least_distances
@@ -201,14 +202,16 @@ def pairs_at_one_place(q: Any) -> int:
     return int((sizes * (sizes - 1) // 2).sum())
 
 
-# The same at every instant of a run, unchecked: x has shape (T, n, m), the result (T,).
+# The same at every instant of a run, shapes unchecked: x has shape (T, n, m), the result (T,).
 
 
+@check_kinds
 def nets(q: FloatArray, d: float, r: float) -> FloatArray:
     """Return `net_measures` over time, unchecked: C, C* and E, shape (3, T)."""
     return np.array([_net_measures(x, d, r) for x in q]).T
 
 
+@check_kinds
 def cohesion_radii(q: FloatArray) -> FloatArray:
     """Return `cohesion_radius` over time, unchecked."""
     q, _, unit = scaled_near_one(q)
@@ -216,6 +219,7 @@ def cohesion_radii(q: FloatArray) -> FloatArray:
     return radii
 
 
+@check_kinds
 def spreads(x: FloatArray) -> FloatArray:
     """Return ½ Σ‖x_i − x_c‖² over time, unchecked: `inertia` of positions, `velocity_mismatch` of velocities.
 
@@ -228,6 +232,7 @@ def spreads(x: FloatArray) -> FloatArray:
     return spread
 
 
+@check_kinds
 def min_distances(q: FloatArray) -> FloatArray:
     """Return `min_distance` over time, unchecked."""
     q, _, unit = scaled_near_one(q)
@@ -239,6 +244,7 @@ def min_distances(q: FloatArray) -> FloatArray:
     return unit * np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
 
 
+@check_kinds
 def diameters(x: FloatArray) -> FloatArray:
     """Return `diameter` over time, unchecked, from agents far from the centre.
 
@@ -252,11 +258,13 @@ def diameters(x: FloatArray) -> FloatArray:
     return distances
 
 
+@check_kinds
 def orders(p: FloatArray) -> FloatArray:
     """Return `order` over time, unchecked."""
     return lengths(centres(_headings(p)))
 
 
+@check_kinds
 def coordinations(p: FloatArray) -> FloatArray:
     """Return `coordination` over time, unchecked."""
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)

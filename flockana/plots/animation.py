@@ -20,7 +20,8 @@ from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
-from flockana.scenarios.flock import chosen
+from flockana.scenarios.flock import Flock, chosen
+from flockana.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -100,7 +101,7 @@ def animation(
 
 
 def animate(
-    trajectory: Trajectory | None = None,
+    trajectory: Trajectory | Flock | Scenario | None = None,
     path: str | os.PathLike[str] = "",
     *,
     law: Any = None,
@@ -117,10 +118,10 @@ def animate(
 
     Parameters
     ----------
-    trajectory : Trajectory, optional
-        The run.
+    trajectory : Trajectory, Flock or Scenario, optional
+        The run, or what is simulated first.
     law, q0, p0, t_span : optional
-        Instead of a run: the parts of a `Flock`, which is simulated.
+        Instead of it: the parts of a `Flock`.
     path : path-like
         File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
     fps : float
@@ -142,7 +143,8 @@ def animate(
     from flockana.plots.gif import GifWriter
 
     target = ensure_film(path, seconds=seconds, fps=fps)
-    run = chosen(law=law, q0=q0, p0=p0, t_span=t_span).run() if trajectory is None else trajectory
+    given = chosen(trajectory, law=law, q0=q0, p0=p0, t_span=t_span)
+    run = given.run() if isinstance(given, Flock | Scenario) else given
     film = animation(run, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
     writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.

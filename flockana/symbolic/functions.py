@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from flockana.base.kinds import check_kinds
 from flockana.symbolic.named import HALF as HALF
 from flockana.symbolic.named import Bump, Phi, Place, Sigma1, SigmaNorm, Taper, written
 from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
@@ -25,6 +26,7 @@ def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     return written(Taper(Place(z, h)))
 
 
+@check_kinds
 def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     """Return the bump rho_h: 1 on [0, h), a half-cosine on [h, 1], 0 beyond (Olfati-Saber 2006).
 
@@ -45,6 +47,7 @@ def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
     return sp.Piecewise((1, z < 1), (0, True)) if h == 1 else Bump(z, h).formula
 
 
+@check_kinds
 def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the uneven sigmoid ((a + b) sigma_1(s/l**2 + c) + (a - b))/2, which vanishes at 0 if a <= b.
 
@@ -61,6 +64,7 @@ def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     return Phi(s / alpha.unit**2, alpha.a, alpha.b, alpha.c).formula
 
 
+@check_kinds
 def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the action function rho_h(z/r_alpha) phi(z - d_alpha) (Olfati-Saber 2006).
 
@@ -77,6 +81,7 @@ def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     return adjacency(z, alpha=alpha) * written(alpha_smooth(z, alpha))
 
 
+@check_kinds
 def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the weight a_ij = rho_h(z/r_alpha) of a pair at sigma-distance z (Olfati-Saber 2006).
 
@@ -93,6 +98,7 @@ def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     return bump(z / alpha.r_alpha, h=alpha.h)
 
 
+@check_kinds
 def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     """Return the repulsion rho_h(z/d_beta) (sigma_1((z - d_beta)/l**2) - 1) of a beta-agent (Olfati-Saber 2006).
 

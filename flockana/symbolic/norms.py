@@ -6,6 +6,8 @@ from typing import Any
 
 import sympy as sp
 
+from flockana.base.kinds import check_kinds
+
 EPS = sp.Symbol("epsilon", positive=True)
 
 
@@ -15,6 +17,7 @@ def _square(z: Any) -> sp.Expr:
     return sp.Add(*((-x if x.could_extract_minus_sign() else x) ** 2 for x in components))
 
 
+@check_kinds
 def sigma_norm(z: sp.Expr | sp.Matrix, *, eps: sp.Expr = EPS) -> sp.Expr:
     """Return the sigma-norm (sqrt(1 + eps |z|^2) - 1)/eps (Olfati-Saber 2006).
 
@@ -33,6 +36,7 @@ def sigma_norm(z: sp.Expr | sp.Matrix, *, eps: sp.Expr = EPS) -> sp.Expr:
     return (sp.sqrt(1 + eps * _square(z)) - 1) / eps
 
 
+@check_kinds
 def sigma_norm_gradient(z: sp.Expr | sp.Matrix, *, eps: sp.Expr = EPS) -> sp.Expr | sp.Matrix:
     """Return the gradient z/sqrt(1 + eps |z|^2) of the sigma-norm, which is z/(1 + eps |z|_sigma).
 
@@ -51,6 +55,7 @@ def sigma_norm_gradient(z: sp.Expr | sp.Matrix, *, eps: sp.Expr = EPS) -> sp.Exp
     return z / sp.sqrt(1 + eps * _square(z))
 
 
+@check_kinds
 def sigma_1(z: sp.Expr | sp.Matrix) -> sp.Expr | sp.Matrix:
     """Return z/sqrt(1 + |z|^2).
 

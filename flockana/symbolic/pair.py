@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 
+from flockana.base.kinds import check_kinds
 from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
@@ -30,6 +31,7 @@ def vector(name: str, m: int) -> sp.Matrix:
     return sp.ImmutableMatrix([sp.Symbol(f"{name}{k}", real=True) for k in range(1, m + 1)])
 
 
+@check_kinds
 def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS) -> sp.Expr:
     """Return c1_alpha psi_alpha of the pair's sigma-distance.
 
@@ -46,6 +48,7 @@ def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS
     return gains.c1_alpha * PSI(sigma_norm(q_j - q_i))
 
 
+@check_kinds
 def pair_force(
     q_i: sp.Matrix, p_i: sp.Matrix, q_j: sp.Matrix, p_j: sp.Matrix, *, gains: GainSymbols = GAINS
 ) -> sp.Matrix:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
+from flockana.base.kinds import check_kinds
 from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.functions import alpha_smooth, beta_closed, beta_smooth, phi, taper
 from flockana.symbolic.named import PhiIntegral, written
@@ -85,6 +86,7 @@ class _Potential:
         return tuple(sp.expand(residual) for residual in computed)
 
 
+@check_kinds
 def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the integral of phi(z - d_alpha) from d_alpha, a closed form.
 
@@ -132,6 +134,7 @@ def _refuse_indicator(h: sp.Expr) -> None:
         raise ArgumentError("h = 1: expected 0 < h < 1, the bump of a potential needs a taper")
 
 
+@check_kinds
 def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the potential psi_alpha(z), integral of phi_alpha from d_alpha (Olfati-Saber 2006).
 
@@ -157,6 +160,7 @@ def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     return alpha_potential(alpha).expression(sp.sympify(z))
 
 
+@check_kinds
 def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
     """Return the potential psi_beta(z) >= 0, integral of phi_beta from d_beta.
 

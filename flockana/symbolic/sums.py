@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from flockana.base.kinds import check_kinds
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS
 from flockana.symbolic.pair import PSI
@@ -24,6 +25,7 @@ def _sum(summand: sp.Expr, *limits: tuple[sp.Symbol, sp.Expr, sp.Expr]) -> sp.Ex
     return sp.Add(*(front * sp.Sum(rest, *limits) for front, rest in terms if front != 0))
 
 
+@check_kinds
 def write_out(generic: sp.Expr, n: int, m: int = 1) -> sp.Expr:
     """Return sums over n agents and m components written out term by term.
 
@@ -82,6 +84,7 @@ def collective_potential(gains: GainSymbols = GAINS) -> sp.Expr:
     return gains.c1_alpha * over_pairs(PSI(Z[I_, J_]))
 
 
+@check_kinds
 def half_square(base: sp.IndexedBase, m: sp.Expr = M) -> sp.Expr:
     """Return half the sum of squares: K of velocities (velocity mismatch), J of positions (inertia).
 

@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from flockana.base.progress import progress_bar
-from flockana.base.tables import MARKS, html_table, latex_table, tex
+from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
 from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.catalogue import catalogue, theorem, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.of_schemes import ON_STEPS, is_about_steps
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
+
+_HEADS = ("theorem", "status", "rigour", "decided by", "title")
 
 
 class Verdicts(tuple[Verdict, ...]):
@@ -32,16 +34,14 @@ class Verdicts(tuple[Verdict, ...]):
         return [(v.theorem, v.status, v.rigour, _deciding(v), _title(v.theorem)) for v in self]
 
     def __str__(self) -> str:
-        rows = [("theorem", "status", "rigour", "decided by", "title")]
-        rows += [(name, f"{MARKS[status]} {status}", *rest) for name, status, *rest in self.rows()]  # type: ignore[misc]
-        widths = [max(len(row[k]) for row in rows) for k in range(4)]
-        return "\n".join("  ".join((*(c.ljust(w) for c, w in zip(row, widths, strict=False)), row[4])) for row in rows)
+        rows = [(name, f"{MARKS[status]} {status}", *rest) for name, status, *rest in self.rows()]
+        return text_table(rows, _HEADS)
 
     def __repr__(self) -> str:
         return f"<Verdicts on {len(self)} theorems: {', '.join(f'{v.theorem} {v.status}' for v in self)}>"
 
     def _repr_html_(self) -> str:
-        return html_table(self.rows(), ("theorem", "status", "rigour", "decided by", "title"))
+        return html_table(self.rows(), _HEADS)
 
     def about_the_law(self) -> Verdicts:
         """Return these verdicts without the vacuous ones of theorems that name no law."""
@@ -50,7 +50,7 @@ class Verdicts(tuple[Verdict, ...]):
     def to_latex(self) -> str:
         """Return the table as a LaTeX ``tabular`` in the style of booktabs."""
         rows = [[tex(cell) for cell in row] for row in self.rows()]
-        return latex_table(rows, ("theorem", "status", "rigour", "decided by", "title"), "llllp{0.4\\linewidth}")
+        return latex_table(rows, _HEADS, "llllp{0.4\\linewidth}")
 
     def to_dict(self) -> list[dict[str, Any]]:
         """Return plain data for JSON."""

@@ -73,7 +73,9 @@ def test_what_is_strange_is_refused_in_words(name, usual):
 
 def of_rooms():
     """Functions of the package and of its rooms that have arguments without defaults."""
-    rooms = {"": fl} | {f"{room}.": getattr(fl, room) for room in ("plots", "stability", "lattice", "reynolds")}
+    rooms = {"": fl} | {
+        f"{room}.": getattr(fl, room) for room in ("plots", "stability", "lattice", "reynolds", "metrics", "symbolic")
+    }
     for prefix, room in rooms.items():
         for name in getattr(room, "__all__", None) or [name for name in vars(room) if not name.startswith("_")]:
             function = getattr(room, name)

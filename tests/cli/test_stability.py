@@ -1,7 +1,11 @@
+import os
 from math import sqrt
 
 import pytest
 
+from flockana.base.errors import SolverError
+from flockana.cli.stability import stability_command
+from flockana.cli.status import UNEXPECTED
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
@@ -130,3 +134,17 @@ def test_a_law_without_a_potential_is_linearised_about_a_state_of_rest(found, ca
     code, _, err = call("zone-51-printed")
     assert (code, err.count("\n")) == (2, 1)
     assert "ZoneFlocking is a map from step to step: expected a continuous law" in err
+
+
+def test_it_starts_one_thread_for_matrices(monkeypatch):
+    seen = []
+
+    def search(law, q):
+        seen.append(os.environ.get("OPENBLAS_NUM_THREADS"))
+        raise SolverError("no equilibrium")
+
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("flockana.equilibria.find_equilibrium", search)
+    assert stability_command("hexagonal-patch:1") == UNEXPECTED
+    assert seen == ["1"]

@@ -1,0 +1,37 @@
+"""Results of an ensemble that print, and show themselves in a notebook, as a table of shares."""
+
+from __future__ import annotations
+
+import xarray
+
+from flockana.base.tables import html_table, text_table
+from flockana.ensemble.dataset import share_cells, shares
+
+_HEADS = ("parameters", "claim", "runs", "verified, %", "refuted, %", "vacuous", "inconclusive")
+
+
+class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
+    """Dataset of an ensemble: it prints as the shares of runs in which claims hold, its repr is xarray's."""
+
+    __slots__ = ()
+
+    def _table(self) -> tuple[tuple[str, ...], ...]:
+        """Return headings and rows without empty columns; nothing of a part without seeds, claims or status."""
+        if not ({"seed", "claim"} <= {*self.dims} and {"status", "run"} <= {*self.data_vars}):
+            return ()
+        columns = (column for column in zip(_HEADS, *share_cells(shares(self)), strict=True) if any(column[1:]))
+        return tuple(zip(*columns, strict=True))
+
+    def __str__(self) -> str:
+        heads, *rows = self._table() or ((),)
+        return f"{self._title()}\n{text_table(rows, heads)}" if rows else repr(self)
+
+    def _repr_html_(self) -> str:
+        heads, *rows = self._table() or ((),)
+        variables = super()._repr_html_()
+        table = html_table(rows, heads, self._title()) if rows else ""
+        return f"{table}<details><summary>variables</summary>{variables}</details>" if rows else variables
+
+    def _title(self) -> str:
+        lost = int((self.run != 0).sum())
+        return f"{self.attrs['scenario']}: {self.run.size} runs" + (f", {lost} did not complete" if lost else "")
