@@ -112,7 +112,7 @@ def energy(t, x, v, numbers, panels, listed):
 def _sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
     """The forces of a flock sorted into a grid."""
     first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
-    count, total = 0, 0.0
+    count, total = np.int64(0), 0.0  # typed: of a literal, `_add` would be compiled once more
     if x.shape[1] != M:
         return np.nan  # as above
     for cell in range(start.size - 2):
