@@ -1,4 +1,4 @@
-"""Many steps of a compiled law in one call: each is made, held against all checks, and made again if it must be."""
+"""Many steps of a compiled law in one call: each is checked, and repeated with a shorter one if it fails."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flockana.kernels.sums import put
 
 
 class Advanced(NamedTuple):
-    """What a call made."""
+    """Result of a call of `advance`."""
 
     steps: Any  # number of steps that stand
     status: Any  # why there are no more
@@ -29,7 +29,7 @@ class Advanced(NamedTuple):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def reordered(vectors, order, m):
-    """Rows of vectors whose agents come in another order: agent i of the result is agent order[i]."""
+    """Return rows of vectors with agents permuted: agent i of the result is agent order[i]."""
     n, out = order.size, vectors.copy()
     for k in range(len(vectors)):
         for i in range(n):
@@ -41,7 +41,7 @@ def reordered(vectors, order, m):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _record(t, y, f, order, view, out):
-    """Positions, velocities and accelerations as they are, in the agents' own order; returns the work."""
+    """Write positions, velocities and accelerations in the agents' own order; return the work."""
     n, m = order.size, view[1].size
     frame = np.empty((2, m))
     frame_at(t, view, frame)
@@ -56,7 +56,7 @@ def _record(t, y, f, order, view, out):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def recorded(block, count, order, view):
-    """(states, work) at the ends of the first steps of a block, in the agents' own order."""
+    """Return (states, work) at the ends of the first steps of a block, in the agents' own order."""
     states, work = np.empty((count, 3, order.size, view[1].size)), np.empty(count)
     for k in range(count):
         work[k] = _record(block.t[k + 1], block.y[k + 1], block.f[k + 1], order, view, states[k])
@@ -65,7 +65,7 @@ def recorded(block, count, order, view):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _with_room(kept, due, at):
-    """Room for the samples due before a time, and those kept so far."""
+    """Return an array with room for the samples due before a time, holding those kept so far."""
     needed = len(kept)
     while needed < due.size and due[needed] < at:
         needed += 1
@@ -90,7 +90,7 @@ def _sampled(step, due, method, states, work, system, pairs):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def advance(system, method, block, room, h, lists, stops, due, judged):
-    """Fill a block with steps that stand, to the last of `stops`, from its first row; returns `Advanced`.
+    """Fill a block with accepted steps up to the last of `stops`, from its first row; return `Advanced`.
 
     The first step has the length h, or, if that is 0, one that is chosen here. `lists` are those of the integrator and
     of the checks; samples are of the times that are due.

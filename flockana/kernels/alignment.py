@@ -16,7 +16,7 @@ STRENGTH, LENGTH, DECAY = range(3)
 
 @dataclass(frozen=True)
 class WeightKernels:
-    """What a weight has once it is compiled.
+    """Compiled functions of a weight.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class WeightKernels:
 
     @property
     def act(self) -> Kernel:
-        """The same as a term of a law."""
+        """`match` as a term of a law."""
         return self._sums.act
 
     @property

@@ -1,4 +1,4 @@
-"""What the sums over pairs share: blocks of pairs, differences of two rows, parameters in registers."""
+"""Helpers of all sums over pairs: blocks of pairs, differences of two rows, parameters in registers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ APART = {1: apart_1, 2: apart_2, 3: apart_3}
 
 @register_jitable
 def as_they_are(par):
-    """The parameters as an array."""
+    """Return the parameters unchanged, as an array."""
     return par
 
 

@@ -25,7 +25,7 @@ def body_numbers(reach: float, c1: float, c2: float, law: Any, pars: Any, starts
 
 @register_jitable
 def bodies_of(numbers):
-    """(parameters, where each obstacle's begin, balls)."""
+    """Return (parameters, indices at which each obstacle's begin, bounding balls)."""
     count, m = np.int64(numbers[COUNT]), np.int64(numbers[DIMENSION])
     balls, starts = STARTS + count + 1, np.empty(count + 1, np.int64)
     pars = balls + count * (m + 1)

@@ -82,13 +82,13 @@ def _source(known: Kernel) -> str:
 
 
 def _of_text(text: str) -> str:
-    """A digest of all of the package that a text imports."""
+    """Return a digest of all package sources that a text imports."""
     names = sorted(set(re.findall(r"^from (flockana\.[\w.]+) import", text, re.MULTILINE)))
     return "".join(sources_digest(str(spec.origin)) for name in names if (spec := find_spec(name)))
 
 
 def _from_file(text: str, name: str, digest: str) -> ModuleType | None:
-    """The module of a file, written unless it is there with the same text; None if it cannot be written."""
+    """Return the module of a file, written unless it exists with the same text; None if it cannot be written."""
     base = kernels_folder()
     if base is None:
         return None

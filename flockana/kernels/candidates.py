@@ -1,4 +1,4 @@
-"""Who may be near an agent, in the order of indices: sums over them are those over all agents, to the last bit."""
+"""Candidates near an agent, in the order of indices, so that sums over them equal sums over all agents exactly."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Cells(NamedTuple):
 
 @njit(cache=True)
 def sort_into_cells(q, reach):
-    """The cells of a flock; all four are empty where looking at all agents is as good."""
+    """Return the cells of a flock; four empty arrays where looking at all agents is as fast."""
     n, m = q.shape
     none = np.empty(0, np.int64)
     if n <= _FEW:
@@ -52,7 +52,7 @@ def sort_into_cells(q, reach):
 
 @njit(cache=True)
 def gather(i, q, reach, cells, near):
-    """Bring the indices of all that may be within reach of agent i, itself included, into `near`; how many they are."""
+    """Write the indices of agents that may be within reach of agent i, itself included, to `near`; return the count."""
     n, m = q.shape
     if cells.start.size == 0:
         for k in range(n):  # an instant before this one may have had cells

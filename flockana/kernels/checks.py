@@ -1,4 +1,4 @@
-"""What every step must stand up to: no encounter is leapt over, no pole is crossed, the energy is balanced.
+"""Checks of every step: no encounter is leapt over, no pole is crossed, the energy is balanced.
 
 One source for every integrator, compiled with the law or not. A step that does not stand is made again, and shorter.
 """
@@ -28,7 +28,7 @@ _POLE = -0.5  # a step that crossed a pole is halved; the sign says why
 
 
 class Rules(NamedTuple):
-    """How a step is judged."""
+    """Settings of the step checks."""
 
     bodies: Any  # whether there are obstacles that no step leaps over
     pairs: Any  # whether there are encounters or poles of pairs
@@ -39,7 +39,7 @@ class Rules(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """What steps are held against."""
+    """Data that steps are checked against."""
 
     around: Any  # `flockana.kernels.encounters.Around`
     rules: Any
@@ -48,13 +48,13 @@ class Judged(NamedTuple):
 
 
 def empty_ledger() -> Any:
-    """Return the ledger of a run that is yet to be made."""
+    """Return the ledger of a run that has not begun."""
     return np.zeros(TRIED + 64)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _at_rest(t, h, points, view):
-    """The same paths, seen from where the obstacles are at rest."""
+    """Return the same paths in the frame in which the obstacles are at rest."""
     seen, m = points.copy(), view[1].size
     frame = np.empty((2, m))
     for k in range(6):
@@ -67,7 +67,7 @@ def _at_rest(t, h, points, view):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _share_of(ends, seen, around, first, second, share):
-    """What share of a step some pairs allow, if less than `share`; negative if one crosses a pole."""
+    """Return the share of a step that some pairs allow, if less than `share`; negative if one crosses a pole."""
     common, ways, between = seen
     beside = steepest(common[1]), ways[0] + ways[1]
     poles = around.poles[: 0 if around.few else around.poles.size]
@@ -80,7 +80,7 @@ def _share_of(ends, seen, around, first, second, share):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _share_of_crowd(ends, seen, around, share):
-    """As `_share_of`, of all pairs that a list would hold, some at a time."""
+    """Return `_share_of` over all close pairs, found block by block without a list."""
     q0, within = ends.q0, seen[2][1]
     (n, m), size, row = q0.shape, 1, 0
     while size < 4 * n:
@@ -99,7 +99,7 @@ def _share_of_crowd(ends, seen, around, share):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def share_of_step(t, ends, around, rules, view, kept, near):
-    """(how much of a step may be taken, list of pairs): 1 if it stands, negative if a pair crosses a pole.
+    """Return (accepted fraction of a step, list of pairs); the fraction is negative if a pair crosses a pole.
 
     The list `kept` is the integrator's, `near` that of these checks, which is made anew where neither holds all pairs
     that may meet.
@@ -133,7 +133,7 @@ def share_of_step(t, ends, around, rules, view, kept, near):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def balanced(first, last, work, balance, ledger):
-    """How much of a step may be taken by the balance of its energies and the work in between; the ledger is kept.
+    """Return the fraction of a step that the balance of energies and work accepts; update the ledger.
 
     A residual that does not fall when the step is halved is not the integrator's: the law's rate is not that of its
     energy, or all is rounding. Then steps stand as they are.
@@ -172,7 +172,7 @@ def ends_of(block, k, n, m):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def checked(block, k, judged, view, kept, near):
-    """(length of step k if it is to be made again, 0 if it stands; whether it is lost at a pole; the checks' list)."""
+    """Return (length to repeat step k with, 0 if it is accepted; whether the run ends at a pole; the checks' list)."""
     around, rules, ledger, share_allowed = judged
     t, at, share = block.t[k], block.t[k + 1], 1.0
     h = at - t

@@ -1,4 +1,4 @@
-"""Connected components of a graph by union-find: every agent knows one of its component with a smaller number, or none.
+"""Connected components of a graph by union-find.
 
 Links may come in any order and in parts, so no more of them than one part need be in memory.
 """
@@ -14,7 +14,7 @@ from flockana.jit import njit
 
 @njit(cache=True)
 def _root(parent, i):
-    """The first agent of i's component, as far as is known; the way there becomes shorter."""
+    """Return the first known agent of i's component, and shorten the path to it."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]

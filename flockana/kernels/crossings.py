@@ -1,4 +1,4 @@
-"""Which links may cross, and how near others come, by a cell grid over links.
+"""Candidates of crossing links, and distances of links, by a cell grid over links.
 
 Long links are cut into pieces, so that one of them costs no more cells than its length; every two pieces are compared
 in one cell, the lowest that both reach.
@@ -71,7 +71,7 @@ def _enter(home, last, size):
 
 @njit(cache=True)
 def _compared(owner, low, high, home, piece, cell, s, t):
-    """Whether two entries are two links' pieces with overlapping boxes, in the one cell where they are compared."""
+    """Whether two entries are pieces of two links with overlapping boxes, in the one cell where they are compared."""
     p, o = piece[s], piece[t]
     if owner[p] == owner[o]:
         return False

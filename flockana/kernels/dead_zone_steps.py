@@ -18,7 +18,7 @@ _AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
 # Two components are summed at a time: what is read of a pair serves both. An odd one goes with a row of zeros.
 @njit(cache=True, error_model="numpy")
 def semi_implicit_steps(q, p, par, c2, dt, wanted):
-    """Semi-implicit Euler steps of the law: q, p after those that are wanted, by rising numbers, and the u applied.
+    """Return q, p after the wanted steps (by rising numbers), and the u applied, by semi-implicit Euler.
 
     Neighbours pull by k₁ and c₂ alone where nothing else acts, which is a sum over a table of who is in range. Pairs
     that may act otherwise, or come into range, are listed with a skin: the list holds until somebody has moved by half
@@ -76,7 +76,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
 
 @register_jitable
 def _part(x, y, first, second, kept, d, s2):
-    """Two components of what parts each listed pair; their squares are added to s2."""
+    """Write two components of each listed pair's difference, and add their squares to s2."""
     for k in range(kept):
         i, j = first[k], second[k]
         dx, dy = x[j] - x[i], y[j] - y[i]
@@ -144,7 +144,7 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
 
 @register_jitable
 def _out_of(x, then, drift, passed, square, squares):
-    """Whether anybody has moved by more than the root of `square`, or by NaN, beside what drifts on together.
+    """Whether an agent has moved, relative to the flock's drift, by more than the root of `square`, or by NaN.
 
     Where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none: new lists.
     """
@@ -161,7 +161,7 @@ def _out_of(x, then, drift, passed, square, squares):
 
 @njit(cache=True)
 def _spread(v, drift):
-    """The largest speed beside the mean velocity, which goes to `drift`."""
+    """Return the largest speed relative to the mean velocity, which is written to `drift`."""
     largest = 0.0
     for c in range(len(v)):
         drift[c] = v[c].mean()

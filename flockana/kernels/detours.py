@@ -1,4 +1,4 @@
-"""How far the paths of a long step are from those by way of a middle one: what leaving out a step may change.
+"""Distance between the paths of a long step and those through a middle one: the error of leaving a step out.
 
 Both are quintics (`flockana.kernels.paths`). The long one is parted at the middle by de Casteljau; the difference of
 two curves stays in the hull of the differences of their control points.
@@ -27,7 +27,7 @@ def _parted(points, share):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def detours(t0, t1, t2, q0, p0, u0, q1, p1, u1, q2, p2, u2, slack0, slack1):
-    """By agent: how far its path from t0 to t2 may be from that by way of t1, whose parts may be off by slacks."""
+    """Return for each agent how far its path from t0 to t2 may be from the one through t1, whose parts have slacks."""
     (n, m), share, farthest = q0.shape, (t1 - t0) / (t2 - t0), np.empty(q0.shape[0])
     s, s0, s1 = (t2 - t0) / 5.0, (t1 - t0) / 5.0, (t2 - t1) / 5.0
     z, z0, z1 = (t2 - t0) ** 2 / 20.0, (t1 - t0) ** 2 / 20.0, (t2 - t1) ** 2 / 20.0

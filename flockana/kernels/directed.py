@@ -13,7 +13,7 @@ from flockana.kernels.scalars import sigma_norm, taper
 
 @njit(cache=True)
 def sight(q, p, i, j, s2, reach2, width, slow2, h):
-    """How well agent i sees j, from 0 to 1: within its range, and within its cone by the bump of the angle's 1 − cos.
+    """Return how well agent i sees j, from 0 to 1: by its range, and by its cone, with the bump of the angle's 1 − cos.
 
     `width` is 1 − cos of half the angle of view; 2 is all round. An agent much slower than √slow2 looks all round.
     """

@@ -32,7 +32,7 @@ class Ends(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What no step may leap over (`flockana.dynamics.encounters.Encounters`)."""
+    """Encounters that no step may leap over (`flockana.dynamics.encounters.Encounters`)."""
 
     radii: Any  # (n, K): distances at which each agent begins or ceases to feel another
     far: Any  # how far two may go within them
@@ -87,7 +87,7 @@ def relative_curve(points, curve):
 
 @njit(cache=True)
 def _ahead(points, s, far, room):
-    """How much of the step lies between s and the pair's next closest approach, or a way of `far`; -1 if it parts.
+    """Return the share of the step from s to the pair's next closest approach, or over a way of `far`; -1 if it parts.
 
     `room` is for six control points.
     """
@@ -109,7 +109,7 @@ def _ahead(points, s, far, room):
 
 @njit(cache=True)
 def _visit(points, edge, far, stack, spans):
-    """Share of the step at which a pair that starts beyond `edge` is first well within it; 1 if it ends so.
+    """Return the share of the step at which a pair that starts beyond `edge` is first well within it, at most 1.
 
     Well within is at its closest approach, or as soon as it has gone `far` there.
     """
@@ -168,7 +168,7 @@ def steepest(slope):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def common_way(ends):
-    """(mean, slope, centre) of how far all agents' control points are from the first of them: 6 × 3, twice, and 3.
+    """Return (mean, slope, centre) of all agents' control points relative to the first of them: 6 × 3, twice, and 3.
 
     The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
     steep.
@@ -191,7 +191,7 @@ def common_way(ends):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def farthest_ways(ends, common):
-    """(the longest way of an agent beside the common one, the largest allowance): of `control_points`, to rounding."""
+    """Return (longest way of an agent relative to the common one, largest allowance), both to rounding."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
     n, m = q0.shape
     far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
@@ -215,7 +215,7 @@ def farthest_ways(ends, common):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def band(common, farthest, edges, far):
-    """(low, high): between which distances, where a step begins, a pair may cut it short.
+    """Return (low, high), the distances at a step's beginning between which a pair may cut the step short.
 
     Two agents at the distance s go no farther, one seen from the other, than s times the steepest slope of the common
     way and twice the longest way beside it.
@@ -227,7 +227,7 @@ def band(common, farthest, edges, far):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def share_of_listed(ends, mean, between, around, first, second, share):
-    """The largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
+    """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
 
     Only pairs are looked at whose distance is within a band where the step begins.
     """

@@ -1,4 +1,4 @@
-"""A push on the agents, constant and sinusoidal, for integrators that are compiled too.
+"""Constant and sinusoidal push on the agents, for compiled integrators.
 
 `numbers` are: whether the energy is that in the moving frame, ω, the number of rows (1, or one per agent), and then
 the rows of the constant part, of the amplitudes of cos ωt and of those of sin ωt.

@@ -46,7 +46,7 @@ def _square(x, i, place):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _farthest(x, place):
-    """(agent, squared distance) of who is farthest from a place."""
+    """Return (agent, squared distance) of the agent farthest from a place."""
     agent, most = 0, 0.0
     for i in range(len(x)):
         s2 = _square(x, i, place)

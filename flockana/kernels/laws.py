@@ -35,7 +35,7 @@ class LawFunctions(NamedTuple):
 
 
 class LawNumbers(NamedTuple):
-    """What the functions of a law read: the numbers and panels of all terms, and where those of each begin."""
+    """Numbers that a law's functions read: numbers and panels of all terms, and where those of each begin."""
 
     numbers: Any
     panels: Any

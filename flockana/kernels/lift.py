@@ -32,7 +32,7 @@ class PairKernels:
 
     @property
     def law(self) -> dict[str, Any]:
-        """Return what a template binds of it."""
+        """Return the names that a template binds for this pair law."""
         normed = {} if self.norm is None else {"norm": self.norm}
         return {"pair": self.pair, "potential": self.energy_of_pair, "NORMED": self.norm is not None, **normed}
 

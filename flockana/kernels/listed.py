@@ -1,4 +1,4 @@
-"""What a term of a law sees beside the state, and the numbers of a pair term."""
+"""Data of a term beside the state, and the numbers of a pair term."""
 
 from __future__ import annotations
 

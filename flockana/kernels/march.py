@@ -1,4 +1,4 @@
-"""Runge-Kutta steps with error control, over a list of pairs that is kept, and nothing else.
+"""Runge-Kutta steps with error control, over a list of pairs that is kept up.
 
 What a step may not leap over, and what its energies say, is looked at once it is made (`flockana.kernels.checks`).
 """
@@ -31,7 +31,7 @@ class Room(NamedTuple):
 
 
 class Marched(NamedTuple):
-    """How a step went: status, lengths of this step and of the next, pairs, evaluations."""
+    """Result of a step: status, lengths of this step and of the next, pairs, evaluations."""
 
     status: Any
     h: Any
@@ -53,7 +53,7 @@ def spacing(t):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _controlled(h, error, exponent, rejected):
-    """(next step, whether this one stands), as scipy's solvers choose."""
+    """Return (next step, whether this one is accepted), as scipy's solvers choose."""
     factor = _SAFETY * error**exponent
     if error < 1.0:
         factor = _MOST if error == 0.0 else min(_MOST, factor)

@@ -1,4 +1,4 @@
-"""The minimal flocking model of the bearing-distance paper: who perceives whom, and sums over directed edges.
+"""The minimal flocking model of the bearing-distance paper: perceived edges, and sums over them.
 
 An edge is (j, i): j is seen, i sees it. Here `tail` holds the j and `head` the i.
 """
@@ -112,7 +112,7 @@ def perceived_forces(
     normalised: bool,
     u: FloatArray,
 ) -> None:
-    """Add to u what `edge_forces` adds for `perceived_edges` that are all heeded alike, without making them."""
+    """Add to u the sum of `edge_forces` over `perceived_edges` of equal weights, without listing the edges."""
     reach, square, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
     parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
     if shared or normalised:

@@ -27,6 +27,6 @@ def _absorb(state, word):
 
 @njit(cache=True)
 def noise(seed, step, agent, partner, channel):
-    """A number in (−1, 1), uniform and symmetric over the 2⁵² that it may be, of mean 0 and variance 1/3."""
+    """Return a number in (−1, 1) of uniform symmetric distribution over 2⁵² values, mean 0 and variance 1/3."""
     z = _absorb(_absorb(_absorb(_absorb(_absorb(np.uint64(0), seed), step), agent), partner), channel)
     return (np.float64(z >> _12) + 0.5) * _TO_UNIT - 1.0

@@ -152,8 +152,9 @@ def _visit(curve, edge, far, par, here, room):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def share(points, allowance, pars, starts, balls, shell, far, most):
-    """The share of the step, at most the one given, within which no agent on a path with these control points (n, 6, 3)
-    leaps over the distance `shell` from an obstacle, or goes farther than `far` within it.
+    """Return the share of the step, at most the one given, in which no agent leaps over an obstacle's surroundings.
+
+    An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """
     m = balls.shape[1] - 1
     here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate

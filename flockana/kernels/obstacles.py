@@ -36,7 +36,7 @@ class ObstacleKernels:
 
     @property
     def turns(self) -> bool:
-        """Whether the kind says how p̂ turns."""
+        """Whether the kind defines how p̂ turns."""
         return self.turn is not None
 
     @property
@@ -53,13 +53,13 @@ class ObstacleKernels:
 
 @register_jitable
 def no_turn(q, p, e, par, out):
-    """Flat faces: p̂ = Dp with a constant D."""
+    """Write zeros: on a flat face p̂ = Dp with a constant D, so p̂ does not turn."""
     out[:] = 0.0
 
 
 @register_jitable
 def project_nothing(q, p, par, gap, rate):
-    """No obstacle: it is nowhere near."""
+    """Return infinity, the distance of an absent obstacle."""
     return np.inf
 
 

@@ -10,7 +10,7 @@ from flockana.kernels.scalars import sigma_1 as function  # bound
 
 @njit(cache=True, error_model="numpy")
 def over_array(z, parameters):
-    """function(z_k, *parameters) for every k."""
+    """Evaluate function(z_k, *parameters) for every k."""
     out = np.empty(z.size)
     for k in range(z.size):
         out[k] = function(z[k], *parameters)

@@ -1,4 +1,4 @@
-"""Terms that an agent feels by itself, for integrators that are compiled too: drag and thrust, a told acceleration.
+"""Terms of single agents for compiled integrators: drag and thrust, a common acceleration.
 
 They have no potential energy. `numbers` begin with whether the law's energy is that in the moving frame, where a push
 on all agents alike does no work and a drag works on the differences of velocity alone.

@@ -65,7 +65,7 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
 
 @njit(cache=True)
 def reach_of(c):
-    """How far a curve's control points (6, 3) get from the first: a bound for the curve."""
+    """Return the largest distance of a curve's control points (6, 3) from the first: a bound for the curve."""
     s2 = 0.0
     for k in range(1, 6):
         s2 = max(s2, (c[k, 0] - c[0, 0]) ** 2 + (c[k, 1] - c[0, 1]) ** 2 + (c[k, 2] - c[0, 2]) ** 2)

@@ -17,7 +17,7 @@ _NEAR = 1e-3  # of the way to a pole that is left where a step begins: a path th
 
 @njit(cache=True, error_model="numpy")
 def _stage_crosses(curve, edge, inward):
-    """Whether a pair seen from a stage of a Runge-Kutta step, at half of it or its end, is beyond a distance."""
+    """Whether a pair at a stage of a Runge-Kutta step, halfway or at its end, is beyond a distance."""
     for stage in range(3):
         along, bent = (0.5 if stage < 2 else 1.0), (0.0, 0.25, 0.5)[stage]
         start2 = product = way2 = 0.0

@@ -1,4 +1,4 @@
-"""Who comes into range of whom *between* samples: the sign of ρ² - r² along quintics through (q, p, u).
+"""Pairs that come into range *between* samples, by the sign of ρ² - r² along quintics through (q, p, u).
 
 The squared distance of two agents on their quintics is a polynomial of degree 10. Its Bernstein coefficients bound it,
 and those of its derivative tell that it rises or falls, on pieces that are halved until one of the two is decided.

@@ -44,7 +44,7 @@ class Step(NamedTuple):
 
 
 class System(NamedTuple):
-    """A law as steps take it: its functions and numbers, how the state is seen, and room."""
+    """Law as steps take it: functions, numbers, frame of the state, and work space."""
 
     force: Any  # `flockana.kernels.laws.LawFunctions`
     energy: Any
@@ -105,7 +105,7 @@ def _kept_up(y, system, pairs):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _act(t, y, f, system, pairs):
-    """The rate of y into f, its pairs being listed."""
+    """Write the rate of y to f, for listed pairs."""
     n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
@@ -137,7 +137,7 @@ def energy_of(t, y, system, pairs):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _stages(step, method, begin, end, system, pairs):
-    """Stages up to `end`, or to one for which the list is outdated; returns which, combined but not evaluated."""
+    """Compute stages up to `end`, or to one for which the list is outdated; return which, not yet evaluated."""
     reach, n, m = system.reach[0], system.order.size, system.frame.shape[1]
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
@@ -174,7 +174,7 @@ def interpolated(theta, step, method):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def allowed(k, size, floor):
-    """The absolute tolerance of component k: a position, a velocity, or the work."""
+    """Return the absolute tolerance of component k: a position, a velocity, or the work."""
     return floor[0] if k < size else (floor[1] if k < 2 * size else floor[2])
 
 

@@ -25,7 +25,7 @@ def out_of_reach(q, i, balls, k, reach):
 
 @register_jitable
 def within_reach(q, balls, k, reach, s2, near):
-    """Write which points are within `reach` of ball k (and which are nowhere: NaN), in rising order; how many."""
+    """Write the indices of points within `reach` of ball k, or NaN, in rising order; return their number."""
     (n, m), count = q.shape, 0
     for c in range(m):
         x = balls[k, c]

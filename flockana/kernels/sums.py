@@ -11,7 +11,7 @@ _SAMPLE = 256  # agents whose slope is told from noise well enough
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def finite(x):
-    """Whether all numbers are."""
+    """Whether all numbers of an array are finite."""
     known = True
     for k in range(x.size):
         known &= np.isfinite(x[k])

@@ -17,7 +17,7 @@ IndexArray = npt.NDArray[np.int64]
 
 
 class Tableau(NamedTuple):
-    """A method: (A, C, E, P), where rates are kept, the stages of a step, and the power of the error that it goes with.
+    """Coefficients (A, C, E, P) of a method, where rates are kept, stages of a step, and exponent of the error.
 
     The power is 0 for a method of fixed steps. Stage s is kept in row `rows[s]`: a rate that nothing reads again gives
     its place to a later one, which at a million agents is a hundred megabytes.
@@ -34,7 +34,7 @@ class Tableau(NamedTuple):
 
 @cache
 def tableau(method: str) -> Tableau:
-    """That of DOP853, RK45, RK23, or RK4.
+    """Return the coefficients of DOP853, RK45, RK23 or RK4.
 
     Examples
     --------
@@ -78,12 +78,12 @@ def _dop853() -> Tableau:
 
 
 def _filled(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:
-    """Rows of so many numbers, from those that are not 0."""
+    """Return rows of `count` numbers from their nonzero entries."""
     return np.array([[row.get(k, 0.0) for k in range(count)] for row in rows])
 
 
 def _rows(a: FloatArray, estimates: FloatArray, interpolant: FloatArray) -> IndexArray:
-    """A row for the rate of every stage, that of a stage whose rate was read for the last time if there is one."""
+    """Return a place for each stage's rate, reusing that of a rate which no later stage reads."""
     count, stages = len(a), estimates.shape[1] - 1
     last = [int(np.flatnonzero(a[:, s]).max(initial=s)) for s in range(count)]
     for s in range(stages + 1):

@@ -106,13 +106,13 @@ def _orthogonality() -> FloatArray:
 
 @cache
 def _integration() -> FloatArray:
-    """From a series to that of its integral from 0."""
+    """Return the matrix from a series to the series of its integral from 0."""
     return np.asarray(chebyshev.chebint(np.eye(NODES)).T, dtype=np.float64)
 
 
 @cache
 def _powers() -> FloatArray:
-    """From a series to coefficients of powers: those of T_j, all of them integers."""
+    """Return the matrix from a series to coefficients of powers: those of T_j, all of them integers."""
     matrix = np.zeros((NODES + 1, NODES + 1))
     for j, series in enumerate(np.eye(NODES + 1)):
         powers = chebyshev.cheb2poly(series)

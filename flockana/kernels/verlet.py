@@ -1,4 +1,4 @@
-"""A Verlet list: the pairs within a range and a skin, good until ways beside the flock's own differ by the skin.
+"""Verlet list: the pairs within a range and a skin, valid until relative displacements exceed the skin.
 
 A list is a half list of two index arrays with room to spare. Agents sorted by cell keep what a pair needs close in
 memory.
@@ -18,7 +18,7 @@ from flockana.kernels.sums import put, slope_along
 
 
 class Pairs(NamedTuple):
-    """A list of pairs: the first `count` of two arrays, made at some places with some reach, after others.
+    """List of pairs: the first `count` of two arrays, with the places, reach and number of its making.
 
     A count of −1 says that there are too many for memory.
     """
@@ -45,7 +45,7 @@ def spatial_order(q, side):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _grown(first, second, needed):
-    """The same pairs with room for so many, or twice as many as now."""
+    """Return the same pairs with room for at least `needed`, and twice as many as before."""
     room = max(np.int64(needed), 2 * first.size)
     more_first, more_second = np.empty(room, np.uint32), np.empty(room, np.uint32)
     put(first, more_first)
@@ -55,7 +55,7 @@ def _grown(first, second, needed):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _list_by_grid(q, reach, order, start, rows, first, second):
-    """The pairs of a flock sorted into a grid: cell by cell, each with what follows it."""
+    """Return the pairs of a flock sorted into a grid: cell by cell, each agent with those after it."""
     m = q.shape[1]
     x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
     for i in range(order.size):
@@ -125,7 +125,7 @@ def _widened(low, high, way):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _spreads(q, reference, c, d, along_c, along_d):
-    """How far apart the agents' ways are in coordinates c and d, beside a stretch of each: two wait less than one."""
+    """Return the widths of the agents' displacements in coordinates c and d, a stretch of each taken out."""
     low_c = high_c = q[0, c] - along_c * reference[0, c]
     low_d = high_d = q[0, d] - along_d * reference[0, d]
     for i in range(1, q.shape[0]):
@@ -136,7 +136,7 @@ def _spreads(q, reference, c, d, along_c, along_d):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _diagonal(q, reference, stretched):
-    """(diagonal of the box of all agents' ways, least stretch), beside how the flock is stretched, or beside none."""
+    """Return (diagonal of the box of all displacements, least stretch), without the stretch itself if `stretched`."""
     m, square, least = q.shape[1], 0.0, np.inf
     for c in range(0, m, 2):
         d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
@@ -150,7 +150,7 @@ def _diagonal(q, reference, stretched):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def holds(q, within, made, reference):
-    """Whether a list of all pairs closer than `made` at the places `reference` lacks none closer than `within` now.
+    """Whether a list of pairs closer than `made` at `reference` still holds all pairs closer than `within`.
 
     A motion that all share brings no two nearer, and one that stretches each coordinate by a factor brings them nearer
     by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.
@@ -171,19 +171,19 @@ def covers(pairs, q, within):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def listed_anew(q, reach, pairs):
-    """A new list in the room of an old one."""
+    """Return a new list of pairs, stored in the arrays of an old one."""
     first, second, count = list_pairs(q, reach, pairs.first, pairs.second)
     return Pairs(first, second, count, q.copy(), reach, pairs.made + 1)
 
 
 @cache
 def lister() -> Any:
-    """Return `listed_anew` for compiled code to be handed."""
+    """Return `listed_anew` as a callback for compiled code."""
     pairs = no_pairs(1, 1)
     return callback_like(listed_anew, pairs, np.empty((1, 1)), 0.0, pairs)
 
 
 def no_pairs(n: int, m: int) -> Pairs:
-    """Return a list that is yet to be made."""
+    """Return an empty list of pairs, to be filled later."""
     first, second = np.empty(_ROOM * n, np.uint32), np.empty(_ROOM * n, np.uint32)
     return Pairs(first, second, 0, np.empty((0, m)), 0.0, 0)

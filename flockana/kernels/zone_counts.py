@@ -1,4 +1,4 @@
-"""Who is in whose zones at each instant of a run, and into how many parts the flock has fallen."""
+"""Numbers of agents in each other's zones, and of components of the flock, at each instant of a run."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _count_fragments(q, a, reach, cells, near, seen, stack):
 
 @njit(cache=True)
 def fragments(q, a):
-    """(Components, agents in the largest) over time, (T, 2); linked are those of whom one attracts the other."""
+    """(components, agents in the largest) over time, (T, 2); two agents are linked if one attracts the other."""
     steps, n, _ = q.shape
     counts, reach = np.zeros((steps, 2), np.int64), a.max()
     seen, stack, near = np.empty(n, np.bool_), np.empty(n, np.int64), np.empty(n, np.int64)

@@ -1,4 +1,4 @@
-"""What an agent's obstacle zone meets, and how hard it is pushed: polygons, balls and the walls of a box.
+"""Obstacles that an agent's zone meets, and their push: polygons, balls and the walls of a box.
 
 The zone is a triangle in the plane and a cone in space: an altitude `depth` along the heading, and a half base `half`
 across it. It is a body of revolution about the heading, so that against balls and walls both are one formula in the

@@ -58,7 +58,7 @@ class Settings(NamedTuple):
 
 
 class Choices(NamedTuple):
-    """Which reading of the paper: 0 is the recommended one, the others as in `flockana.laws.bearing_distance`."""
+    """Readings of the paper: 0 is the recommended one, the others as in `flockana.laws.bearing_distance`."""
 
     form: int
     order: int
@@ -104,13 +104,13 @@ def _length(x):
 
 @njit(cache=True)
 def _weight(table, i, j):
-    """That of a pair in a table, which is one number if all are equal."""
+    """Return the weight of a pair from a table, which is one number if all are equal."""
     return table[0, 0] if table.size == 1 else table[i, j]
 
 
 @njit(cache=True)
 def _trembling(settings, step, i, j, behaviour):
-    """Factor of a weight in this step."""
+    """Return the noise factor of a weight in this step."""
     if settings.weight_noise == 0.0:
         return 1.0
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
@@ -195,7 +195,7 @@ def altitude(speed, r, c, a, settings, choices):
 
 @njit(cache=True)
 def _grown(reach, a, nearest, settings):
-    """Radius of attraction in the next step: a with one who attracts within a, as it is with one beyond, else more."""
+    """Return the next radius of attraction: a if an agent is within a, `reach` if one is within it, else larger."""
     if nearest <= a:
         return a
     return reach if nearest <= reach else reach + settings.dt * settings.growth
@@ -203,7 +203,7 @@ def _grown(reach, a, nearest, settings):
 
 @njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
 def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, choices, world, out):
-    """Write the six behaviours of agent i, who has `near` about it and is attracted up to a, into out (6, m).
+    """Write the six behaviours of agent i, with `near` around it and attraction radius a, into out (6, m).
 
     Its heading and its estimate move on. Returns how near the nearest is of those who attract it.
     """
@@ -255,7 +255,7 @@ def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, cho
 
 @njit(cache=True)
 def _move(i, q, p, u, step, settings, literal):
-    """(j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
+    """Steps (j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
     m = q.shape[1]
     for k in range(m):
         p[i, k] += settings.dt * u[i, k]
@@ -270,7 +270,7 @@ def _move(i, q, p, u, step, settings, literal):
 
 @njit(cache=True)
 def _hunt(alien, q, dt, world):
-    """Every alien goes for the nearest agent that it detects, and stays in its territory."""
+    """Move every alien towards the nearest agent that it detects, within its territory."""
     m = q.shape[1]
     for e in range(alien.shape[0]):
         best, prey = world.detection[e] ** 2, -1
@@ -297,7 +297,7 @@ def _hunt(alien, q, dt, world):
 def _take_step(
     q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
 ):  # fmt: skip
-    """One step of all agents, then of the aliens; the cells serve throughout it."""
+    """Advance all agents by one step, then the aliens; the cells serve for the whole step."""
     (n, m), in_turn, literal = q.shape, choices.order == 1, choices.speed_bound == 1
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
