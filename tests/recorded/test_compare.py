@@ -1,5 +1,7 @@
 """A recording held against a law: what it explains, and the errors of other implementations, each in a sentence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,7 +88,8 @@ def test_a_foreign_law_is_told_and_a_ranking_says_which_fits():
 def test_under_noise_the_better_known_accelerations_are_compared_and_rough_ones_are_said_to_be():
     (q, p), rng = own_run(T), np.random.default_rng(0)
     noise, slip = rng.normal(0.0, 0.1, q.shape), rng.normal(0.0, 1e-4, q.shape)
-    by_velocity = fl.compare(fl.Recording(T, q + noise, p + slip, sd=0.1, p_sd=1e-4), LAW)
+    slips = np.where(np.arange(len(P0)) == 0, 3e-4, 1e-4) * np.ones((len(T), 1))  # noise is the usual one
+    by_velocity = fl.compare(fl.Recording(T, q + noise, p + slip, sd=0.1, p_sd=slips), LAW)
     assert (by_velocity.basis, by_velocity.caution) == ("steps", "")
     assert by_velocity.noise == pytest.approx(np.sqrt(2.0) * 1e-4 / 0.02)
     by_position = fl.compare(fl.Recording(T, q + noise, p + 30.0 * noise, sd=0.1, p_sd=3.0), LAW)
@@ -147,7 +150,10 @@ def test_shares_errors_and_ranks_are_those_of_one_regression():
     assert seen.to_dict()["explained"] == seen.explained
     np.testing.assert_allclose(seen.by_agent, np.sqrt(np.mean(np.sum((u - x) ** 2, axis=2), axis=0)))
     np.testing.assert_allclose(seen.by_time, np.sqrt(np.mean(np.sum((u - x) ** 2, axis=2), axis=1)))
-    exact = fl.recognise(fl.Recording(T[:9], q, p, 2.0 * x), {"double": law, "other": fl.CuckerSmale(mean=True)})
+    near = fl.CuckerSmale(replace(law.weight, strength=2.0 * law.weight.strength, decay=1.1 * law.weight.decay))
+    exact = fl.recognise(fl.Recording(T[:9], q, p, 2.0 * x), {"near": near, "double": law})
+    assert exact.best is exact.ranked[0][1]
+    assert exact.ranked[1][1].explained > exact.best.explained == pytest.approx(0.75)
     assert str(exact).startswith("  100.00% (75.00% with its own gains)  ")
     half = x + rest * np.linalg.norm(x) / np.linalg.norm(rest)
     assert fl.recognise(fl.Recording(T[:9], q, p, half), {"double": law}).best is None
