@@ -114,7 +114,10 @@ def integrated(
     longest = stats.get("max_step") if max_step is None else max_step
     if longest is not None:
         options["max_step"] = longest
-    return simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
+    made = simulate(run.law, run.q[first], run.p[first], span, t_eval=times, **options)
+    if made.status == "interrupted":
+        raise KeyboardInterrupt  # it is no doubt about the first run
+    return made
 
 
 def doubt_of(run: Trajectory) -> str:
