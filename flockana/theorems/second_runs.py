@@ -103,7 +103,10 @@ def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float
         longest = stats.get("max_step")
     if longest is not None:
         options["max_step"] = longest
-    return simulate(run.law, run.q[0], run.p[0], span, t_eval=times, **options)
+    made = simulate(run.law, run.q[0], run.p[0], span, t_eval=times, **options)
+    if made.status == "interrupted":
+        raise KeyboardInterrupt  # it is no doubt about the first run
+    return made
 
 
 def doubt_of(run: Trajectory) -> str:

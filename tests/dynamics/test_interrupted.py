@@ -5,8 +5,12 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
 
 import flockana as fl
+from flockana.theorems import second_runs
 
 
 def test_ctrl_c_within_a_kernel_ends_the_run_and_not_the_process():
@@ -33,3 +37,10 @@ def test_ctrl_c_within_a_kernel_ends_the_run_and_not_the_process():
     )
     assert done.returncode == 0, (signal.Signals(-done.returncode) if done.returncode < 0 else "", done.stderr)
     assert done.stdout.split() == 4 * ["interrupted"]
+
+
+def test_ctrl_c_within_the_second_run_of_a_verdict_is_no_doubt_about_the_first(monkeypatch):
+    run = fl.simulate(fl.Algorithm1(), [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0]] * 2, (0.0, 1.0))
+    monkeypatch.setattr(second_runs, "simulate", lambda *given, **options: SimpleNamespace(status="interrupted"))
+    with pytest.raises(KeyboardInterrupt):
+        fl.verify("os-1", run)
