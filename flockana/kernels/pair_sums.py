@@ -131,7 +131,7 @@ def _sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
                     count += square < r2
                     if count == BLOCK:
                         total += _add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
-                        count = 0
+                        count = np.int64(0)
     return total + _add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
 
 
