@@ -183,7 +183,9 @@ def checked(block, k, judged, view, kept, near):
         work = block.y[k + 1, -1] - block.y[k, -1]
         share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)
     singular, share = share < 0.0, abs(share)
-    least = ROUNDINGS * spacing(max(abs(t), abs(at)))
-    if share == 1.0 or (t + share * h == t if rules.fixed else share * h <= least):
+    shorter, least = share * h, ROUNDINGS * spacing(max(abs(t), abs(at)))
+    if rules.fixed:  # down to steps that end at the same time, by rounding, however short they are asked to be
+        shorter, least = max(shorter, h / GROWTH), 0.0
+    if share == 1.0 or shorter <= least or not t < t + shorter < at:
         return 0.0, singular, near
-    return h * (max(share, 1.0 / GROWTH) if rules.fixed else share), False, near
+    return shorter, False, near

@@ -1,9 +1,25 @@
 """What every step must stand up to: balances that halving mends or does not, and poles of the energy."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from flockana.kernels.checks import FALLS, HALVED, HALVINGS, IN_VAIN, LARGEST, PATIENCE, TRIED, balanced, empty_ledger
+from flockana.kernels.checks import (
+    FALLS,
+    HALVED,
+    HALVINGS,
+    IN_VAIN,
+    LARGEST,
+    PATIENCE,
+    TRIED,
+    Judged,
+    Rules,
+    balanced,
+    checked,
+    empty_ledger,
+)
+from flockana.kernels.march import Block
 
 BALANCE = (1e-6, 1e-3)
 
@@ -56,3 +72,22 @@ def test_a_step_that_ends_where_the_potential_is_infinite_crossed_a_pole(last):
     assert balanced(1.0, last, 0.0, (0.0, np.inf), ledger) == -0.5
     assert not ledger.any()
     assert balanced(1.0, 1e300, 0.0, (0.0, np.inf), ledger) == 1.0  # without a tolerance only that is looked at
+
+
+@pytest.mark.parametrize("share", [-0.5, 0.5, 0.95])
+@pytest.mark.parametrize("steps", [1, 2, 5])
+@pytest.mark.parametrize("odd", [False, True])
+def test_a_fixed_step_is_asked_for_again_only_if_it_then_ends_earlier(share, steps, odd):
+    """Half of one rounding may round up to the whole of it again, and for ever."""
+    t = np.nextafter(2.5, 3.0) if odd else 2.5
+    while True:
+        at = t + steps * np.spacing(t)
+        block = Block(np.array([t, at]), np.zeros((2, 3)), np.zeros((2, 3)), np.zeros(2))
+        rules = Rules(True, False, False, (0.0, np.inf), True, None)
+        judged = Judged(SimpleNamespace(radii=np.empty((1, 0))), rules, empty_ledger(), lambda *_: (share, None))
+        shorter, singular, _ = checked.py_func(block, 0, judged, (0.0, np.zeros(1), np.zeros(1)), None, None)
+        if not shorter:
+            break
+        assert t < t + shorter < at
+        steps = round((t + shorter - t) / np.spacing(t))
+    assert singular == (share < 0.0)
