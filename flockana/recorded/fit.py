@@ -14,13 +14,15 @@ from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.parameters import Free
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.shooting import matched, usual_window, windows
+from flockana.recorded.shooting import Matched, matched, usual_window, windows
 from flockana.recorded.steps import predicted
 
 _LEVEL = 0.95
 _UNKNOWN = 0.5  # relative standard error beyond which the data do not tell a parameter
 _TIED = 0.99  # correlation of two parameters beyond which the data tell one combination only
 _FAR = 1e6  # residual of a law that cannot be
+_SHORT = 0.25  # of the usual windows: these a search begins with
+_NO_WORSE = 5.0  # standard deviations of the residuals' variance, within which two fits are as good
 _LEAST = 1e-6  # of its first value, below which no positive parameter goes
 
 
@@ -88,7 +90,8 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     free : sequence of str, optional
         Names of the parameters to fit, such as ``"c1_alpha"`` or ``"alpha.d"``; by default all gains.
     window : float, optional
-        Duration of a window; by default eight times the law's time, and 40 samples at least.
+        Duration of a window; by default eight times the law's time, and 40 samples at least; a quarter of that
+        first, and in the end if longer windows fit worse.
 
     Raises
     ------
@@ -122,14 +125,28 @@ def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
     """Return the fit of solutions to windows of noisy positions."""
     if len(rec.t) < 4:
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
-    duration = usual_window(rec, parameters.law) if window is None else ensure_positive("window", window)
-    parts = windows(rec, duration)
-    found = matched(parts, parameters.with_values, parameters.values)
-    variance = found.squares / found.freedom
+    if window is None:
+        found = _lengthened(rec, parameters)
+    else:
+        found = matched(windows(rec, ensure_positive("window", window)), parameters.with_values, parameters.values)
+    variance = found.variance
     stated = rec.sd is not None and not rec.estimated
     covariance = found.covariance * (max(variance, 1.0) if stated else variance)
     misfit = sqrt(variance) if stated else np.nan
     return _result(parameters, found.values, covariance, found.told, misfit, found.freedom, found.message)
+
+
+def _lengthened(rec: Recording, parameters: Free) -> Matched:
+    """Return the solutions matched to the usual windows, from the parameters that short windows give.
+
+    Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
+    short ones count.
+    """
+    usual = usual_window(rec, parameters.law)
+    found = matched(windows(rec, _SHORT * usual), parameters.with_values, parameters.values)
+    longer = matched(windows(rec, usual), parameters.with_values, found.values)
+    as_good = longer.variance <= found.variance * (1.0 + _NO_WORSE * sqrt(2.0 / found.freedom))
+    return longer if as_good else found
 
 
 def _stepped(rec: Recording, parameters: Free) -> Fit:

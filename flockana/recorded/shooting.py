@@ -53,6 +53,11 @@ class Matched(NamedTuple):
         """Sum of the squared residuals."""
         return _squares(self.residuals)
 
+    @property
+    def variance(self) -> float:
+        """Variance of the residuals; 1 if they are noise of the stated deviation."""
+        return self.squares / self.freedom
+
 
 @dataclass(frozen=True, eq=False)
 class Window:
