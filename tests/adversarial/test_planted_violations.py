@@ -154,7 +154,7 @@ def claim_of(monkeypatch):
     """A claim of a theorem about one run that another encloses, as if that were its tighter second run."""
 
     def found(name, part, first, second):
-        monkeypatch.setattr(second_runs, "integrated", lambda *_, **__: replace(second, between=None))
+        monkeypatch.setattr(second_runs, "second_run", lambda *_, **__: replace(second, between=None))
         seen = Observed.of(replace(first, between=None))
         claims = with_doubt(theorem(name).examine(seen, Tolerances())[1], seen)
         return next(claim for claim in claims if claim.name == part)

@@ -131,7 +131,7 @@ def test_of_a_run_that_shows_no_motion_nothing_is_known(spoil, doubt):
 def test_a_second_run_that_ends_early_leaves_nothing_known(monkeypatch):
     run = fl.simulate(SPRING, *START)
     short = SimpleNamespace(status="failed", t=run.t[:2], message="no step")
-    monkeypatch.setattr(module, "integrated", lambda *of, **how: short)
+    monkeypatch.setattr(module, "second_run", lambda *of, **how: short)
     seen = Observed.of(run)
     assert seen.doubt == f"a tighter second run ended at t = {run.t[1]:.6g}: no step"
     assert np.isinf(seen.energy.half_width).all()
