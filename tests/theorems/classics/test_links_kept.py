@@ -32,7 +32,7 @@ def test_what_no_link_joins_is_vacuous():
     verdict = fl.verify("links-kept", fl.scenario("links-parted").run())
     assert verdict.claim("connected").status == verdict.claim("velocities").status == "vacuous"
     assert verdict.claim("links").status == "verified"
-    assert "2 parts" in next(each.detail for each in verdict.hypotheses if each.status == "unmet")
+    assert "2 component(s)" in next(each.detail for each in verdict.hypotheses if each.status == "unmet")
 
 
 def test_without_damping_velocities_swing():
