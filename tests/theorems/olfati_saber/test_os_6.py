@@ -76,7 +76,7 @@ def test_a_condition_broken_at_the_end_makes_it_vacuous() -> None:
     verdict = verify("os-6", run)
     assert condition_76(run)[-1] < 0.0
     assert _hypothesis(verdict, "(76)").status == "unmet"
-    assert "up to the end" in _hypothesis(verdict, "(76)").detail
+    assert f"it fails until t = {run.t[-1]:g}, by" in _hypothesis(verdict, "(76)").detail
     assert _hypothesis(verdict, "static").status == "met"
     assert "p_r = [-2.0, 0.0] though q_r does not move" in _hypothesis(verdict, "static").detail
     assert verdict.status == "vacuous"
