@@ -123,7 +123,10 @@ def test_a_file_without_its_digest_or_with_a_key_twice_is_refused(tmp_path, pair
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"options": {"progress": True}}, "options progress: expected some of method, rtol, atol, dt, max_step, t_eval"),
+        (
+            {"options": {"progress": True}},
+            "options progress: expected some of method, rtol, atol, dt, max_step, t_eval",
+        ),
         ({"options": {"law": 1, "q0": 2}}, "options law, q0: expected some of"),
         ({"tolerances": {"energy": float("nan")}}, "tolerances.energy = nan: expected a finite number"),
         ({"tolerances": {"quasi": "0.1"}}, "tolerances.quasi = '0.1': expected one real number"),
