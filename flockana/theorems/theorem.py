@@ -124,7 +124,7 @@ class Claim:
     def account(self) -> str:
         """Detail; for a vacuous claim with the unmet hypothesis in front."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
-        if missed is None or self.detail.startswith(does_not_hold(missed.name)):
+        if missed is None or self.detail.startswith((missed.name, does_not_hold(missed.name))):
             return self.detail
         return f"{does_not_hold(missed.name)}; {self.detail}"
 
