@@ -184,7 +184,7 @@ def checked(block, k, judged, view, kept, near):
         share = balanced(block.energy[k], block.energy[k + 1], work, rules.balance, ledger)
     singular, share = share < 0.0, abs(share)
     shorter, least = share * h, ROUNDINGS * spacing(max(abs(t), abs(at)))
-    if rules.fixed:  # down to steps that end at the same time, by rounding, however short they are asked to be
+    if rules.fixed:  # down to what no shorter step ends before: half of one rounding may round up to the whole
         shorter, least = max(shorter, h / GROWTH), 0.0
     if share == 1.0 or shorter <= least or not t < t + shorter < at:
         return 0.0, singular, near

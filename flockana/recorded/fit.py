@@ -143,8 +143,11 @@ def _lengthened(rec: Recording, parameters: Free) -> Matched:
     short ones count.
     """
     usual = usual_window(rec, parameters.law)
-    found = matched(windows(rec, _SHORT * usual), parameters.with_values, parameters.values)
-    longer = matched(windows(rec, usual), parameters.with_values, found.values)
+    short, long = windows(rec, _SHORT * usual), windows(rec, usual)
+    found = matched(short, parameters.with_values, parameters.values)
+    if len(long) == len(short):
+        return found
+    longer = matched(long, parameters.with_values, found.values)
     as_good = longer.variance <= found.variance * (1.0 + _NO_WORSE * sqrt(2.0 / found.freedom))
     return longer if as_good else found
 

@@ -124,7 +124,7 @@ class Claim:
     def account(self) -> str:
         """Detail; for a vacuous claim with the unmet hypothesis in front."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
-        if missed is None or self.detail.startswith((missed.name, does_not_hold(missed.name))):
+        if missed is None or self.detail.startswith(does_not_hold(missed.name)):
             return self.detail
         return f"{does_not_hold(missed.name)}; {self.detail}"
 
@@ -275,7 +275,8 @@ class Theorem:
     claims : tuple of str
         Names of the claims, in order. Those that `check` leaves out are vacuous if a hypothesis is unmet.
     reason : str
-        Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis.
+        Text of such a vacuous claim, with ``{name}`` and ``{detail}`` of the first unmet hypothesis;
+        ``{unmet}`` says that it does not hold.
     enclosed : callable, optional
         As `check`, of a tube (`flockana.enclose`), a certified basin that it may end in or None, and the tolerances.
     author : {"source", "corrected", "flockana"}
@@ -297,7 +298,7 @@ class Theorem:
     leads: Mapping[str, Lead] = field(default_factory=dict)
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
-    reason: str = "{name}: {detail}"
+    reason: str = "{unmet}: {detail}"
     enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
     author: By = "source"
     corrected: tuple[str, ...] = ()
@@ -337,7 +338,8 @@ class Theorem:
             further, stated = (check or self.check)(*case)
             hypotheses, claims = [*hypotheses, *further], list(stated)
         if (missed := unmet(hypotheses)) is not None:
-            text, made = self.reason.format(name=missed.name, detail=missed.detail), {claim.name for claim in claims}
+            known = {"name": missed.name, "detail": missed.detail, "unmet": does_not_hold(missed.name)}
+            text, made = self.reason.format(**known).removesuffix(": "), {claim.name for claim in claims}
             left_out = (name for name in self.claims if name not in made)
             claims += [Claim(name, "vacuous", detail=text, needs=(missed,)) for name in left_out]
         return tuple(hypotheses), tuple(

@@ -14,6 +14,7 @@ from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, t
 from flockana.theorems.olfati_saber.os_5 import CLAIMS
 
 UNMET = Hypothesis("connected", "unmet")
+NOT = "'connected' does not hold"
 ASSUMED = Hypothesis("connected", "assumed")
 MET = Hypothesis("connected", "met")
 
@@ -83,15 +84,15 @@ def test_a_theorem_that_calls_itself_ours_is_not_its_sources():
 
 def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
     needs = (MET, UNMET)
-    assert Claim("i", "vacuous", needs=needs, detail="3 links").account == "'connected' does not hold; 3 links"
-    assert Claim("i", "vacuous", needs=needs, detail="connected: 2 parts").account == "connected: 2 parts"
+    assert Claim("i", "vacuous", needs=needs, detail="3 links").account == f"{NOT}; 3 links"
+    assert Claim("i", "vacuous", needs=needs, detail=f"{NOT}: 2 parts").account == f"{NOT}: 2 parts"
     assert Claim("i", "verified", needs=(MET,), detail="3 links").account == "3 links"
 
 
 def test_claims_that_are_vacuous_for_one_reason_are_shown_as_one():
     verdict = a_theorem(lambda run, tolerances: ([UNMET], [])).examine(None, Tolerances())
     lines = str(Verdict("mine", *verdict)).splitlines()
-    assert [line.split() for line in lines[-1:]] == [["i,", "ii,", "iii", "vacuous", "connected:"]]
+    assert [line.split() for line in lines[-1:]] == [["i,", "ii,", "iii", "vacuous", *NOT.split()]]
     measured = tuple(Claim(name, "vacuous", computed=1, needs=(UNMET,), detail="1 link") for name in ("i", "ii"))
     assert len(str(Verdict("mine", (UNMET,), measured)).splitlines()) == 5
 
@@ -199,7 +200,7 @@ def test_claims_that_the_check_leaves_out_are_vacuous_for_the_first_unmet_hypoth
     made = Claim("ii", "verified")
     hypotheses, claims = a_theorem(lambda run, tolerances: (given, [made])).examine(None, Tolerances())
     assert hypotheses == tuple(given)
-    left_out = (Claim(name, "vacuous", detail="b: b is 3", needs=(given[1],)) for name in ("i", "iii"))
+    left_out = (Claim(name, "vacuous", detail="'b' does not hold: b is 3", needs=(given[1],)) for name in ("i", "iii"))
     assert claims == (made, *left_out)
     _, claims = a_theorem(lambda run, tolerances: (given, []), reason="not so: {name}").examine(None, Tolerances())
     assert [claim.detail for claim in claims] == ["not so: b"] * 3
@@ -219,7 +220,7 @@ def test_the_law_is_asked_before_the_check_and_comes_first():
         raise AssertionError("checked under another law")
 
     hypotheses, claims = a_theorem(never, law=lambda run: other).examine(None, Tolerances())
-    assert (hypotheses, [claim.detail for claim in claims]) == ((other,), ["it is the law: another"] * 3)
+    assert (hypotheses, [claim.detail for claim in claims]) == ((other,), ["'it is the law' does not hold: another"] * 3)
     item = a_theorem(lambda run, tolerances: ([UNMET], []), law=lambda run: own)
     hypotheses, claims = item.examine(None, Tolerances())
     assert hypotheses == (own, UNMET)
