@@ -220,7 +220,10 @@ def test_the_law_is_asked_before_the_check_and_comes_first():
         raise AssertionError("checked under another law")
 
     hypotheses, claims = a_theorem(never, law=lambda run: other).examine(None, Tolerances())
-    assert (hypotheses, [claim.detail for claim in claims]) == ((other,), ["'it is the law' does not hold: another"] * 3)
+    assert (hypotheses, [claim.detail for claim in claims]) == (
+        (other,),
+        ["'it is the law' does not hold: another"] * 3,
+    )
     item = a_theorem(lambda run, tolerances: ([UNMET], []), law=lambda run: own)
     hypotheses, claims = item.examine(None, Tolerances())
     assert hypotheses == (own, UNMET)
