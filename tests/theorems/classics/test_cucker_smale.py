@@ -53,7 +53,7 @@ def test_beyond_one_half_it_says_nothing(decay, text):
     need = verdict.hypotheses[-1]
     assert (need.status, need.margin) == ("unmet", pytest.approx(0.5 - decay, abs=1e-15))
     assert statuses(verdict) == dict.fromkeys(("bounded", "rate", "velocities"), "vacuous")
-    assert verdict.claim("bounded").detail == f"β <= ½: β = {text}"
+    assert verdict.claim("bounded").detail == f"β <= ½ does not hold: β = {text}"
 
 
 @pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])

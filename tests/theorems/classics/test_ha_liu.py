@@ -32,7 +32,7 @@ def test_the_spread_of_velocities_against_the_integral(name, c, share):
     assert [claim.name for claim in verdict.claims] == ["bounded", "rate", "flock"]
     if share > 1.0:
         assert set(statuses(verdict).values()) == {"vacuous"}
-        assert verdict.claim("flock").detail.startswith("‖v(0)‖ < ∫φ from ‖x(0)‖ on: ‖v(0)‖ = ")
+        assert verdict.claim("flock").detail.startswith("‖v(0)‖ < ∫φ from ‖x(0)‖ on does not hold: ‖v(0)‖ = ")
     else:
         x_m = 2.0 / c * tan(atan(c / sqrt(2.0)) + share * room * c / 3.0)
         widest = sqrt(2.0) + share * room * (1.0 - np.exp(-6.0)) / 2.0
