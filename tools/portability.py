@@ -134,7 +134,7 @@ def machine() -> dict[str, Any]:
         "libm": hashlib.sha256(np.array(values).tobytes()).hexdigest()[:8],  # another digest: another libm
         "openblas": openblas(),
         "numba": os.environ.get("NUMBA_CPU_NAME", "the processor's own"),
-        "numpy": np.show_config(mode="dicts")["SIMD Extensions"]["found"],
+        "numpy": np.show_config(mode="dicts")["SIMD Extensions"].get("found", []),  # no key where none is in use
         "processor": flags[1].split() if flags else [],
         "scenarios": scenarios(),
         "fixed": [one for one in theorems() if theorem(one).kind == "fixed"],
