@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from itertools import combinations
 
-import networkx
 import numpy as np
 import pytest
 
-from flockana.lattice import crossings, defects, fcc, is_planar, links, rigidity, separation, triangular
+from flockana.lattice import crossings, defects, fcc, links, rigidity, separation, triangular
 
 from .conftest import best
 
@@ -78,13 +77,3 @@ def test_other_measures_against_crossings(benchmark, ratio, measure):
     name = "separation" if measure.__name__ == "<lambda>" else measure.__name__
     ratio(f"{name}, n = 2e4", value, "time over that of the crossings")
     benchmark.pedantic(measure, args=(q, pairs), rounds=1)
-
-
-def test_planarity_against_networkx(benchmark, ratio):
-    q, pairs = lattice(100_000)
-    graph = networkx.Graph(pairs.tolist())
-    baseline = best(lambda: networkx.check_planarity(graph), repeat=1)
-    ratio(
-        "planarity, n = 1e5", baseline / best(lambda: is_planar(len(q), pairs), repeat=3), "times faster than networkx"
-    )
-    benchmark.pedantic(is_planar, args=(len(q), pairs), rounds=1)

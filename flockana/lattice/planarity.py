@@ -10,10 +10,7 @@ import numpy as np
 
 from flockana.base.checks import ensure_count, ensure_links
 from flockana.base.errors import ArgumentError
-from flockana.kernels.left_right import embedding
 from flockana.measures.nets import LinkArray
-
-_COMPILED = 3000  # links from which on the compiled search for an embedding is worth loading
 
 
 def harborth(n: int) -> int:
@@ -61,7 +58,7 @@ def is_complete(n: int, links: Any) -> bool:
 def is_planar(n: int, links: Any) -> bool:
     """Return whether the graph of n agents is planar.
 
-    That a large graph can is proved by an embedding that is found and checked; that one cannot is for networkx to say.
+    By Euler's bound on the number of links and the left-right test of networkx.
 
     Parameters
     ----------
@@ -163,54 +160,18 @@ def _distinct(n: int, links: Any) -> LinkArray:
 
 
 def _planar(n: int, links: LinkArray) -> bool:
-    """Return whether a graph is planar, by its number of links, an embedding, or networkx."""
+    """Return whether a graph is planar, by its number of links or the left-right test."""
     if len(links) < 9:  # K3,3 has nine; K5 ten
         return True
     agents = len(np.unique(links))
     if len(links) > planar_bound(agents):
         return False
-    if len(links) >= _COMPILED and _embeds(links):
-        return True
     import networkx
 
     graph = networkx.Graph()
     graph.add_edges_from(links.tolist())
     planar: bool = networkx.check_planarity(graph)[0]
     return planar
-
-
-def _embeds(links: LinkArray) -> bool:
-    """Return whether a rotation system of links is found and is a planar embedding.
-
-    Euler's formula proves it, however the order came about: over the connected components agents − links + faces falls
-    short of two each by twice the number of handles.
-    """
-    agents, numbers = np.unique(links, return_inverse=True)
-    pairs = numbers.reshape(-1, 2).astype(np.int32)
-    found = embedding(len(agents), pairs)
-    if found is None:
-        return False
-    owner, after = found
-    half = np.arange(2 * len(pairs))
-    ordered = np.array_equal(np.sort(after), half) and np.array_equal(owner[after], owner)
-    ends = np.array_equal(np.sort(owner.reshape(-1, 2), axis=1), np.sort(pairs, axis=1))
-    faces = _cycles(after[half ^ 1])
-    return ordered and ends and _cycles(after) == len(agents) and len(agents) - len(pairs) + faces == 2 * _parts(pairs)
-
-
-def _cycles(order: Any) -> int:
-    """Return the number of cycles of a permutation."""
-    return _parts(np.column_stack([np.arange(len(order)), order]))
-
-
-def _parts(pairs: Any) -> int:
-    """Return the number of connected components of a graph given by pairs of 0, 1, …"""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = int(pairs.max()) + 1
-    count: int = connected_components(coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(n, n)), directed=False)[0]
-    return count
 
 
 def ensure_plane(m: int) -> None:
