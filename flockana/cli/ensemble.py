@@ -22,6 +22,7 @@ _MOST = 7  # curves in one picture
 
 def ensemble_command(
     scenario: ScenarioName,
+    *,
     seeds: Annotated[int, typer.Option(min=1, help="Number of seeds.")] = 100,
     first: Annotated[int, typer.Option("--first-seed", min=0, help="First seed.")] = 0,
     theorem: Annotated[

@@ -18,6 +18,7 @@ _LOWEST = 6  # eigenvalues that are printed
 
 def equilibrium_command(
     source: SourceName,
+    *,
     start: Start = None,
     seed: AnySeed = None,
     algorithm: Algorithm = None,

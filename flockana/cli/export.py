@@ -15,6 +15,7 @@ from flockana.cli.status import OK
 def export_command(
     to: Annotated[Literal["lammps"], typer.Argument(metavar="PROGRAM", help="Target program.")],
     name: ScenarioName,
+    *,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="Folder to write to.")],
     seed: Seed = 0,
     points: Annotated[int, typer.Option(min=2, help="Number of distances in the pair force's table.")] = 20_000,

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 def falsify_command(
     theorem: Annotated[str | None, typer.Argument(metavar="[THEOREM]", help="Theorem, such as os-3.")] = None,
+    *,
     on: Annotated[str | None, typer.Option(metavar="SCENARIO", help="Scenario to start from.")] = None,
     budget: Annotated[int, typer.Option(min=1, help="Largest number of runs.")] = 200,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the scenario and of the search.")] = 0,

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 def observe_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="CSV, TSV, npz, mat, netCDF or a dump of LAMMPS.")],
+    *,
     law: Annotated[
         str | None, typer.Option("--law", metavar="NAME", help="Law to compare with: a scenario's, or algorithm-1.")
     ] = None,

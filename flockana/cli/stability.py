@@ -28,6 +28,7 @@ DENSE = 1200  # n m above which only the slowest modes are sought, without a den
 @one_thread_for_matrices()
 def stability_command(
     source: SourceName,
+    *,
     start: Start = None,
     seed: AnySeed = None,
     algorithm: Algorithm = None,

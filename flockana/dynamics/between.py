@@ -187,6 +187,6 @@ class Recorder:
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
     """Return how far the path from before to after may be off if the step in the middle is left out."""
     knots = (before, middle, after)
-    states = (np.ascontiguousarray(array) for knot in knots for array in (knot.q, knot.p, knot.u))
-    farthest: FloatArray = detours(*(knot.t for knot in knots), *states, slack, later)
+    states = (tuple(np.ascontiguousarray(array) for array in (knot.q, knot.p, knot.u)) for knot in knots)
+    farthest: FloatArray = detours(tuple(knot.t for knot in knots), *states, slack, later)
     return farthest

@@ -68,14 +68,14 @@ class ObstacleField:
         """Add the forces of all β-agents, c1 Σ_k φ_β n̂_ik + c2 Σ_k b_ik (p̂_ik − p_i), to u in place, unchecked."""
         power, par, reach = 0.0, self.beta.par, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
-            power += kernels.forces(q, p, pars, starts, balls, par, reach, stiffness, damping, u)
+            power += kernels.forces(q, p, (pars, starts, balls), par, reach, (stiffness, damping), u)
         return power
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
         for kernels, _, pars, starts, balls in self.kinds:
-            total += kernels.potential(q, pars, starts, balls, par, panels, reach)
+            total += kernels.potential(q, (pars, starts, balls), par, panels, reach)
         return total
 
     def hessian_blocks(self, q: FloatArray) -> FloatArray:

@@ -87,10 +87,9 @@ def _share_of_crowd(ends, seen, around, share):
         size *= 2
     parts = _sort_into_cells(_pad(q0), within * _MARGIN, size)
     first, second = np.empty(max(_BLOCK, n), np.uint32), np.empty(max(_BLOCK, n), np.uint32)
-    order, x, cells, start, strides = parts
     forward = _FORWARD[: (1, 4, 13)[m - 1]]
     while row < n:
-        row, count = _fill_cells(order, x, cells, start, strides, forward, within * within, row, first, second)
+        row, count = _fill_cells(parts, forward, within * within, row, first, second)
         share = _share_of(ends, seen, around, first[:count], second[:count], share)
         if share < 0.0:
             return share

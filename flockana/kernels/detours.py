@@ -26,8 +26,12 @@ def _parted(points, share):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def detours(t0, t1, t2, q0, p0, u0, q1, p1, u1, q2, p2, u2, slack0, slack1):
-    """Return for each agent how far its path from t0 to t2 may be from the one through t1, whose parts have slacks."""
+def detours(times, first, middle, last, slack0, slack1):
+    """Return how far each agent's path from the first state (q, p, u) to the last may be from that through the middle.
+
+    The parts of the path through the middle have slacks.
+    """
+    (t0, t1, t2), (q0, p0, u0), (q1, p1, u1), (q2, p2, u2) = times, first, middle, last
     (n, m), share, farthest = q0.shape, (t1 - t0) / (t2 - t0), np.empty(q0.shape[0])
     s, s0, s1 = (t2 - t0) / 5.0, (t1 - t0) / 5.0, (t2 - t1) / 5.0
     z, z0, z1 = (t2 - t0) ** 2 / 20.0, (t1 - t0) ** 2 / 20.0, (t2 - t1) ** 2 / 20.0

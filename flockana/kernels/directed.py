@@ -33,11 +33,13 @@ def sight(q, p, i, j, s2, reach2, width, slow2, h):
 
 
 @njit(cache=True)
-def directed_forces(q, p, first, second, reach, par, stiffness, damping, width, slow2, u):
+def directed_forces(q, p, pairs, reach, par, gains, view, u):
     """Add w_ij (c1 s_ij (q_j − q_i) + c2 a_ij (p_j − p_i)) to u_i, with the bump of its range and its `sight` w_ij.
 
-    `first` and `second` hold unordered pairs that are at least all within the largest range.
+    `pairs` are unordered, two arrays, and at least all within the largest range; `gains` are (c1, c2), and `view` is
+    (width, slow2) of `sight`.
     """
+    (first, second), (c1, c2), (width, slow2) = pairs, gains, view
     n, own = reach.size, par.copy()
     sigma = np.empty(n)
     for i in range(n):
@@ -53,7 +55,7 @@ def directed_forces(q, p, first, second, reach, par, stiffness, damping, width, 
                 continue
             own[R_ALPHA] = sigma[i]
             stress, adjacency = pair_alpha(s2, own)
-            pull, drag = stiffness * stress * seen, damping * adjacency * seen
+            pull, drag = c1 * stress * seen, c2 * adjacency * seen
             for c in range(q.shape[1]):
                 u[i, c] += pull * (q[j, c] - q[i, c]) + drag * (p[j, c] - p[i, c])
 

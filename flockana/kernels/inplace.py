@@ -29,9 +29,12 @@ def neighbour_lists(n, first, second):
 
 
 @njit(cache=True)
-def advance_alpha(q, p, u, start, neighbour, par, c1, c2, pull, drag, q_r, p_r, dt, position_factor):
-    """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i."""
-    m = q.shape[1]
+def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
+    """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i.
+
+    `near` are `neighbour_lists`, `gains` (c1α, c2α) and `goal` (c1γ, c2γ, q_r, p_r).
+    """
+    m, (start, neighbour), (c1, c2), (pull, drag, q_r, p_r) = q.shape[1], near, gains, goal
     total = np.empty(m)
     for i in range(q.shape[0]):
         for c in range(m):

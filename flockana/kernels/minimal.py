@@ -5,6 +5,8 @@ An edge is (j, i): j is seen, i sees it. Here `tail` holds the j and `head` the 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -13,6 +15,20 @@ from flockana.kernels.neighbours import DENSE_MAX, FloatArray, pair_blocks
 
 AT_ONCE = DENSE_MAX  # up to so many agents `semi_implicit_steps` is the same to the bit: pairs come in the same order
 _SLACK = 1.0 + 1e-12  # the search is strict and the radius closed: a few roundings more than R, and the filter decides
+
+
+class EqualEdges(NamedTuple):
+    """Numbers of a law whose edges differ by the perceiving agent's radius and spacing alone.
+
+    `shared`: the spacing is β_i r_i |N_i|; `normalised`: the alignment weights of an agent sum to 1.
+    """
+
+    radius: FloatArray
+    spacing: FloatArray
+    shared: bool
+    mu: float
+    sigma: float
+    normalised: bool
 
 
 @njit(cache=True)
@@ -101,18 +117,9 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
                     u[head, c] += w * (q[tail, c] - q[head, c]) + align[head] * (p[tail, c] - p[head, c])
 
 
-def perceived_forces(
-    q: FloatArray,
-    p: FloatArray,
-    radius: FloatArray,
-    spacing: FloatArray,
-    shared: bool,
-    mu: float,
-    sigma: float,
-    normalised: bool,
-    u: FloatArray,
-) -> None:
+def perceived_forces(q: FloatArray, p: FloatArray, edges: EqualEdges, u: FloatArray) -> None:
     """Add to u the sum of `edge_forces` over `perceived_edges` of equal weights, without listing the edges."""
+    radius, spacing, shared, mu, sigma, normalised = edges
     reach, square, count = float(radius.max()) * _SLACK, radius * radius, np.zeros(len(q), np.int64)
     parts = [(i.copy(), j.copy()) for i, j in pair_blocks(q, reach)]
     if shared or normalised:
@@ -176,8 +183,9 @@ def _pull_all(x, v, square, mu, rho, align, s2, w, u):
 
 
 @njit(cache=True)
-def _many_steps(x, v, square, spacing, shared, mu, sigma, normalised, dt, steps):
+def _many_steps(x, v, square, edges, dt, steps):
     m, n = x.shape
+    _, spacing, shared, mu, sigma, normalised = edges
     qs, ps, us = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
     count, rho, align, s2, w, u = (
         np.empty(n),
@@ -206,16 +214,7 @@ def _many_steps(x, v, square, spacing, shared, mu, sigma, normalised, dt, steps)
 
 
 def semi_implicit_steps(
-    q: FloatArray,
-    p: FloatArray,
-    radius: FloatArray,
-    spacing: FloatArray,
-    shared: bool,
-    mu: float,
-    sigma: float,
-    normalised: bool,
-    dt: float,
-    steps: int,
+    q: FloatArray, p: FloatArray, edges: EqualEdges, dt: float, steps: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Semi-implicit Euler steps by `perceived_forces` of few agents: q, p after each and u before, (steps, n, m).
 
@@ -223,18 +222,14 @@ def semi_implicit_steps(
 
     Examples
     --------
-    >>> radius, spacing = np.full(2, 9.0), np.full(2, 1.0)
-    >>> q, p, u = semi_implicit_steps(
-    ...     np.array([[0.0], [3.0]]), np.zeros((2, 1)), radius, spacing, False, 1.0, 0.0, False, 0.25, 1
-    ... )
+    >>> edges = EqualEdges(np.full(2, 9.0), np.full(2, 1.0), False, 1.0, 0.0, False)
+    >>> q, p, u = semi_implicit_steps(np.array([[0.0], [3.0]]), np.zeros((2, 1)), edges, 0.25, 1)
     >>> q[0].tolist(), p[0].tolist(), u[0].tolist()
     ([[0.125], [2.875]], [[0.5], [-0.5]], [[2.0], [-2.0]])
     """
-    reach = float(radius.max()) * _SLACK
+    reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter
-    square = np.minimum(radius * radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
+    square = np.minimum(edges.radius**2, np.nextafter(max(reach * reach, 5e-324), 0.0))
     x, v = q.T.copy(), p.T.copy()
-    stepped: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(
-        x, v, square, spacing, shared, mu, sigma, normalised, dt, steps
-    )
+    stepped: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, square, edges, dt, steps)
     return stepped

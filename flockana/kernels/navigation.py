@@ -17,13 +17,14 @@ _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def navigate(x, v, u, target, velocity, c1, c2, unit, moving, order):
+def navigate(x, v, u, target, velocity, gains, unit, moving, order):
     """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power.
 
     The rows of `target` are q_r and p_r, seen from a frame as x and v are, and the true dq_r/dt; `velocity` is that of
-    the frame. There is one gain each, or one per agent, whose own number `order` has. ℓ = 0 is the linear pull.
+    the frame. `gains` are c1γ and c2γ, one each or one per agent, whose own number `order` has. ℓ = 0 is the linear
+    pull.
     """
-    (n, m), power = x.shape, 0.0
+    (n, m), (c1, c2), power = x.shape, gains, 0.0
     if moving:
         pull_to(u, x, v, target[0], target[1], c1[0], c2[0])
         return -c2[0] * squared_deviations(v)
@@ -58,7 +59,7 @@ def _follow(t, x, v, u, frame, numbers, order, target):
         rate = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
         target[0, k] = _place(t, co, si, path, k) - frame[0, k]
         target[1, k], target[2, k] = numbers[_FACTOR] * rate + path[4, k] - frame[1, k], rate
-    return navigate(x, v, u, target, frame[1], c[:gains], c[gains:], numbers[_UNIT], numbers[_MOVING] != 0.0, order)
+    return navigate(x, v, u, target, frame[1], (c[:gains], c[gains:]), numbers[_UNIT], numbers[_MOVING] != 0.0, order)
 
 
 @njit(cache=True, error_model="numpy")

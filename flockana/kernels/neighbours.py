@@ -90,8 +90,9 @@ def _sort_into_cells(x, side, size):
 
 
 @njit(cache=True)
-def _fill_cells(order, x, cells, start, strides, forward, r2, row, first, second):
-    """As `_fill_direct`, over sorted agents; a row that does not fit whole is left for the next block."""
+def _fill_cells(placed, forward, r2, row, first, second):
+    """As `_fill_direct`, over agents of `_sort_into_cells`; a row that does not fit whole waits for the next block."""
+    order, x, cells, start, strides = placed
     n, capacity, count, size = x.shape[0], first.size, 0, start.size - 1
     while row < n:
         mark = count
@@ -178,7 +179,7 @@ def pair_blocks(
     parts = _sort_into_cells(x, r * _MARGIN, size)
     forward = _FORWARD[: (1, 4, 13)[q.shape[1] - 1]]
     while row < n:
-        row, count = _fill_cells(*parts, forward, r2, row, first, second)
+        row, count = _fill_cells(parts, forward, r2, row, first, second)
         yield first[:count], second[:count]
 
 

@@ -20,9 +20,9 @@ from flockana.kernels.shells import LOOKS, MARCHES, TOUCH, longest, out_of_reach
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
+def forces(q, p, bodies, beta, reach, gains, u):
     """Add c1 φ_β n̂_ik + c2 b_ik (p̂_ik − p_i) to u_i for every obstacle in reach; return Σ b_ik ⟨p_i, p̂_ik − p_i⟩."""
-    total = 0.0
+    (pars, starts, balls), (c1, c2), total = bodies, gains, 0.0
     n, m = q.shape
     x, v, gap, rate = np.empty(m), np.empty(m), np.empty(m), np.empty(m)  # no slices: a view costs as much as a sum
     near, s2 = np.empty(n, np.int64), np.empty(n)
@@ -44,9 +44,9 @@ def forces(q, p, pars, starts, balls, beta, reach, c1, c2, u):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def potential(q, pars, starts, balls, beta, panels, reach):
+def potential(q, bodies, beta, panels, reach):
     """Σ ψ_β."""
-    total = 0.0
+    (pars, starts, balls), total = bodies, 0.0
     n, m = q.shape
     x, still, gap, rate = np.empty(m), np.zeros(m), np.empty(m), np.empty(m)
     near, s2 = np.empty(n, np.int64), np.empty(n)
@@ -151,11 +151,12 @@ def _visit(curve, edge, far, par, here, room):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def share(points, allowance, pars, starts, balls, shell, far, most):
+def share(points, allowance, bodies, shell, far, most):
     """Return the share of the step, at most the one given, in which no agent leaps over an obstacle's surroundings.
 
     An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """
+    pars, starts, balls = bodies
     m = balls.shape[1] - 1
     here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
     begin, end = points[:, 0], points[:, 5]
@@ -186,21 +187,18 @@ def share(points, allowance, pars, starts, balls, shell, far, most):
 @njit(cache=True, error_model="numpy", nogil=True)
 def act(t, x, v, u, numbers, panels, listed):
     """`forces` as a term of a law."""
-    pars, starts, balls = bodies_of(numbers)
-    law, reach, c1, c2 = numbers[BETA:STARTS], numbers[REACH], numbers[C1], numbers[C2]
-    return c2 * forces(x + listed.frame[0], v + listed.frame[1], pars, starts, balls, law, reach, c1, c2, u)
+    law, reach, gains = numbers[BETA:STARTS], numbers[REACH], (numbers[C1], numbers[C2])
+    return gains[1] * forces(x + listed.frame[0], v + listed.frame[1], bodies_of(numbers), law, reach, gains, u)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, v, numbers, panels, listed):
     """c1 Σ ψ_β."""
-    pars, starts, balls = bodies_of(numbers)
     seen = x + listed.frame[0]
-    return numbers[C1] * potential(seen, pars, starts, balls, numbers[BETA:STARTS], panels, numbers[REACH])
+    return numbers[C1] * potential(seen, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard(points, allowance, numbers, shell, far, most):
     """`share` as a term of a law."""
-    pars, starts, balls = bodies_of(numbers)
-    return share(points, allowance, pars, starts, balls, shell, far, most)
+    return share(points, allowance, bodies_of(numbers), shell, far, most)

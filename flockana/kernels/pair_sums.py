@@ -43,8 +43,12 @@ def _law(count, s2, w, a, par, c1):
 
 
 @register_jitable
-def _add(count, first, second, s2, w, a, x, v, u, par, c1, c2):
-    """Add to u what a block of pairs gives; return Σ a ‖p_j − p_i‖². The rows w and a are room."""
+def _add(count, pairs, room, x, v, u, par, gains):
+    """Add to u what a block of pairs gives; return Σ a ‖p_j − p_i‖².
+
+    `room` are the squared distances and two rows for w and a; `gains` are (c1, c2).
+    """
+    (first, second), (s2, w, a), (c1, c2) = pairs, room, gains
     if not (x.shape[1] == M and v.shape[1] == M and u.shape[1] == M):
         return np.nan  # never: the compiler now knows that rows are M numbers apart
     _law(count, s2, w, a, par, c1)
@@ -82,13 +86,14 @@ def _gather(x, limit, first, second, begin, end, near, s2):
 @njit(cache=True, error_model="numpy", nogil=True)
 def act(t, x, v, u, numbers, panels, listed):
     """Add the forces of the listed pairs to u and return their power."""
-    total, c1, c2, r = 0.0, numbers[0], numbers[1], numbers[2]
-    par, limit, near, room = as_tuple(numbers[4:]), max(r * r, 5e-324), listed.near, listed.room
+    total, gains, r = 0.0, (numbers[0], numbers[1]), numbers[2]
+    par, limit, near = as_tuple(numbers[4:]), max(r * r, 5e-324), listed.near
+    pairs, room = (near[0], near[1]), (listed.room[0], listed.room[1], listed.room[2])
     for begin in range(0, listed.count, BLOCK):
         end = min(begin + BLOCK, listed.count)
         count = _gather(x, limit, listed.first, listed.second, begin, end, near, room[0])
-        total += _add(count, near[0], near[1], room[0], room[1], room[2], x, v, u, par, c1, c2)
-    return -c2 * total
+        total += _add(count, pairs, room, x, v, u, par, gains)
+    return -gains[1] * total
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -109,9 +114,9 @@ def energy(t, x, v, numbers, panels, listed):
 
 
 @njit(error_model="numpy")
-def _sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
-    """The forces of a flock sorted into a grid."""
-    first, second, s2, w, a = near[0], near[1], room[0], room[1], room[2]
+def _sweep(start, rows, flock, r2, par, gains, pairs, room):
+    """The forces of a flock (q, p, u) sorted into a grid."""
+    (x, v, forced), (first, second), s2 = flock, pairs, room[0]
     count, total = np.int64(0), 0.0  # typed: of a literal, `_add` would be compiled once more
     if x.shape[1] != M:
         return np.nan  # as above
@@ -130,9 +135,9 @@ def _sweep(start, rows, x, v, forced, r2, par, c1, c2, near, room):
                     s2[count], first[count], second[count] = square, i, j
                     count += square < r2
                     if count == BLOCK:
-                        total += _add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
+                        total += _add(count, pairs, room, x, v, forced, par, gains)
                         count = np.int64(0)
-    return total + _add(count, first, second, s2, w, a, x, v, forced, par, c1, c2)
+    return total + _add(count, pairs, room, x, v, forced, par, gains)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -150,8 +155,9 @@ def forces(q, p, r, numbers, c1, c2, u, room):
     for k in range(order.size):
         for c in range(M):
             x[k, c], v[k, c], forced[k, c] = q[order[k], c], p[order[k], c], 0.0
-    near, block, par = np.empty((2, BLOCK), np.uint64), np.empty((3, BLOCK)), as_tuple(numbers)
-    total = _sweep(start, rows, x, v, forced, max(r * r, 5e-324), par, c1, c2, near, block)
+    pairs = np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)
+    block, par = (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)), as_tuple(numbers)
+    total = _sweep(start, rows, (x, v, forced), max(r * r, 5e-324), par, (c1, c2), pairs, block)
     for k in range(order.size):
         for c in range(M):
             u[order[k], c] += forced[k, c]
@@ -162,12 +168,13 @@ def forces(q, p, r, numbers, c1, c2, u, room):
 def forces_of(q, p, first, second, numbers, c1, c2, u):
     """As `forces`, over pairs that are within range; return the sum."""
     total, par = 0.0, as_tuple(numbers)
-    s2, w, a = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    s2 = room[0]
     for begin in range(0, first.size, BLOCK):
         i, j = first[begin : begin + BLOCK], second[begin : begin + BLOCK]
         for k in range(i.size):
             s2[k] = 0.0
             for c in range(M):
                 s2[k] += (q[j[k], c] - q[i[k], c]) ** 2
-        total += _add(i.size, i, j, s2, w, a, q, p, u, par, c1, c2)
+        total += _add(i.size, (i, j), room, q, p, u, par, (c1, c2))
     return total

@@ -86,15 +86,15 @@ def _follow(stack, widths, band, wiggle, was_out):
 
 
 @njit(cache=True)
-def follow_pairs(h, q0, p0, u0, q1, p1, u1, r, noise, was_out, unsure):
+def follow_pairs(h, start, end, r, noise, was_out, unsure):
     """Go on by one interval with every pair: the first that comes into range for certain, or (-1, -1).
 
-    `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is (the rounding of a distance, and by
-    how much it and its rate may be off the true ones).
+    `start` and `end` are (q, p, u). `was_out` and `unsure` are flags of all pairs in lexicographic order; `noise` is
+    (the rounding of a distance, and by how much it and its rate may be off the true ones).
     """
     rounding, place, speed = noise
-    n = q0.shape[0]
-    points, reach, allowance = control_points(h, q0, p0, u0, q1, p1, u1)
+    n = start[0].shape[0]
+    points, reach, allowance = control_points(h, *start, *end)
     stack, widths, k = np.empty((_DEPTH + 3, 11)), np.empty(_DEPTH + 3), -1
     for i in range(n):
         for j in range(i + 1, n):

@@ -109,7 +109,7 @@ def list_pairs(q, reach, first, second):
     forward = _FORWARD[: (1, 4, 13)[m - 1]]
     parts = _sort_into_cells(x, reach * _MARGIN, size)
     while True:
-        row, more = _fill_cells(*parts, forward, limit, row, first[count:], second[count:])
+        row, more = _fill_cells(parts, forward, limit, row, first[count:], second[count:])
         count += more
         if row == n:
             return first, second, count

@@ -65,12 +65,14 @@ def to_boundary(x, y, edges, first, last):
 
 
 @njit(cache=True)
-def zone_meets_edge(x, y, hx, hy, depth, half, cx, cy, dx, dy, literal):
-    """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets the segment from (cx, cy) to (dx, dy).
+def zone_meets_edge(zone, edge, literal):
+    """Whether a triangular zone meets the segment from (cx, cy) to (dx, dy).
 
+    The zone is (x, y, hx, hy, depth, half): its agent's place and unit heading, its altitude and half base.
     Literal: one of the segments from the agent to the three corners meets it. Else exact: a side does, or the zone
     holds it.
     """
+    (x, y, hx, hy, depth, half), (cx, cy, dx, dy) = zone, edge
     ax, ay = x + depth * hx, y + depth * hy
     rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
     if literal:
@@ -85,14 +87,14 @@ def zone_meets_edge(x, y, hx, hy, depth, half, cx, cy, dx, dy, literal):
 
 
 @njit(cache=True)
-def _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out):
+def _edge_terms(zone, c, world, first, last, inside, choices, out):
     """Add one term for each edge of a polygon that the zone meets."""
     outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
     for k in range(first, last):
-        cx, cy, dx, dy = world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3]
-        if not zone_meets_edge(x[0], x[1], h[0], h[1], depth, half, cx, cy, dx, dy, literal):
+        edge = (world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3])
+        if not zone_meets_edge(zone, edge, literal):
             continue
-        gx, gy = to_segment(x[0], x[1], cx, cy, dx, dy)
+        gx, gy = to_segment(zone[0], zone[1], *edge)
         distance = sqrt(gx * gx + gy * gy)
         if distance > 0.0:
             factor = push(distance, c, inside, outward, repulsive) / distance
@@ -101,12 +103,13 @@ def _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out):
 
 
 @njit(cache=True)
-def zone_meets_polygon(x, y, hx, hy, depth, half, edges, first, last, literal):
-    """Whether the triangular zone at (x, y) with unit heading (hx, hy) meets a polygon.
+def zone_meets_polygon(zone, edges, first, last, literal):
+    """Whether a triangular zone, as in `zone_meets_edge`, meets the polygon edges[first:last].
 
     Literal: one of the segments from the agent to the three corners meets an edge, which misses a corner of the
     polygon that comes in between them. Else exact: edges cross, or one of the two holds the other.
     """
+    x, y, hx, hy, depth, half = zone
     ax, ay = x + depth * hx, y + depth * hy
     rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
     for k in range(first, last):
@@ -162,11 +165,10 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
             continue
         if choices.polygons == 1 and not (inside and outward and not literal):  # (21); out of one the nearest leads
             if moving:
-                _edge_terms(x, h, depth, half, c, world, first, last, inside, choices, out)
+                _edge_terms((x[0], x[1], h[0], h[1], depth, half), c, world, first, last, inside, choices, out)
             continue
-        if (inside and not literal) or (
-            moving and zone_meets_polygon(x[0], x[1], h[0], h[1], depth, half, world.edges, first, last, literal)
-        ):
+        zone = (x[0], x[1], h[0], h[1], depth, half)
+        if (inside and not literal) or (moving and zone_meets_polygon(zone, world.edges, first, last, literal)):
             distance = sqrt(s2)
             factor = push(distance, c, inside, outward, repulsive) / distance
             out[0] += factor * gx

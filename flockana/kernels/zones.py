@@ -87,6 +87,26 @@ class World(NamedTuple):
     pace: FloatArray
 
 
+class Rules(NamedTuple):
+    """All of the law's numbers."""
+
+    zones: Zones
+    settings: Settings
+    choices: Choices
+    world: World
+
+
+class Flock(NamedTuple):
+    """State: positions, velocities, headings and velocity estimates (n, m), radii of attraction (n,), aliens (K, m)."""
+
+    q: FloatArray
+    p: FloatArray
+    heading: FloatArray
+    estimate: FloatArray
+    reach: FloatArray
+    alien: FloatArray
+
+
 @njit(cache=True)
 def saturation(norm, bound):
     """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
@@ -117,12 +137,13 @@ def _trembling(settings, step, i, j, behaviour):
 
 
 @njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
-def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
+def _neighbours(i, near, flock, step, rules, out):
     """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
 
     Returns the least distance of those who attract it, infinite without any.
     """
-    m = q.shape[1]
+    q, p, a, zones, settings = flock.q, flock.p, flock.reach[i], rules.zones, rules.settings
+    m, bearing = q.shape[1], rules.choices.form == 1
     r, c, nearest, chance = zones.r[i], zones.c[i], inf, settings.weight_noise > 0.0
     total_c, total_a = 0.0, 0.0
     for j in near:
@@ -171,15 +192,16 @@ def _neighbours(i, near, q, p, a, step, zones, settings, bearing, out):
 
 
 @njit(cache=True)
-def _aliens(i, q, alien, step, zones, settings, annulus, out):
+def _aliens(i, flock, step, rules, out):
     """Strategic separation (7) of agent i from the aliens that it watches."""
+    q, alien, zones, settings, annulus = flock.q, flock.alien, rules.zones, rules.settings, rules.choices.surveillance
     m = q.shape[1]
     for e in range(alien.shape[0]):
         d2 = 0.0
         for k in range(m):
             d2 += (alien[e, k] - q[i, k]) ** 2
         d = sqrt(d2)
-        if 0.0 < d <= zones.s[i] and not (annulus and d <= zones.a[i]):
+        if 0.0 < d <= zones.s[i] and not (annulus == 1 and d <= zones.a[i]):
             w = zones.alien[i, e] * _trembling(settings, step, i, e, STRATEGIC)
             for k in range(m):
                 out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
@@ -202,15 +224,17 @@ def _grown(reach, a, nearest, settings):
 
 
 @njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
-def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, choices, world, out):
-    """Write the six behaviours of agent i, with `near` around it and attraction radius a, into out (6, m).
+def behave(i, near, flock, step, rules, out):
+    """Write the six behaviours of agent i, with `near` around it, into out (6, m).
 
     Its heading and its estimate move on. Returns how near the nearest is of those who attract it.
     """
+    q, p, heading, estimate, _, _ = flock
+    zones, settings, choices, world = rules
     m = q.shape[1]
     out[:] = 0.0
-    nearest = _neighbours(i, near, q, p, a, step, zones, settings, choices.form == 1, out)
-    _aliens(i, q, alien, step, zones, settings, choices.surveillance == 1, out)
+    nearest = _neighbours(i, near, flock, step, rules, out)
+    _aliens(i, flock, step, rules, out)
     speed = _length(p[i])
     if speed > 0.0:
         for k in range(m):
@@ -241,14 +265,15 @@ def behave(i, near, q, p, heading, estimate, a, alien, step, zones, settings, ch
 
 
 @njit(cache=True)
-def behaviours(q, p, heading, estimate, reach, alien, step, zones, settings, choices, world):
+def behaviours(flock, step, rules):
     """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
+    q, reach = flock.q, flock.reach
     n, m = q.shape
     components, out = np.empty((6, n, m)), np.empty((6, m))
     cells, near = sort_into_cells(q, reach.max()), np.empty(n, np.int64)
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
-        behave(i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out)
+        behave(i, near[:count], flock, step, rules, out)
         components[:, i] = out
     return components
 
@@ -294,16 +319,13 @@ def _hunt(alien, q, dt, world):
 
 
 @njit(cache=True)
-def _take_step(
-    q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
-):  # fmt: skip
+def _take_step(flock, u, step, cells, near, rules, out, total):
     """Advance all agents by one step, then the aliens; the cells serve for the whole step."""
+    (q, p, _, _, reach, alien), (zones, settings, choices, world) = flock, rules
     (n, m), in_turn, literal = q.shape, choices.order == 1, choices.speed_bound == 1
     for i in range(n):
         count = gather(i, q, reach[i], cells, near)
-        nearest = behave(
-            i, near[:count], q, p, heading, estimate, reach[i], alien, step, zones, settings, choices, world, out
-        )
+        nearest = behave(i, near[:count], flock, step, rules, out)
         if settings.growth > 0.0:
             reach[i] = _grown(reach[i], zones.a[i], nearest, settings)
         total[:] = 0.0
@@ -322,11 +344,13 @@ def _take_step(
 
 
 @njit(cache=True)
-def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, world, steps):
-    """Take `steps` steps from the one of this number; the six arrays of state are changed.
+def run(flock, first, rules, steps):
+    """Take `steps` steps from the one of this number; the flock's arrays are changed.
 
     Returns (q, p, u, heading, estimate, reach, alien) over time, each (steps, ...).
     """
+    q, p, heading, estimate, reach, alien = flock
+    settings, choices = rules.settings, rules.choices
     n, m = q.shape
     qs, ps, us, hs, es = (
         np.empty((steps, n, m)),
@@ -341,9 +365,7 @@ def run(q, p, heading, estimate, reach, alien, first, zones, settings, choices, 
     further = settings.dt * settings.v_max if choices.order == 1 else 0.0  # those before agent i have moved since
     for taken in range(steps):
         step, cells = first + taken, sort_into_cells(q, reach.max() + further)
-        _take_step(
-            q, p, u, heading, estimate, reach, alien, step, cells, near, zones, settings, choices, world, out, total
-        )
+        _take_step(flock, u, step, cells, near, rules, out, total)
         qs[taken], ps[taken], us[taken], hs[taken], es[taken] = q, p, u, heading, estimate
         reaches[taken], aliens[taken] = reach, alien
     return qs, ps, us, hs, es, reaches, aliens

@@ -258,10 +258,10 @@ class ZoneFlocking(DiscreteLaw):
     def iterate(  # noqa: D102
         self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
-        state, constants = self._state(q, memory), self._constants(*q.shape)
-        qs, ps, us, *own = compiled.run(np.array(q), np.array(p), *state, *constants, steps)
+        flock, first = self._state(q, p, memory)
+        qs, ps, us, *own = compiled.run(flock, first, self._rules(*q.shape), steps)
         headings, estimates, reach, aliens = own
-        numbers = state[-1] + 1.0 + np.arange(steps)
+        numbers = np.arange(first + 1.0, first + steps + 0.5)
         return qs, ps, us, {"heading": headings, "estimate": estimates} | self._kept(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
@@ -280,7 +280,7 @@ class ZoneFlocking(DiscreteLaw):
         q, p = ensure_state(q, p)
         self.check_dimension(q.shape[1])
         known = self.start(q, p) if memory is None else memory
-        components = compiled.behaviours(q, p, *self._state(q, known), *self._constants(*q.shape))
+        components = compiled.behaviours(*self._state(q, p, known), self._rules(*q.shape))
         return dict(zip(BEHAVIOURS, components, strict=True))
 
     def measures(  # noqa: D102
@@ -339,24 +339,26 @@ class ZoneFlocking(DiscreteLaw):
         lengths = {"conflict": c, "attraction": a, "speed": by_speed}
         return lengths[self.zone_length]
 
-    def _state(self, q: FloatArray, memory: Mapping[str, Any]) -> tuple[Any, ...]:
-        """Return copies of (heading, estimate, reach, alien), and the number of the next step."""
+    def _state(self, q: FloatArray, p: FloatArray, memory: Mapping[str, Any]) -> tuple[compiled.Flock, int]:
+        """Return copies of the state, and the number of the next step."""
         whole: dict[str, Any] = {
             "reach": self.radii.arrays(len(q))[2],
             "alien": np.empty((0, q.shape[1])),
             "step": 0,
         } | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
-        return *(np.array(whole[name], float) for name in names), int(whole["step"])
+        own = (np.array(whole[name], float) for name in names)
+        return compiled.Flock(np.array(q), np.array(p), *own), int(whole["step"])
 
     def _zones(self, n: int) -> compiled.Zones:
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
 
-    def _constants(self, n: int, m: int) -> tuple[compiled.Zones, compiled.Settings, compiled.Choices, compiled.World]:
-        """Return the constants of the compiled step."""
+    def _rules(self, n: int, m: int) -> compiled.Rules:
+        """Return the numbers of the compiled step."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
         chance = self.noise.weights, self.noise.velocities
         own = self.dt, self.desired_speed, self.u_max, self.v_max
         settings = compiled.Settings(*own, *gains, self.base, self.growth, *chance, seed=self.noise.seed)
         choices = compiled.Choices(**{name: names.index(getattr(self, name)) for name, names in CHOICES.items()})
-        return self._zones(n), settings, choices, self.world.arrays(m, buffer=self.obstacle_zone == "buffer")
+        world = self.world.arrays(m, buffer=self.obstacle_zone == "buffer")
+        return compiled.Rules(self._zones(n), settings, choices, world)

@@ -137,8 +137,8 @@ class DirectedNet(Around):
         for term in self.law.terms:
             if isinstance(term, PairTerm):
                 pairs = pair_list(q, float(reach.max()))
-                numbers = (self.alpha.par, term.stiffness, term.damping, self._width, self._slow2)
-                directed_forces(q, p, *pairs, reach, *numbers, u)
+                gains, view = (term.stiffness, term.damping), (self._width, self._slow2)
+                directed_forces(q, p, pairs, reach, self.alpha.par, gains, view, u)
             else:
                 term.act(t, q, p, u)
         return u, float("nan")

@@ -15,7 +15,14 @@ from flockana.base.overrides import overrides_consistently
 from flockana.base.scales import Scales
 from flockana.base.units import times
 from flockana.base.vectors import lengths
-from flockana.kernels.minimal import AT_ONCE, edge_forces, perceived_edges, perceived_forces, semi_implicit_steps
+from flockana.kernels.minimal import (
+    AT_ONCE,
+    EqualEdges,
+    edge_forces,
+    perceived_edges,
+    perceived_forces,
+    semi_implicit_steps,
+)
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
 from flockana.laws.law import Law
@@ -208,12 +215,13 @@ class MinimalFlocking(Law):
         """Whether all perceived agents have the same weight."""
         return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
 
-    def _alike(self, n: int) -> tuple[FloatArray, FloatArray, bool, Any, Any, bool]:
-        """Parameters of the kernels for equal weights: radius, spacing, sharing, μ, σ, normalisation."""
+    def _alike(self, n: int) -> EqualEdges:
+        """Return the numbers of a law whose weights are all equal."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
         lengths = np.full(n, 1.0 if spacing is None else spacing)
-        return radius, lengths, self.spacing is None, self.mu, self.sigma, self.normalised
+        mu, sigma = float(self.mu), float(self.sigma)  # type: ignore[arg-type]  # numbers, as all weights are equal
+        return EqualEdges(radius, lengths, self.spacing is None, mu, sigma, self.normalised)
 
     def steps_many(self, n: int) -> bool:
         """Return whether `semi_implicit` steps a flock of this size, rather than the law's own `flow`."""
@@ -231,13 +239,13 @@ class MinimalFlocking(Law):
         steps : int
             How many.
         """
-        return semi_implicit_steps(q, p, *self._alike(len(q)), dt, steps)
+        return semi_implicit_steps(q, p, self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
         """Return (u, dH/dt), unchecked; dH/dt = −Σ σ ‖v_i − v_j‖² over links if `reciprocal`, else NaN."""
         u = np.zeros_like(q)
         if self._one_weight:
-            perceived_forces(q, p, *self._alike(len(q)), u)
+            perceived_forces(q, p, self._alike(len(q)), u)
             return u, float("nan")
         dissipated = edge_forces(q, p, *self.edge_data(q), u)
         return u, -0.5 * dissipated if self.reciprocal else float("nan")

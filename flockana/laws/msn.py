@@ -82,9 +82,8 @@ class MSNDiscretisation(DiscreteLaw):
         q, p, u = q.copy(), p.copy(), np.empty_like(q)
         g, nobody = self.gains, np.zeros(q.shape[1])
         q_r, p_r = (nobody, nobody) if self.target is None else self.target.state(later)
-        pull, drag = (0.0, 0.0) if self.target is None else (g.c1_gamma, g.c2_gamma)
+        goal = (0.0, 0.0, q_r, p_r) if self.target is None else (g.c1_gamma, g.c2_gamma, q_r, p_r)
         # the project links agents at exactly r, which the strict neighbour search leaves out
         lists = neighbour_lists(len(q), *pair_list(q, np.nextafter(self.alpha.r, np.inf)))
-        pair = (self.alpha.par, g.c1_alpha, g.c2_alpha)
-        advance_alpha(q, p, u, *lists, *pair, pull, drag, q_r, p_r, h, self.position_factor)
+        advance_alpha(q, p, u, lists, self.alpha.par, (g.c1_alpha, g.c2_alpha), goal, h, self.position_factor)
         return q, p, u, memory

@@ -169,6 +169,7 @@ def _entry(
     seed: int,
     reports: tuple[Report, ...],
     expected: dict[str, Status],
+    *,
     settings: str = "recommended settings",
     as_it_is: tuple[Report, ...] = (),
 ) -> Scenario:
@@ -235,7 +236,7 @@ def _growing(seed: int = 0) -> Scenario:
         seed,
         (_TOGETHER, KEEPS_SPEED, BOUNDS),
         verified("source:speed", "source:bounds"),
-        "printed settings, charitably read",
+        settings="printed settings, charitably read",
     )
 
 
@@ -251,7 +252,7 @@ def _by_speed(seed: int = 0) -> Scenario:
         seed,
         THROUGH,
         verified("source"),
-        "",
+        settings="",
     )
 
 
@@ -268,7 +269,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
         seed,
         (*OPEN[1:], DISTANCES, _TOGETHER),
         verified("source:speed", "source:bounds"),
-        "",
+        settings="",
     )
 
 
@@ -285,7 +286,7 @@ def _individual(seed: int = 0) -> Scenario:
         seed,
         _INDIVIDUAL,
         verified("source"),
-        "",
+        settings="",
     )
 
 

@@ -14,6 +14,11 @@ def bernstein_polynomials(s):
     return np.array([c * s**k * (1.0 - s) ** (5 - k) for k, c in enumerate(BINOMIALS)])
 
 
+def by_knot(states):
+    """(q, p, u) of each of the three."""
+    return tuple(states[0:3]), tuple(states[3:6]), tuple(states[6:9])
+
+
 def curve(a, b, states, t):
     """The quintics between two of the three states, at a time."""
     h = TIMES[b] - TIMES[a]
@@ -27,7 +32,7 @@ def test_it_is_how_far_the_control_points_of_the_difference_get(n, m):
     """Those found from six places of the curve; no place of it is farther off."""
     rng = np.random.default_rng(n)
     states, slacks = rng.normal(size=(9, n, m)), 0.1 * rng.uniform(size=(2, n))
-    bound, off, expected = detours(*TIMES, *states, *slacks), np.zeros(n), np.zeros(n)
+    bound, off, expected = detours(TIMES, *by_knot(states), *slacks), np.zeros(n), np.zeros(n)
     for k in range(2):
         shares = np.linspace(0.0, 1.0, 61)
         times = TIMES[k] + shares * (TIMES[k + 1] - TIMES[k])
@@ -47,5 +52,5 @@ def test_a_middle_step_on_the_long_one_is_no_detour():
         for order in range(3):
             powers = [np.polyder(np.eye(6)[5 - k], order) for k in range(6)]
             states.append(sum(np.polyval(power, t) * c for power, c in zip(powers, coefficients, strict=True)))
-    assert detours(*TIMES, *states, np.full(40, 0.3), np.full(40, 0.2)) == pytest.approx(0.3, abs=1e-11)
-    assert detours(*TIMES, *states, np.full(40, 0.2), np.full(40, 0.4)) == pytest.approx(0.4, abs=1e-11)
+    assert detours(TIMES, *by_knot(states), np.full(40, 0.3), np.full(40, 0.2)) == pytest.approx(0.3, abs=1e-11)
+    assert detours(TIMES, *by_knot(states), np.full(40, 0.2), np.full(40, 0.4)) == pytest.approx(0.4, abs=1e-11)

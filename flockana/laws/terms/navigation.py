@@ -82,9 +82,9 @@ class Navigation(Term):
         x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
         if self._straight is not None:
             return float(kernel.follow(t, x, v, u, self._straight))
-        target, (c1, c2) = np.array([*self.target.state(t), self.target.rate(t)]), self._gains
+        target = np.array([*self.target.state(t), self.target.rate(t)])
         still, own = np.zeros(q.shape[1]), np.arange(len(q), dtype=np.uint64)
-        return float(kernel.navigate(x, v, u, target, still, c1, c2, self.unit or 0.0, self.moving, own))
+        return float(kernel.navigate(x, v, u, target, still, self._gains, self.unit or 0.0, self.moving, own))
 
     @cached_property
     def _path(self) -> FloatArray | None:

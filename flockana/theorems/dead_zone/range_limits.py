@@ -47,9 +47,8 @@ def first_entry(seen: Observed, r: float) -> Entry:
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
     known = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
     for k in range(len(t) - 1):
-        pair = follow_pairs(
-            float(t[k + 1] - t[k]), q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1], r, known, was_out, unsure
-        )
+        start, end = (q[k], p[k], u[k]), (q[k + 1], p[k + 1], u[k + 1])
+        pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, known, was_out, unsure)
         if pair[0] >= 0:
             return Entry(pair, float(t[k + 1]), True)
     return Entry(None, None, bool(unsure.any()))
