@@ -93,8 +93,8 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
     (the rounding of a distance, and by how much it and its rate may be off the true ones).
     """
     rounding, place, speed = noise
-    n = start[0].shape[0]
-    points, reach, allowance = control_points(h, *start, *end)
+    (q0, p0, u0), (q1, p1, u1), n = start, end, start[0].shape[0]
+    points, reach, allowance = control_points(h, q0, p0, u0, q1, p1, u1)
     stack, widths, k = np.empty((_DEPTH + 3, 11)), np.empty(_DEPTH + 3), -1
     for i in range(n):
         for j in range(i + 1, n):

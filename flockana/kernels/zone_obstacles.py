@@ -94,7 +94,7 @@ def _edge_terms(zone, c, world, first, last, inside, choices, out):
         edge = (world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3])
         if not zone_meets_edge(zone, edge, literal):
             continue
-        gx, gy = to_segment(zone[0], zone[1], *edge)
+        gx, gy = to_segment(zone[0], zone[1], edge[0], edge[1], edge[2], edge[3])
         distance = sqrt(gx * gx + gy * gy)
         if distance > 0.0:
             factor = push(distance, c, inside, outward, repulsive) / distance

@@ -12,7 +12,7 @@ R = 1.0
 def found(h, start, end, was_out=False, noise=1e-12, place=0.0, speed=0.0):
     """(enters, unsure, is out afterwards) of one pair over one interval."""
     out, unsure = np.array([was_out]), np.array([False])
-    pair = follow_pairs(h, start, end, R, (noise, place, speed), out, unsure)
+    pair = follow_pairs(h, tuple(start), tuple(end), R, (noise, place, speed), out, unsure)
     return pair == (0, 1), bool(unsure[0]), bool(out[0])
 
 

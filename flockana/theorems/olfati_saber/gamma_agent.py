@@ -37,7 +37,7 @@ def _looked(run: Trajectory) -> FloatArray:
     if _known(run.law.target) or len(run.t) < 2:
         return run.t
     steps = run.path.t
-    return np.sort(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))
+    return np.unique(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))  # a jump is two samples at one time
 
 
 def _between(t: FloatArray) -> FloatArray:

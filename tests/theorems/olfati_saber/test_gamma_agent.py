@@ -44,6 +44,12 @@ def test_a_path_with_its_own_velocity_is_consistent_and_moves(target):
     assert target_rests(run(target), told=False).status == "unmet"
 
 
+def test_a_step_of_one_rounding_is_no_interval():
+    """Its middle is one of its ends: the velocity seen there would be 0/0."""
+    t = np.insert(np.linspace(0.0, 5.0, 41), 3, np.nextafter(0.25, 1.0))
+    assert consistent(run(MOVING[3], t)).status == "met"
+
+
 @pytest.mark.parametrize("target", MOVING[:3], ids=lambda target: type(target).__name__)
 @pytest.mark.parametrize("factor", [0.0, 0.5, 0.999, 1.001])
 def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor):
