@@ -9,7 +9,7 @@ import typer
 
 from flockana.cli.options import AsJson
 from flockana.cli.show import show_json
-from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.status import OK, UNEXPECTED, print_error
 
 
 def check_command(
@@ -31,7 +31,7 @@ def check_command(
     try:
         found = check_certificate(file)
     except RejectedError as error:
-        complain(f"{file} is rejected: {error}")
+        print_error(f"{file} is rejected: {error}")
         return UNEXPECTED
     if as_json:
         show_json(asdict(found))

@@ -141,13 +141,13 @@ def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str])
     if len(axes) == 2:
         plots.phase_diagram(phases(runs), axes[0], axes[1], ax=ax, title=title)
     elif axes:
-        plots.share_against(table, axes[0], claims=_telling(table), ax=ax, title=title)
+        plots.share_against(table, axes[0], claims=_most_varying(table), ax=ax, title=title)
     else:
         judged = (table.verified + table.refuted).values > 0  # the others have nothing to show
         plots.share_bars(table, claims=table.claim.values[judged].tolist(), ax=ax, title=title)
 
 
-def _telling(table: xarray.Dataset) -> list[str]:
+def _most_varying(table: xarray.Dataset) -> list[str]:
     """Return the claims whose share varies most with the parameter, in their order."""
     import numpy as np
 

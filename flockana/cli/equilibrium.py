@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
 from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.status import OK, UNEXPECTED, print_error
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium
@@ -51,7 +51,7 @@ def equilibrium_command(
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         equilibrium = find_equilibrium(law, q)
     except SolverError as error:
-        complain(error)
+        print_error(error)
         return UNEXPECTED
     facts = summary(equilibrium, source)
     if as_json:

@@ -10,7 +10,7 @@ from typing import Any
 from flockana.base.errors import FileError
 
 
-class _Outlet(io.FileIO):
+class _PipedOutput(io.FileIO):
     """Standard output that drops text once its reader has left."""
 
     gone = False
@@ -41,7 +41,7 @@ def prepare_output() -> None:
         return
     stream.flush()
     sys.stdout = io.TextIOWrapper(
-        io.BufferedWriter(_Outlet(stream.fileno(), "wb", closefd=False)),
+        io.BufferedWriter(_PipedOutput(stream.fileno(), "wb", closefd=False)),
         encoding=stream.encoding,
         errors="backslashreplace",
         newline=None,

@@ -69,7 +69,7 @@ def map_in_batches(
                         break  # what else is done is still pending, or under suspicion
                     dead.append((batch[0], None))
                     if len(dead) == HOPELESS:
-                        raise _hopeless() from error
+                        raise _workers_died() from error
                 else:
                     size = batch_size(results)
                     yield (*dead, *zip(batch, results, strict=True))
@@ -114,7 +114,7 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Wo
     raise error
 
 
-def _hopeless() -> SolverError:
+def _workers_died() -> SolverError:
     return SolverError(
         f"{HOPELESS} worker processes died one after the other: a script that starts them must do so under "
         "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"

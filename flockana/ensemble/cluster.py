@@ -41,7 +41,7 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
         client = _client(own or address, address)
         try:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
-            yield client.get_executor(pure=False), _Width(client)
+            yield client.get_executor(pure=False), _ClusterSize(client)
         finally:
             _end(client)
     finally:
@@ -131,7 +131,7 @@ def _threads(client: Any, limit: float) -> int:
     return int(sum(client.sync(client.scheduler.ncores, callback_timeout=limit).values()))
 
 
-class _Width:
+class _ClusterSize:
     """Number of runs that a cluster can make at once, at present."""
 
     def __init__(self, client: Any) -> None:

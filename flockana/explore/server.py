@@ -59,11 +59,11 @@ class Process:
             except (EOFError, OSError):
                 message = None
             try:
-                loop.call_soon_threadsafe(self._hand_on, message)
+                loop.call_soon_threadsafe(self._forward, message)
             except RuntimeError:  # the server is gone
                 return
 
-    def _hand_on(self, message: Any) -> None:
+    def _forward(self, message: Any) -> None:
         self.ready = True
         self.deliver(message)  # to whoever has it now
 
@@ -194,14 +194,14 @@ class _Tab(WebSocketHandler):
         self._ask()
         if self.analysing:
             for seconds, at_once in zip(_PATIENCE, (True, False), strict=True):
-                asyncio.get_running_loop().call_later(seconds, self._replace_unless_begun, number, at_once)
+                asyncio.get_running_loop().call_later(seconds, self._replace_if_deaf, number, at_once)
 
     def _ask(self) -> None:
         process = self.process or self._take()
         with suppress(OSError):  # it has ended; `deliver` hears of it
             process.pipe.send((self.number, self.asked))
 
-    def _replace_unless_begun(self, number: int, at_once: bool) -> None:
+    def _replace_if_deaf(self, number: int, at_once: bool) -> None:
         """Replace a process that ignores a newer question, once another is ready."""
         spare = self.server.spare
         if at_once and not (spare is not None and spare.ready):

@@ -231,9 +231,9 @@ class ZoneFlocking(DiscreteLaw):
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
         memory = {"heading": heading, "estimate": np.array(p)}
         radii = self.radii.arrays(len(q))[2]
-        return memory | self._kept(radii, np.array(0.0), self.world.alien_starts)
+        return memory | self._needed_memory(radii, np.array(0.0), self.world.alien_starts)
 
-    def _kept(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
+    def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
         """Return the memory without parts that are not needed."""
         needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
@@ -262,7 +262,7 @@ class ZoneFlocking(DiscreteLaw):
         qs, ps, us, *own = compiled.run(np.array(q), np.array(p), *state, *constants, steps)
         headings, estimates, reach, aliens = own
         numbers = state[-1] + 1.0 + np.arange(steps)
-        return qs, ps, us, {"heading": headings, "estimate": estimates} | self._kept(reach, numbers, aliens)
+        return qs, ps, us, {"heading": headings, "estimate": estimates} | self._needed_memory(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
         """Return the six accelerations at one instant by name, each (n, m), before the bound (9).

@@ -118,8 +118,8 @@ class Stepped(Scheme):
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
         past = np.empty((0, 4, *q.shape))
         if self.past_steps:
-            told = next((one for one in self._late if one.history_t is not None), self._late[0])
-            before, speeds, push = told._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            with_history = next((one for one in self._late if one.history_t is not None), self._late[0])
+            before, speeds, push = with_history._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
             past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
@@ -149,7 +149,7 @@ class Stepped(Scheme):
         for k in range(int(wanted[-1])):
             now.number, now.begins, at = first + k, True, t + k * self.dt
             if past and self.past_steps:
-                now.past = _Recall(past, at, self.dt)
+                now.past = _PastStates(past, at, self.dt)
             q, p, u, departs = advance(now, at, q, p, kicking, past)
             if self.past_steps:
                 past.append((q, p, departs, departs))
@@ -231,7 +231,7 @@ def _kicked(p: FloatArray, now: Step, kicking: list[Wrapper]) -> FloatArray:
     return p
 
 
-class _Recall:
+class _PastStates:
     """State at an earlier time: steps that were made, and between two a Hermite cubic."""
 
     def __init__(self, past: _Past, t: float, h: float) -> None:

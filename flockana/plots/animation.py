@@ -94,7 +94,7 @@ def animation(
         with style():
             ax.clear()
             snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False, ranges=ranges)
-        _hold(ax, view)
+        _fix_view(ax, view)
         return []
 
     return FuncAnimation(figure, draw, frames=frames, init_func=lambda: [], interval=1000.0 / fps, repeat=False)
@@ -214,7 +214,7 @@ def film_size(view: FloatArray) -> tuple[float, float]:
     return _WIDTH, round(50.0 * min(max(height, _LEAST), _MOST)) / 50.0
 
 
-def _hold(ax: Any, view: FloatArray) -> None:
+def _fix_view(ax: Any, view: FloatArray) -> None:
     """Fix the view of the axes in every frame."""
     low, high = view
     if low.size == 3:

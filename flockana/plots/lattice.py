@@ -170,7 +170,7 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
 
 @check_kinds
 def barrier(
-    together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
+    together: Mapping[int, float], lowest: Mapping[int, float], c_star: float, *, ax: Axes | None = None
 ) -> Axes:
     """Draw the least energies with and without two coincident agents, and their difference, against n in units of c*.
 
@@ -185,7 +185,7 @@ def barrier(
     """
     axes = ensure_axes(ax)
     sizes = sorted(together)
-    upper, lower = (np.array([energy[n] for n in sizes]) / c_star for energy in (together, ground))
+    upper, lower = (np.array([energy[n] for n in sizes]) / c_star for energy in (together, lowest))
     axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V where two meet")
     axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V")
     axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier")

@@ -189,15 +189,15 @@ def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]],
     return decorated
 
 
-def curves(ax: Any, t: FloatArray, looks: Iterable[tuple[FloatArray, str, str, str]], *, width: float = 1.4) -> None:
+def curves(ax: Any, t: FloatArray, styles: Iterable[tuple[FloatArray, str, str, str]], *, width: float = 1.4) -> None:
     """Draw a line for each (values, label, colour, dash)."""
-    for values, label, colour, dash in looks:
+    for values, label, colour, dash in styles:
         ax.plot(t, values, color=colour, linestyle=dash, linewidth=width, label=label)
 
 
-def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
+def levels(ax: Any, styles: Iterable[tuple[float, str, str, str]]) -> None:
     """Draw a horizontal line for each (value, label, colour, dash)."""
-    for value, label, colour, dash in looks:
+    for value, label, colour, dash in styles:
         ax.axhline(value, color=colour, linestyle=dash, linewidth=1.1, label=label)
 
 

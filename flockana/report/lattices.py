@@ -96,12 +96,12 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
     witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
     if computed is None or witness is None:
         return None
-    together, ground = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
+    together, lowest = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
 
     text = (
         "The barrier against collisions (E4), found numerically: V < c* excludes them, but the least V of all rises "
         "with n until no state is left below c*; the barrier, V where two agents meet less the least V, stays near c*."
     )
     return Picture(
-        text, svg(lambda figure: plots().barrier(together, ground, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
+        text, svg(lambda figure: plots().barrier(together, lowest, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
     )

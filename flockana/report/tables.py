@@ -19,14 +19,14 @@ _WIDE = 10_000  # no table is wider
 _PIECE = re.compile(r"[^\s\-/]*[-/]|[^\s\-/]+")  # a word may be broken after a hyphen, and nowhere else
 
 
-class WholeTable(Table):
+class FoldingTable(Table):
     """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
 
     Rich itself would cut numbers and names, or leave whole columns out.
 
     Examples
     --------
-    >>> table = WholeTable(column("claim"), column("margin", right=True), box=None)
+    >>> table = FoldingTable(column("claim"), column("margin", right=True), box=None)
     >>> table.add_row("iv-printed", "1.411e+04")
     >>> Console(width=12).print(table)
     iv-printed
@@ -56,7 +56,7 @@ class WholeTable(Table):
         for row, old in zip(rows, self.rows, strict=True):
             cells = [_broken(cell, rooms[k]) if k in rooms else cell for k, cell in enumerate(row)]
             broken.add_row(*cells, style=old.style, end_section=old.end_section)
-        yield from super(WholeTable, broken).__rich_console__(console, options)
+        yield from super(FoldingTable, broken).__rich_console__(console, options)
 
     def _blocks(self, heads: list[Text], rows: list[list[Text]]) -> Iterable[RenderableType]:
         """Yield each row as a block: its name, with its values below."""
@@ -123,7 +123,7 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
     >>> headed_table(column("mode"), column("frequency", right=True)).columns[1].justify
     'right'
     """
-    return WholeTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
+    return FoldingTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
@@ -141,7 +141,7 @@ def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
     2
     """
     columns = Column(no_wrap=True, style="bright_black"), Column(overflow="fold")
-    table = WholeTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
+    table = FoldingTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
     for name, value in facts:
         table.add_row(name, Text(value))
     return table

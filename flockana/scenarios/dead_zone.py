@@ -142,14 +142,14 @@ def _scenario(
 ) -> Scenario:
     generator = np.random.default_rng(seed)
     box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
-    told = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
+    notes = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
         "" if flow else " The eight instants shown are ours."
     )
     options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
     return Scenario(
         name,
         title,
-        told,
+        notes,
         law if flow else SemiImplicitEuler(law, DT),
         generator.uniform(0.0, box, (n, 2)),
         generator.uniform(-1.0, 1.0, (n, 2)),

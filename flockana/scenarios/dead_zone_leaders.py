@@ -27,9 +27,9 @@ def _law(run: Trajectory) -> LedDeadZoneFlocking:
 def _slip(run: Trajectory) -> FloatArray:
     """Return each agent's velocity error to its leader, relative to half the leaders' velocity difference."""
     law = _law(run)
-    told = law.ties.led(float(run.t[-1]))[1]
+    leader_velocity = law.ties.led(float(run.t[-1]))[1]
     parting = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
-    slip: FloatArray = np.linalg.norm(run.p[-1] - told, axis=1) / parting
+    slip: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting
     return slip
 
 

@@ -31,9 +31,9 @@ _APART = 60.0  # of a group that nobody joins
 _BOX, _SPEED = 100.0, 1.0  # of the survey's start
 
 
-def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArray]:
+def _near_lattice(seed: int, n: int, noise: float) -> tuple[FloatArray, FloatArray]:
     generator = np.random.default_rng(seed)
-    q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-shake, shake, (n, 2))
+    q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-noise, noise, (n, 2))
     return q, generator.uniform(-0.3, 0.3, (n, 2))
 
 

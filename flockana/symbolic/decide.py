@@ -107,7 +107,7 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
             middle = (left + right) / 2
             stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
             continue
-        fact = _looked_at(of, region, (left + right) / 2, name, (scale, slope), kinks)
+        fact = _visible_faults(of, region, (left + right) / 2, name, (scale, slope), kinks)
         if fact.status == "unmet":
             return [fact]
         open_.append(fact)
@@ -128,7 +128,7 @@ def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
     return region.place(_float(left)), region.place(_float(right))
 
 
-def _looked_at(
+def _visible_faults(
     of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
 ) -> Fact:  # fmt: skip
     """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""

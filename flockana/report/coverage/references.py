@@ -170,20 +170,20 @@ def _claim(name: str) -> str:
 
 
 def _proof(name: str) -> str:
-    known = {path.stem: path for path in _beside("proofs") if "\nPROOF = " in path.read_text(encoding="utf-8")}
+    known = {path.stem: path for path in _python_files("proofs") if "\nPROOF = " in path.read_text(encoding="utf-8")}
     if name not in known:
         raise UnknownNameError("proof", name, known)
     return _relative(str(known[name]))
 
 
 def _notebook(number: str) -> str:
-    known = {path.stem.partition("_")[0]: path for path in _beside("notebooks")}
+    known = {path.stem.partition("_")[0]: path for path in _python_files("notebooks")}
     if number not in known:
         raise UnknownNameError("notebook", number, known)
     return _relative(str(known[number]))
 
 
-def _beside(folder: str) -> list[Path]:
+def _python_files(folder: str) -> list[Path]:
     """Return the Python files of a folder of the checkout, except templates."""
     found = sorted(path for path in (_CHECKOUT / folder).glob("*.py") if not path.name.startswith("_"))
     if not found:

@@ -18,14 +18,14 @@ _RUNAWAY, _THRUST = np.array([0.0, 5.0 / 3.0, 5.0 / 3.0]), 2.0 / 3.0  # distance
 _PROOF = "bearing-distance-printed"
 
 
-def _wanted(law: MinimalFlocking) -> FloatArray:
+def _desired_lengths(law: MinimalFlocking) -> FloatArray:
     """Return the desired lengths of the edge between an end and the middle, as each of the two has it."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
     spacing = {(int(j), int(i)): float(length) for i, j, length in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
 
 
-def _off(law: MinimalFlocking, seed: int) -> Enclosure:
+def _error(law: MinimalFlocking, seed: int) -> Enclosure:
     """Return how far a run from a random start ends from the predicted equilibrium: edges 5/3 long, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
@@ -46,7 +46,7 @@ def _rate(law: MinimalFlocking) -> float:
 def _check(tolerances: Tolerances) -> list[Claim]:
     """The ends of an undirected path of three want their edges at length 1, the middle at 2: both become 5/3."""
     law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))
-    wanted, off = _wanted(law), stacked([_off(law, seed) for seed in range(_STARTS)])
+    wanted, off = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
     worst, rate = float(off.mid.max()), _rate(law)
     return [
         judged(

@@ -38,10 +38,10 @@ def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, Float
     return run, np.array(predicted)
 
 
-def _told_and_not() -> list[Claim]:
-    told, predicted = _pair(1, (1.0, 1.0))
-    off = float(np.abs(told - predicted).max()) / _DESIRED
-    left = float(np.abs(told[-1] - _DESIRED).max()) / _DESIRED
+def _informed_or_not() -> list[Claim]:
+    informed, predicted = _pair(1, (1.0, 1.0))
+    off = float(np.abs(informed - predicted).max()) / _DESIRED
+    left = float(np.abs(informed[-1] - _DESIRED).max()) / _DESIRED
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
@@ -49,7 +49,7 @@ def _told_and_not() -> list[Claim]:
             "one-informed",
             _SAME - float(np.maximum(off, left)),
             _ROUNDING,
-            computed=told[-1].tolist(),
+            computed=informed[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
             detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as by x' = M x, whose "
@@ -77,7 +77,7 @@ def _speeds(informed: int) -> list[float]:
 def _check(tolerances: Tolerances) -> list[Claim]:
     two, none = _speeds(2), _speeds(0)
     return [
-        *_told_and_not(),
+        *_informed_or_not(),
         mostly(
             "two-of-ten",
             [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],

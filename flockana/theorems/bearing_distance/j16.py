@@ -79,7 +79,7 @@ def _circling() -> Claim:
     )
 
 
-def _lone() -> Claim:
+def _growing_radii() -> Claim:
     """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
@@ -121,7 +121,7 @@ def _pairs() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_at_walls(), _circling(), _lone(), _pairs()]
+    return [_at_walls(), _circling(), _growing_radii(), _pairs()]
 
 
 THEOREM = erratum(

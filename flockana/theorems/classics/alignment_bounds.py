@@ -26,7 +26,7 @@ _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
 
 @dataclass(frozen=True)
-class Decline:
+class AlignmentRate:
     """φ(s) = λ (1 + (c s/ℓ)²)^−β, at which a velocity spread falls when the position spread is s.
 
     Parameters
@@ -121,10 +121,10 @@ class Guarantee:
     stretch: float
 
     @cached_property
-    def phi(self) -> Decline:
+    def phi(self) -> AlignmentRate:
         """φ, with λ = K where sums are divided by n and λ = nK where they are not."""
         law = self.seen.law.continuous
-        return Decline(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
+        return AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
 
     @cached_property
     def room(self) -> Enclosure:

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.classics.alignment_bounds import QUADRATURE, Decline
+from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is, positive_room
 from flockana.theorems.limits import limit_claim
@@ -25,7 +25,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     weight = seen.law.weight
-    psi = Decline(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
+    psi = AlignmentRate(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
     room = psi.beyond_all(x[0])
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {room.mid:.6g}"
     slow = positive_room("w(0) < ∫λψ from x(0) on", room - w[0], detail)
@@ -44,7 +44,7 @@ def _along(way: float, series: FloatArray, error: FloatArray) -> Enclosure:
 
 
 def _invariant(
-    seen: Observed, psi: Decline, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
+    seen: Observed, psi: AlignmentRate, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
 ) -> Claim:
     """Return the claim that w + ∫λψ is conserved."""
     start = float(x.mid[0])
@@ -64,7 +64,7 @@ def _invariant(
 
 
 def _sides(
-    psi: Decline,
+    psi: AlignmentRate,
     x: Enclosure,
     w: Enclosure,
     room: Enclosure,

@@ -15,7 +15,7 @@ from flockana.theorems.classics.averaging import (
     Block,
     blocks,
     final_heading,
-    neighbourhoods,
+    neighbourhood_sizes,
     permanently_connected,
     permanently_separated,
 )
@@ -96,7 +96,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = neighbourhoods(run.n, run.law.links(run.q[-1]))
+    weights = neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
     return limit_claim(
         "agreement",
         needs,

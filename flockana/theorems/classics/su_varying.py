@@ -38,7 +38,7 @@ def convergence_rate(gains: Gains) -> float:
     return 0.5 * c2 - sqrt(max(0.25 * c2 * c2 - c1, 0.0))
 
 
-def _only_told(run: Trajectory) -> Hypothesis:
+def _is_feedforward(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that the law is Algorithm 2 with feedforward (not needed at constant velocity)."""
     name, law = "the law is Algorithm 2, with the leader's acceleration fed forward to all agents", run.law
     if type(law) is Algorithm2:
@@ -87,7 +87,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
+def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
     """Return the basin of the flock's shape; none is known for other pair laws."""
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
@@ -98,7 +98,7 @@ def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
 
 def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     run = observed.run
-    needs = [_all_alike(run), _only_told(run)]
+    needs = [_all_alike(run), _is_feedforward(run)]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
@@ -110,7 +110,7 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     below = below_multiple(seen.energy[0] - pairs.floor, pairs.c_star)
     return [*needs, below], [
         _centre(seen, gains, needs),
-        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _caught(seen, gains)),
+        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _shape_basin(seen, gains)),
         stays_within(seen, needs, name="distance", proof=PROOF),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]

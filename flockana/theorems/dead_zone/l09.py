@@ -26,13 +26,17 @@ _APART = 30.0  # between two groups
 _ROUNDING = 1e-9  # of what steps of a fixed size come to, relative
 
 
-def led_run(leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, told: bool = True) -> Observed:
+def led_run(
+    leaders: tuple[Any, ...], centres: tuple[tuple[float, float], ...], *, feedforward: bool = True
+) -> Observed:
     """Seven agents about each centre, the middle one pinned to the leader of that number; for 60 time units."""
     pair = DeadZoneInteraction()
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
-    law = LedDeadZoneFlocking(pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, feedforward=told)
+    law = LedDeadZoneFlocking(
+        pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, feedforward=feedforward
+    )
     return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
@@ -41,8 +45,8 @@ def _slip(run: Trajectory) -> FloatArray:
     law = run.law.continuous
     rows = []
     for t, p in zip(run.t[1:], run.p[1:], strict=True):
-        told = law.ties.led(float(t))[1]
-        rows.append((np.linalg.norm(p - told, axis=1) / np.linalg.norm(told, axis=1)).max())
+        led = law.ties.led(float(t))[1]
+        rows.append((np.linalg.norm(p - led, axis=1) / np.linalg.norm(led, axis=1)).max())
     return np.array(rows)
 
 
@@ -66,8 +70,8 @@ def _runs() -> dict[str, Observed]:
     return {
         "one": led_run((straight,), ((0.0, 0.0),)),
         "two": led_run(apart, ((0.0, 0.0), (_APART, 0.0))),
-        "told": led_run((circle,), ((0.0, 0.0),)),
-        "not told": led_run((circle,), ((0.0, 0.0),), told=False),
+        "known": led_run((circle,), ((0.0, 0.0),)),
+        "unknown": led_run((circle,), ((0.0, 0.0),), feedforward=False),
     }
 
 
@@ -117,7 +121,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
-    deaf, late = float(_slip(runs["not told"].run).min()), runs["not told"].t[1:]
+    deaf, late = float(_slip(runs["unknown"].run).min()), runs["unknown"].t[1:]
     return [
         _printed(),
         equal(
@@ -136,7 +140,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _apart(runs["two"]),
         _fraction(),
         _follow(
-            "acceleration", runs["told"], "all follow a leader that turns, its acceleration known", "with feedforward"
+            "acceleration",
+            runs["known"],
+            "all follow a leader that turns, its acceleration known",
+            "with feedforward",
         ),
         of_map(
             "acceleration-needed",

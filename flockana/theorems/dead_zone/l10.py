@@ -20,7 +20,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 _TIMES = 2.0  # as much energy as can put the pair out of range
 
 
-def wild_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
+def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
     """Two agents in contact that leave each other with twice the energy that can put them out of range, much damped."""
     law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
     q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
@@ -34,7 +34,7 @@ def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
-def _excludes_nothing() -> bool | None:
+def _is_finite_apart() -> bool | None:
     """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0.
 
     None if sympy cannot tell.
@@ -51,7 +51,7 @@ def _excludes_nothing() -> bool | None:
 
 def _necessary() -> Claim:
     """The claim that the condition leaves some start out, by algebra."""
-    nothing, stated = _excludes_nothing(), "the condition leaves some start out"
+    nothing, stated = _is_finite_apart(), "the condition leaves some start out"
     if nothing is None:
         return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
     detail = (
@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     """Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary."""
     law, q, p = parting_pair()
     away = final_components(observed(law, q, p, (0.0, 10.0)), law)
-    wild, x, v = wild_pair()
+    wild, x, v = escaping_pair()
     share = energy_share(wild, x, v)
     later = observed(wild, x, v, (0.0, 10.0))
     kept = final_components(later, wild).members[0].bond

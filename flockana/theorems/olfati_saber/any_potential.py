@@ -19,8 +19,8 @@ from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
-    by_fact,
     condition,
+    hypothesis_from_fact,
     law_with_common_gains,
     positive,
     smooth_pair,
@@ -49,7 +49,7 @@ def is_paper(seen: Observed) -> bool:
     return isinstance(seen.law.alpha, AlphaInteraction)
 
 
-def said_by(seen: Observed, claims: list[Claim]) -> list[Claim]:
+def attribute_claims(seen: Observed, claims: list[Claim]) -> list[Claim]:
     """Return claims as the paper's; under another pair law than the paper's, as flockana's extensions."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
@@ -63,7 +63,7 @@ def potential_needs(seen: Observed) -> list[Hypothesis]:
 
 def weight_inside(seen: Observed) -> list[Hypothesis]:
     """Return the hypothesis that all pairs in range match velocities, unless it is proved."""
-    inside = by_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
+    inside = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
     return [inside] if inside.status != "met" else []
 
 

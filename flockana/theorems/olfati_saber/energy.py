@@ -72,8 +72,8 @@ def cancelling(run: Trajectory) -> FloatArray:
     speed = lengths(p)
     size: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
     if law.target is not None:
-        told = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
-        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*told, strict=True))
+        any_p_r = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
+        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*any_p_r, strict=True))
         size += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
         size += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
     return size
@@ -183,7 +183,7 @@ def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
     """Return the hypotheses under which no term of the law adds energy, in the energy's own frame."""
     law, needs = run.law, pairs_dissipate(run)
     if law.target is not None and not law.moving:
-        needs.append(target_rests(run.run, told=False))  # outside of the moving frame a moving γ-agent does work
+        needs.append(target_rests(run.run, any_p_r=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:
         needs.append(stays_outside(run))
     if type(law) is Composition and law.thrust > 0.0:

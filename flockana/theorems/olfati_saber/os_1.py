@@ -13,11 +13,11 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
+    attribute_claims,
     bounded_at_contact,
     is_paper,
     never_meets,
     potential_needs,
-    said_by,
     stays_together,
     weight_inside,
 )
@@ -58,7 +58,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
     ]
-    return [*needs, *bounded, low, barrier], said_by(seen, claims)
+    return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
 
 
 THEOREM = Theorem(

@@ -15,12 +15,12 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
+    attribute_claims,
     bounded_at_contact,
     cohesive,
     is_paper,
     never_meets,
     potential_needs,
-    said_by,
 )
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import (
@@ -79,7 +79,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
     given = [*needs, *bounded, consistent(seen.run), repels]
     if unmet([repels]):
-        return given, said_by(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
+        return given, attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
     barrier = below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
     few = [repels, *potential]
     claims += [  # (iv) needs gains >= 0 only, which every run has
@@ -88,7 +88,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         no_collision(seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else PROOF),
         no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
-    return [*given, none, barrier], said_by(seen, claims)
+    return [*given, none, barrier], attribute_claims(seen, claims)
 
 
 THEOREM = Theorem(

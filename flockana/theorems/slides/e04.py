@@ -142,7 +142,7 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
         "barrier",
         least,
         _error(alpha, max(_SIZES)),
-        computed={n: {"together": barrier.together, "ground": barrier.ground} for n, barrier in barriers.items()},
+        computed={n: {"together": barrier.together, "ground": barrier.lowest} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         witness="minimised from many starts, an upper bound; the margin is that of a lower bound, which counts pairs",
         detail=f"to bring two agents together takes {heights}, from the best lattice (c* = {alpha.c_star:.3f})",

@@ -26,12 +26,12 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     kind = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
     path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
     swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
-    told = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
+    detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
     drag = float(run.law.gains.c2_gamma) if applies else 0.0
     return [
         condition("Algorithm 2 is applied, one gain for all", applies, detail=kind),
-        condition("the γ-agent moves on a circle or a sine", swings, detail=told),
-        condition("its p_r is not dq_r/dt", factor != 1.0, detail=told),
+        condition("the γ-agent moves on a circle or a sine", swings, detail=detail),
+        condition("its p_r is not dq_r/dt", factor != 1.0, detail=detail),
         condition("c2γ > 0: the start is forgotten", drag > 0.0, drag),
     ]
 
@@ -61,9 +61,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     consistent = observed(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
     handed, true = measured_ratio(seen), measured_ratio(consistent)
     slow = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
-    told = f"with the p_r that was handed over, {factor:g} dq_r/dt"
+    detail = f"with the p_r that was handed over, {factor:g} dq_r/dt"
     return needs, [
-        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, told),
+        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
         _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
         judged(
             "printed",

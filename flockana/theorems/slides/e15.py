@@ -57,8 +57,8 @@ def _condition() -> Any:
 
     factor, w = sp.Symbol("k", real=True), sp.Symbol("w", nonnegative=True)
     c1, c2 = GAINS.c1_gamma, GAINS.c2_gamma
-    told = -(c1**2) * falling_condition(factor) - 2 * c1**2 * w - factor**2 * c2**2 * w**2
-    return sp.expand(gain_slope(factor, square=w) - told)
+    expected = -(c1**2) * falling_condition(factor) - 2 * c1**2 * w - factor**2 * c2**2 * w**2
+    return sp.expand(gain_slope(factor, square=w) - expected)
 
 
 def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:

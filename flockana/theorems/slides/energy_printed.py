@@ -39,7 +39,7 @@ def _cancelling(run: Trajectory) -> FloatArray:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [target_rests(seen.run, told=False), stays_outside(seen)]
+    needs = [target_rests(seen.run, any_p_r=False), stays_outside(seen)]
     by_samples = run_claim(seen, pair_energy, f"{seen.n} agents", needs)
     if by_samples.status == "refuted":
         return needs, [by_samples]

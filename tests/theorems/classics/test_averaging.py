@@ -11,7 +11,7 @@ from flockana.theorems.classics.averaging import (
     averaging_matrix,
     blocks,
     contraction,
-    neighbourhoods,
+    neighbourhood_sizes,
     permanently_connected,
     permanently_separated,
 )
@@ -38,7 +38,7 @@ def test_a_net_that_is_certified_stays_as_it_is():
         seen += 1
         run = simulate(LAW, q, LAW.velocities(heading), (0.0, 200.0))
         assert all(np.array_equal(LAW.links(x), LAW.links(q)) for x in run.q)
-        weights = neighbourhoods(len(q), LAW.links(q))
+        weights = neighbourhood_sizes(len(q), LAW.links(q))
         assert run.extra["heading"][-1] == pytest.approx(np.full(len(q), weights @ heading / weights.sum()), abs=1e-9)
     assert seen > 10
 
