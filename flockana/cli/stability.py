@@ -254,4 +254,4 @@ def _mode_table(slow: tuple[Mode, ...]) -> Table:
 
 def _follows(law: Any) -> bool:
     """Return whether the centre of mass follows a γ-agent by its own linear equation."""
-    return law.target is not None and law.splits
+    return law.target is not None and law.centre_decouples

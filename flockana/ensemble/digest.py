@@ -80,11 +80,11 @@ def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
     for name, source in sorted(sources.items()):
         total.update(f"\0{name}\0".encode())
-        total.update(_meaning(source) if name.endswith(".py") else source)
+        total.update(_code_without_comments(source) if name.endswith(".py") else source)
     return total.hexdigest()[:16]
 
 
-def _meaning(source: bytes) -> bytes:
+def _code_without_comments(source: bytes) -> bytes:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         body = getattr(node, "body", None)

@@ -76,7 +76,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "duration": parts.t_span[1] - parts.t_span[0],
         "numbers": listed,
         "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + _reporting(parts),
-        "ratio": _squeezed(parts.law),
+        "ratio": _collapses_by_ratio(parts.law),
         "python": program(parts),
     }
 
@@ -105,7 +105,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
             statement = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in parts.source.reports)
             yield "verdict", found.to_dict() | {"marks": marks_of(run, [found]), "statement": statement}
     yield "poles", poles(run)
-    if _squeezed(parts.law):
+    if _collapses_by_ratio(parts.law):
         yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)
 
 
@@ -156,10 +156,12 @@ def _few(names: list[str]) -> list[str]:
     return [*named, f"{soft} soft ones"] if soft else named
 
 
-def _squeezed(law: Any) -> bool:
+def _collapses_by_ratio(law: Any) -> bool:
     """Return whether a γ-agent pulls all agents alike, so that c1γ/c1α decides on collapse (erratum E11)."""
     gains = getattr(law, "gains", None)
-    follows = law.target is not None and getattr(law, "splits", False) and isinstance(law.pair, AlphaInteraction)
+    follows = (
+        law.target is not None and getattr(law, "centre_decouples", False) and isinstance(law.pair, AlphaInteraction)
+    )
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
 
 

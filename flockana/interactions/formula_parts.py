@@ -247,7 +247,7 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
     of_square = [*norm, "y = z"] if in_norm else [*floor, "y = s2"]
     marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
 
-    def text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
+    def source_text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
         used = {symbol for row in wanted for value in row for symbol in value.free_symbols}
         names = (f"c{k}" for k in range(first, first + len(taken.values)))
         constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in used)]
@@ -260,16 +260,16 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
         slope = slope.replace("UNIT", inner)
         energy = "(on_panels(y, panels) if y < par[3] else v0)"
     potential = (
-        text("s2, par, panels", rows[3], f"par[1] if s2 >= par[0] else {energy}")
+        source_text("s2, par, panels", rows[3], f"par[1] if s2 >= par[0] else {energy}")
         if not forces
         else _integrated(in_norm)
     )
     pair = ("z, root, par", rows[0], f"{weight}, v1", ["y = z"]) if in_norm else ("s2, par", rows[0], f"{weight}, v1")
     texts = (
-        text(*pair),
-        text("s2, par", rows[1], slope),
+        source_text(*pair),
+        source_text("s2, par", rows[1], slope),
         potential,
-        text("s2, par", rows[2], "v0"),
+        source_text("s2, par", rows[2], "v0"),
         function_text("NAME", "s2, par", norm, [], "z, root") if in_norm else None,
     )
     return texts, taken.values
@@ -278,10 +278,10 @@ def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Text
 def _horner(otherwise: str, order: int) -> str:
     """Return the source of the series of the weight near 0, or of its derivative."""
     terms = [f"{float(k)}*par[{4 + k}]" if order else f"par[{4 + k}]" for k in range(order, TERMS)]
-    text = terms[-1]
+    source_text = terms[-1]
     for term in reversed(terms[:-1]):
-        text = f"{term} + (y/par[3])*({text})"
-    return f"(({text}){'*UNIT' if order else ''} if y < par[3] else {otherwise})"
+        source_text = f"{term} + (y/par[3])*({source_text})"
+    return f"(({source_text}){'*UNIT' if order else ''} if y < par[3] else {otherwise})"
 
 
 def _integrated(in_norm: bool) -> str:

@@ -293,7 +293,7 @@ def compose(
         "c2_gamma": (navigation, match),
     }
     own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
-    unit = _bend(bounded, pair)
+    unit = _bounding_length(bounded, pair)
     thrust, brake = _along(drag, speed)
     plain = net is None and pair is not None and not (feedforward or thrust or brake)
     if plain and navigation is None and not obstacles:
@@ -331,7 +331,7 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
     return tuple(common if i in known else 0.0 for i in range(n))
 
 
-def _bend(bounded: bool | float, pair: PairInteraction | None) -> float | None:
+def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:
     """ℓ of a bounded pull, None for the linear one."""
     if bounded is False:
         return None

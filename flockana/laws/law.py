@@ -118,7 +118,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         return False
 
     @property
-    def splits(self) -> bool:
+    def centre_decouples(self) -> bool:
         """Whether shape and centre of mass are known to decouple: forces cancel, but for one linear pull on all."""
         return False
 

@@ -187,7 +187,7 @@ class Stepped(Scheme):
     def _ask(self, now: Step, t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         return input_of(self.law, now, View(t, q, p))
 
-    def _departs(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
+    def _begin_step(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
         """Return the input at the step's beginning, and store it in the past."""
         u = self._ask(now, t, q, p)
         now.begins = False
@@ -199,14 +199,14 @@ class Stepped(Scheme):
     def _euler(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        u, h = self._departs(now, t, q, p, past), self.dt
+        u, h = self._begin_step(now, t, q, p, past), self.dt
         after = p + h * u
         return q + (0.5 * h) * (p + after), _kicked(after, now, kicking), u, u
 
     def _heun(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        first, h = self._departs(now, t, q, p, past), self.dt
+        first, h = self._begin_step(now, t, q, p, past), self.dt
         guess = _kicked(p + h * first, now, kicking)
         second = self._ask(now, t + h, q + h * p, guess)
         u = 0.5 * (first + second)
@@ -215,7 +215,7 @@ class Stepped(Scheme):
     def _runge_kutta(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        k1, h = self._departs(now, t, q, p, past), self.dt
+        k1, h = self._begin_step(now, t, q, p, past), self.dt
         k2 = self._ask(now, t + h / 2, q + h / 2 * p, p + h / 2 * k1)
         k3 = self._ask(now, t + h / 2, q + h / 2 * (p + h / 2 * k1), p + h / 2 * k2)
         k4 = self._ask(now, t + h, q + h * (p + h / 2 * k2), p + h * k3)

@@ -90,14 +90,14 @@ def _indent(text: Text) -> int:
     return len(text.plain) - len(text.plain.lstrip(" "))
 
 
-def _hang(text: Text) -> int:
+def _hanging_indent(text: Text) -> int:
     """Return the indentation of a text's further lines."""
     return _indent(text) + 2 if _indent(text) else 0
 
 
 def _longest_piece(text: Text) -> int:
     """Return the width of the longest part of a word between hyphens."""
-    return max((len(piece) + _hang(text) for piece in _PIECE.findall(text.plain)), default=0)
+    return max((len(piece) + _hanging_indent(text) for piece in _PIECE.findall(text.plain)), default=0)
 
 
 def _broken(text: Text, room: int) -> Text:
@@ -110,9 +110,9 @@ def _broken(text: Text, room: int) -> Text:
         for piece in _PIECE.finditer(text.plain, word.start(), word.end()):
             if piece.end() - begin + indent > room and piece.start() > begin:
                 ends.append(piece.start())
-                begin, indent = piece.start(), _hang(text)
+                begin, indent = piece.start(), _hanging_indent(text)
     lines = text.divide(ends)
-    return Text("\n" + " " * _hang(text)).join(lines) if ends else text
+    return Text("\n" + " " * _hanging_indent(text)).join(lines) if ends else text
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:

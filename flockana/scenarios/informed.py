@@ -73,7 +73,7 @@ def _few(seed: int = 0) -> Scenario:
     )
 
 
-def _through(seed: int = 0) -> Scenario:
+def _one_informed(seed: int = 0) -> Scenario:
     """Return erratum E13 with one informed agent, in the frame of a leader that moves with the flock."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
@@ -198,7 +198,7 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
-    "informed-through": _through,
+    "informed-through": _one_informed,
     "leader-told": _varying(
         "leader-told",
         "A leader that circles, and tells its acceleration: the centre of mass converges to it",

@@ -190,7 +190,7 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
 def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
     """Largest force and relative velocity, over the law's own scales."""
     force = law.flow(t, q, p)[0]
-    if law.splits:
+    if law.centre_decouples:
         force = moving_frame(force)
     length = _length(q) if law.scales is None else law.scales.length
     scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
@@ -213,7 +213,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
 
     Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
     """
-    if law.splits:
+    if law.centre_decouples:
         return
     size = q.size
     stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))

@@ -15,7 +15,7 @@ from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
 from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
 from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
 from flockana.symbolic.germs import Germ, germ
-from flockana.symbolic.integrals import integral_least
+from flockana.symbolic.integrals import least_of_integral
 from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
@@ -236,7 +236,7 @@ class _NumericFormula:
         if self.cut.formula.forces:
             regions = list(self._regions(self._main_pieces))
             length = self._point(sp.Symbol("d_z" if self._y == Z else "d", positive=True), 0)
-            return integral_least(regions, length, scale)
+            return least_of_integral(regions, length, scale)
         found, contact, regions = [], (-inf, inf), list(self._regions(self._main_pieces))
         for region in regions:
             left = region.left

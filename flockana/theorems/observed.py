@@ -314,10 +314,10 @@ def with_resolution(
     if not seen.unresolved:
         return tuple(hypotheses), claims
     need = Hypothesis(NAME, "assumed", detail=seen.unresolved)
-    return (*hypotheses, need), tuple(_resting_on(claim, need) for claim in claims)
+    return (*hypotheses, need), tuple(_with_hypothesis(claim, need) for claim in claims)
 
 
-def _resting_on(claim: Claim, need: Hypothesis) -> Claim:
+def _with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
     """Return a claim under one more hypothesis, unless a proof decides it or it says nothing of this run."""
     if claim.rigour not in ("numeric", "statistical") or claim.status == "vacuous":
         return claim

@@ -50,11 +50,11 @@ def locate(reference: Reference) -> str:
 
 
 def _function(name: str) -> str:
-    return _relative(_file(*_walked("function", name)))
+    return _relative(_file(*_resolve("function", name)))
 
 
 def _plot(name: str) -> str:
-    path = _relative(_file(*_walked("plot", name)))
+    path = _relative(_file(*_resolve("plot", name)))
     if not path.startswith("flockana/plots/"):
         raise ArgumentError(
             f"plot {name!r} is defined in {path}: expected one of flockana.plots; else call it function"
@@ -62,7 +62,7 @@ def _plot(name: str) -> str:
     return path
 
 
-def _walked(kind: str, name: str) -> tuple[Any, Any]:
+def _resolve(kind: str, name: str) -> tuple[Any, Any]:
     """Return the object that a dotted name leads to, and its owner."""
     first, *parts = name.split(".")
     if first != flockana.__name__ or not parts:

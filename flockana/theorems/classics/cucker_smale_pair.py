@@ -26,11 +26,11 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         return needs, []
     weight = seen.law.weight
     psi = AlignmentRate(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
-    room = psi.beyond_all(x[0])
-    detail = f"w(0) = {w.mid[0]:.6g}, the integral {room.mid:.6g}"
-    slow = positive_room("w(0) < ∫λψ from x(0) on", room - w[0], detail)
-    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - room, detail)
-    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, room, needs, slow, fast)]
+    rest = psi.beyond_enclosed(x[0])
+    detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
+    slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
+    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
+    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, rest, needs, slow, fast)]
 
 
 def _states(seen: Observed) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
@@ -67,13 +67,13 @@ def _sides(
     psi: AlignmentRate,
     x: Enclosure,
     w: Enclosure,
-    room: Enclosure,
+    rest: Enclosure,
     needs: list[Hypothesis],
     slow: Hypothesis,
     fast: Hypothesis,
 ) -> list[Claim]:
     """Return the claims for both sides of the threshold; the claim for the other side is vacuous."""
-    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - room).mid)
+    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid)
     bounded = limit_claim(
         "bounded",
         [*needs, slow],

@@ -33,7 +33,7 @@ def _turned() -> Claim:
     )
 
 
-def _clear() -> Claim:
+def _away_from_cut() -> Claim:
     """Return the claim that the mean turns with the flock as long as no heading passes the direction of angle 0."""
     import sympy as sp
 
@@ -65,7 +65,7 @@ def _vectors() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_turned(), _clear(), _vectors()]
+    return [_turned(), _away_from_cut(), _vectors()]
 
 
 THEOREM = erratum(

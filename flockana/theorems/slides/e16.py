@@ -26,7 +26,7 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 
 
 @lru_cache(maxsize=1)
-def _pressed() -> FloatArray:
+def _compressed_rest() -> FloatArray:
     """Return where a hexagonal patch of 61 agents rests at the project's coefficients."""
     return _rest(perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d), _RATIO)
 
@@ -62,7 +62,7 @@ def _pair_ratio(strain: float) -> float:
 def _check(tolerances: Tolerances) -> list[Claim]:
     """Flocks of 2 to 7 agents at c1γ = c1α, and 61 agents at the project's own coefficients."""
     strains = stacked([_least_strain(n, tolerances.contact) for n in _SIZES])
-    q = _pressed()
+    q = _compressed_rest()
     many = _measured(q, _RATIO, tolerances.contact)
     basin, pairs = attraction(pulled_law(_ALPHA, _RATIO), q, 0.0 * q).certificate, float(many.coincident)
     return [
