@@ -316,9 +316,9 @@ assert fl.verify("os-3", line).claim("iv-instant").status == "verified"
 # %% [markdown]
 # ## All errata at once
 #
-# What is printed, and what is right. `E1` to `E16` are of lecture slides and student projects on the paper; of none is
-# it shown that the paper has it. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
-# *vacuous* (true of next to nothing) or, after all, *confirmed*.
+# What is printed, and what is right. `E1` to `E16` are in lecture slides and student projects on the paper; none is
+# shown to be in the paper itself. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
+# *vacuous* (true, but of hardly any flock) or, after all, *confirmed*.
 
 # %%
 for sort in ("wrong", "incomplete", "vacuous", "confirmed"):

@@ -229,7 +229,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError(f"equilibrium has {len(q)} agent: expected two or more, a shape")
     if len(links(q, _APART * law.alpha.d)):
         raise ArgumentError(
-            "the equilibrium has agents at one place: expected distinct ones, or nothing bars collisions"
+            "the equilibrium has coincident agents: expected distinct positions, or collisions cannot be excluded"
         )
     if law.gains.c2_alpha == 0.0 and (law.target is None or law.gains.c2_gamma == 0.0):
         raise ArgumentError("c2_alpha = 0 and no c2_gamma: expected a gain that damps, or no velocities match")

@@ -96,7 +96,7 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
         alpha = scaled_alpha(d, r)
         return alpha.length, alpha.range
     if law is None:
-        raise ArgumentError("no law, --d or --r: expected --law NAME, or --d, the scale that neighbours keep")
+        raise ArgumentError("no law, --d or --r: expected --law NAME, or --d, the desired distance of neighbours")
     return law_scales(law)
 
 

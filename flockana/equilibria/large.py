@@ -48,8 +48,8 @@ class LargeLandscape(Landscape):
                 return np.append(values, top), np.column_stack([vectors, its])
             few *= 2
         raise SolverError(
-            f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not to be told apart: "
-            "too many to classify so large a flock; take its connected parts one by one"
+            f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not distinguishable from "
+            "each other: too many to classify so large a flock; take its connected parts one by one"
         )
 
     def _count(self, bound: float) -> int:

@@ -115,13 +115,13 @@ def poles(run: Trajectory) -> dict[str, Any]:
     if law is None:
         return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
     if q.size > _POLES:
-        return {"note": f"{q.size} coordinates: a page finds the poles of at most {_POLES}; use flockana stability"}
+        return {
+            "note": f"{q.size} coordinates: this page computes the poles of at most {_POLES}; use flockana stability"
+        }
     t = float(run.t[-1])
     try:
         linear = linearise(law, q, t=t, allow_residual=True)
-        note = (
-            f"As if the flock stood still where the run ends, which is no equilibrium (residual {linear.residual:.2g})"
-        )
+        note = f"Linearised at the end of the run as if at rest; it is no equilibrium (residual {linear.residual:.2g})"
         if linear.residual <= _RESTING and not law.obstacles:
             rest = find_equilibrium(law, q, t=t, max_iter=_SOUGHT) if law.conservative else resting_state(law, q, t=t)
             linear = linearise(law, rest, t=t)
@@ -168,7 +168,7 @@ def _collapses_by_ratio(law: Any) -> bool:
 @cache
 def _threshold(alpha: AlphaInteraction, n: int, m: int) -> dict[str, Any]:
     if n > _SQUEEZED or m != 2:
-        return {"note": f"threshold of collapse: sought for at most {_SQUEEZED} agents, in the plane"}
+        return {"note": f"threshold of collapse: computed in the plane, for at most {_SQUEEZED} agents"}
     try:
         low, high = collapse_threshold(alpha, n, halvings=2)
     except FlockanaError as error:

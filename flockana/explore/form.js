@@ -112,7 +112,7 @@ function explorerForm(place, groups, ask) {
     ratio = { set: () => { output.textContent = short(value()); if (document.activeElement !== range) range.value = String(Math.log10(Math.max(value(), 1e-9))); },
       tell: () => {
         mark.replaceChildren();
-        if (!threshold) { make("span", "threshold of collapse: being sought", mark); return; }
+        if (!threshold) { make("span", "threshold of collapse: being computed", mark); return; }
         if (threshold.note) { make("span", threshold.note, mark); return; }
         const share = (Math.log10(threshold.high) - RATIOS[0]) / (RATIOS[1] - RATIOS[0]);
         make("i", "", mark).style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;

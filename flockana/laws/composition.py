@@ -321,7 +321,7 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
     if informed is None or not name.endswith("gamma"):
         return gain
     if agents is None:
-        raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., the number of all")
+        raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
     n, known = ensure_count("agents", agents), []
     for i in informed:
         if isinstance(i, bool) or not isinstance(i, int | np.integer) or not 0 <= i < n:
@@ -337,7 +337,7 @@ def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> flo
         return None
     if bounded is True:
         if pair is None:
-            raise ArgumentError("bounded = True without a pair: give the length that the pull is counted in")
+            raise ArgumentError("bounded = True without a pair: give the length at which the pull saturates")
         return pair.bend_length
     return ensure_positive("bounded", bounded)
 

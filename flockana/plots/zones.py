@@ -210,7 +210,7 @@ def zone_safety(trajectory: Trajectory, ax: Any) -> str | None:
     return None
 
 
-@over_time("agents in the zone, mean")
+@over_time("mean number of agents in the zone")
 def zone_populations(trajectory: Trajectory, ax: Any) -> None:
     """Draw the mean numbers of agents in an agent's zones of repulsion, conflict and attraction."""
     styles = (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":"))

@@ -40,7 +40,7 @@ def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Pi
 
 
 def _source_instants(run: Trajectory, instants: Sequence[float]) -> Picture:
-    shown = f"As many instants as the source shows, {len(instants)}"
+    shown = f"The {len(instants)} instants that the source shows"
     return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
 
 

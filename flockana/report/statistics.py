@@ -156,7 +156,7 @@ def _picture(entries: Sequence[ScenarioShares], level: float) -> Picture | None:
         draw_bars(figure.subplots(), [*rows], shares, [row.verified.runs for row in rows.values()], level)
 
     text = (
-        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
-        "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
+        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; the "
+        "rest is vacuous or inconclusive. The tables below say what each claim is."
     )
     return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * len(rows))))

@@ -53,7 +53,7 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
         return ()
     elif name not in scenarios() or not scenario(name, seed).reports:
         raise ArgumentError(
-            f"--seeds {count}: {name} is no scenario with a source that reports something; leave it out"
+            f"--seeds {count}: expected a scenario whose source reports an outcome, got {name}; leave --seeds out"
         )
     else:
         wanted = {name: count}

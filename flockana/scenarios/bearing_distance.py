@@ -158,7 +158,7 @@ OPEN = (
 )
 _CLOSED = (
     Report("fragments", "the alien breaks the flock up for a while", _fragments),
-    Report("reunites", "the flock finds together again", _reunites),
+    Report("reunites", "the flock reunites", _reunites),
     Report("range", "distances reach up to 10 m when the flock is cohesive", _range),
     DISTANCES,
     KEEPS_SPEED,

@@ -118,10 +118,10 @@ def _rounding(run: Trajectory, length: float) -> float:
 
 
 _REPORTS = (
-    Report("consensus", "speeds converge to the same", _consensus),
+    Report("consensus", "speeds converge to the same value", _consensus),
     Report("together", "the agents swarm together", _together),
     Report("safe", "agents hold safe distances all the time", _safe),
-    Report("lattice", "the agents get an α-lattice", _lattice),
+    Report("lattice", "the agents form an α-lattice", _lattice),
 )
 
 

@@ -110,7 +110,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
     where = "in one box" if shift == 0.0 else f"in boxes of side {_BOX:g}, {gap:g} apart"
     return Scenario(
         "dead-zone-leaders",
-        "Dead zone, two leaders: a third of the agents pinned, and the others go with whom they are near",
+        "Dead zone, two leaders: a third of the agents pinned, the others follow nearby agents",
         "Li, Yuan and Liu, sections IV and VI, in words only: agents with different leaders do not match, and to pin a "
         "fraction is enough where the leaders' acceleration is known. Equation (9) has neither; the three terms are "
         f"ours, and so are: {_N} agents, every other one with the second leader, {where}, {_PINNED} pinned with c1 = 2 "

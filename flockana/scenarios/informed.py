@@ -64,7 +64,7 @@ def _few(seed: int = 0) -> Scenario:
         | verified("su-informed:pairs", "su-informed:one-instant", "su-informed:no-collision", "energy:balance")
         | vacuous("energy:rate")
         | verified("source"),
-        (Report("others", "who is never linked to an informed agent goes its own way", _others_drift),),
+        (Report("others", "an agent that is never linked to an informed agent goes its own way", _others_drift),),
         {
             "t_eval": np.linspace(0.0, 90.0, 241),
             "rtol": 1e-11,
@@ -175,10 +175,10 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
     law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=who, agents=n)
     return Scenario(
         "informed-survey",
-        f"{informed} of {n} agents, strewn over a square, know the leader: how many follow?",
-        f"Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and more a larger share. Ours: "
-        f"n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, 0) at (1, ½), 80 "
-        "time units; an option of the scenario says how many are informed.",
+        f"{informed} of {n} agents, spread over a square, know the leader: how many follow?",
+        "Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and that more of them lead a "
+        f"larger share. Ours: n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, "
+        "0) at (1, ½), 80 time units; an option of the scenario says how many are informed.",
         law,
         generator.uniform(-0.5 * _BOX, 0.5 * _BOX, (n, 2)),
         generator.uniform(-_SPEED, _SPEED, (n, 2)),
@@ -186,7 +186,7 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
         seed,
         verified("su-informed:energy", "su-informed:distance"),
         (
-            Report("informed-follow", "all informed agents take on the leader's velocity", _some_follow),
+            Report("informed-follow", "all informed agents adopt the leader's velocity", _some_follow),
             Report("most-follow", "more than half of all agents follow", _most_follow),
         ),
         {"t_eval": np.linspace(0.0, 80.0, 81)},
@@ -201,10 +201,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-through": _one_informed,
     "leader-told": _varying(
         "leader-told",
-        "A leader that circles, and tells its acceleration: the centre of mass converges to it",
+        "A circling leader whose acceleration all agents know: the centre of mass converges to it",
         feedforward=True,
     ),
     "leader-untold": _varying(
-        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", feedforward=False
+        "leader-untold", "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind", feedforward=False
     ),
 }

@@ -219,7 +219,7 @@ REPORTS = {
         Report("connectivity", "rank(A)/n ends at about 0.4", _final_rank),
         Report("connectivity-as-typeset", "rank(A)/n ends at about 0.4, by its code", _final_rank_as_typeset),
         Report("unit-gains", "with unit gains it ends at about 0.7", _unit_gains),
-        Report("top-speed", "some agents move at about 200, others hardly", _top_speed),
+        Report("top-speed", "some agents move at about 200, others hardly move", _top_speed),
     ),
     2: (
         Report("connected", "connectivity is 1 throughout", _connected_from("connected", -0.5, "never apart")),
@@ -240,7 +240,7 @@ REPORTS = {
         Report("circle", "the flock's circle is smaller than the γ-agent's", _smaller("circle")),
         Report("anticlockwise", "it turns counterclockwise", _anticlockwise),
         Report("spikes", "single agents reach four times the flock's velocity", _spikes),
-        Report("separated", "they do as they separate from the flock, and re-attach", _separated(25)),
+        Report("separated", "they reach it as they separate from the flock, and re-attach", _separated(25)),
     ),
 }
 STATIC = (Report("coincide", "ours: α coefficients above those of γ do not suffice, pairs coincide", _coincide),)

@@ -198,7 +198,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
         _entry(
             "told-velocity-ahead",
             "Theorem 6 with p_d ≠ 0: a flock ahead of the γ-agent is pulled back",
-            "Ours, on Olfati-Saber 2006, Theorem 6 as printed, q_r fixed at 0 and p_r = p_d = (5, 0) all the same.",
+            "Ours, on Olfati-Saber 2006, Theorem 6 as printed, with q_r fixed at 0 although p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],
             target=StaticTarget((0.0, 0.0), (5.0, 0.0)),
             centre=(80.0, 0.0),

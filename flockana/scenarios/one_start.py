@@ -124,7 +124,7 @@ ENTRIES: tuple[LawEntry, ...] = (
         "Few informed",
         lambda q, p: Algorithm2(gains=_informing(3, len(q)), target=_follower(q, p)),
         "su-informed",
-        "three of ten feel the γ-agent: they take on its velocity, and so do those who stay linked to them",
+        "three of ten feel the γ-agent: they adopt its velocity, and so do agents that stay linked to them",
     ),
     LawEntry(
         "Dead zone",
@@ -136,7 +136,7 @@ ENTRIES: tuple[LawEntry, ...] = (
         "Cucker and Smale",
         lambda q, p: CuckerSmale(RationalWeight(strength=0.5, decay=0.25, length=RANGE)),
         "cucker-smale",
-        "every agent heeds all, with a weight that falls slowly (β < ½): from any start a flock",
+        "every agent aligns with all others, with a weight that falls slowly (β < ½): a flock from any start",
     ),
     LawEntry(
         "Ha and Liu",
@@ -148,13 +148,13 @@ ENTRIES: tuple[LawEntry, ...] = (
         "Tanner, fixed net",
         lambda q, p: FixedNetFlocking(_net(q), LogPotential(_STRENGTH, AlphaInteraction().d), k2=_CONSENSUS),
         "tanner-fixed",
-        "the links of the start pull for ever: velocities agree, no two that are linked collide",
+        "the links of the start pull at all times: velocities agree, and no two linked agents collide",
     ),
     LawEntry(
         "Tanner, switching",
         lambda q, p: ProximityFlocking(LogPotential(_STRENGTH, AlphaInteraction().d), r=RANGE, k2=_CONSENSUS),
         "tanner-switching",
-        "only agents within r pull: the same, if the net stays connected",
+        "only agents within r pull: the same holds if the net stays connected",
     ),
     LawEntry(
         "Links kept",

@@ -107,7 +107,7 @@ def _unpredictable(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("unpredictable", moved - _MOVED, text, computed=moved, stated="less predictable motions")
 
 
-_TOGETHER = Report("together", "the flock is one in the end", _together)
+_TOGETHER = Report("together", "the flock is one component at the end", _together)
 _INFORMED_REPORTS = (KEEPS_SPEED, _TOGETHER, BOUNDS)
 _BOX_REPORTS = (
     Report("reunites", "in a box fragments eventually reunite", _reunites),
@@ -116,7 +116,9 @@ _BOX_REPORTS = (
 )
 _INDIVIDUAL = (
     Report("hazards", "each agent keeps the distance from an alien that its own weight gives", _distance_from_alien),
-    Report("gives-way", "of two that meet the one that heeds the other more gives way", _right_of_way),
+    Report(
+        "gives-way", "of two agents that meet, the one with the larger weight for the other gives way", _right_of_way
+    ),
 )
 _REPEATS = Report("repeats", "the same seed gives the same run", _repeats)
 _NOISY = (
@@ -275,7 +277,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
 def _individual(seed: int = 0) -> Scenario:
     return _entry(
         "zone-individual",
-        "weights of one's own for each neighbour and each hazard",
+        "individual weights for each neighbour and each hazard",
         "the introduction names individual weights for neighbours and hazards. Ours: three agents with w^ss = 12, 15, "
         "20 that run at an alien at rest, and two pairs that meet head on with w^ls = 2 and 20; s = 6, w^ga = 10, "
         "v^d = 3, neither cohesion nor alignment. Nothing is random.",

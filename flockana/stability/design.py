@@ -187,7 +187,9 @@ def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> Spec
         raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
     law, q = problem.law, problem.q
     if law is None or q is None:
-        raise ArgumentError("problem.law = None: expected what gain_problem(...) gives, which knows law and places")
+        raise ArgumentError(
+            "problem.law = None: expected a problem from gain_problem(...), which has the law and the positions"
+        )
     low, high = np.log(_bounds(bounds, ensure_positive)).tolist()
 
     def found(logs: FloatArray) -> SpecifiedGains:

@@ -198,7 +198,7 @@ class SecondOrder:
             _, sizes, rows = np.linalg.svd(matrix @ rigid, full_matrices=False)
             kernels.append(rigid @ rows[sizes <= self.zero * self.scale].T)
         if kernels[0].shape != kernels[1].shape:
-            raise SolverError("a rigid motion costs nothing but is no left eigenvector of K: use the dense modes")
+            raise SolverError("a rigid motion has no stiffness but is no left eigenvector of K: use the dense modes")
         return self._zero_subspace(*kernels)
 
     @cached_property

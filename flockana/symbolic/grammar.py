@@ -233,7 +233,7 @@ class _Reader:
             found = Enclosed(value, sp.Dummy()).series(arb(0))
         if found is None or found[0].contains(0):
             raise ArgumentError(
-                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or too near to it to tell"
+                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or not distinguishable from 0"
             )
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:

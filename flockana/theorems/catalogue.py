@@ -179,9 +179,7 @@ def verify(
     """
     if _is_recording(trajectory):
         if basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
-            raise ArgumentError(
-                "of a recording: expected verify(theorem, recording, law=...), or d= and r= without a law"
-            )
+            raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
         from flockana.theorems.on_recordings import verify_recording, verify_recording_together
 
         used, case = Tolerances() if tolerances is None else tolerances, {"law": law, "d": d, "r": r}

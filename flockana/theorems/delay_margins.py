@@ -71,10 +71,10 @@ THEOREM = Theorem(
     id="delay-margin",
     title="The delay at which a flock loses stability",
     statement=(
-        "If what agents know of each other, or of everything, is τ old, the linearised flock is stable below a "
-        "delay margin τ* and unstable just above it. τ* is found by a sweep over frequency, the roots to either "
-        "side by a discretisation of the delayed state (Breda, Maset, Vermiglio). Of two agents on a line τ* has a "
-        "closed form."
+        "If what agents know of each other, or of everything, is τ old, the linearised flock is stable below a delay "
+        "margin τ* and unstable just above it. τ* is found by a sweep over frequency, the roots on either side of it "
+        "by a discretisation of the delayed state (Breda, Maset, Vermiglio). For two agents on a line τ* has a closed "
+        "form."
     ),
     source="ours",
     kind="fixed",

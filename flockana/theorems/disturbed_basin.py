@@ -158,10 +158,10 @@ THEOREM = Theorem(
     id="disturbed-basin",
     title="A bounded disturbance leaves a flock near its certified equilibrium",
     statement=(
-        "If a disturbance d of the accelerations, its mean over the agents taken off, is at most W at all times, a "
-        "flock under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and in the end is "
-        "within W c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin "
-        "falls at the rate α wherever it is larger than (W c/α)²."
+        "If a disturbance d of the accelerations, minus its mean over the agents, is at most W at all times, a flock "
+        "under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and is eventually within W "
+        "c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin falls at "
+        "the rate α wherever it is larger than (W c/α)²."
     ),
     source="ours",
     kind="trajectory",

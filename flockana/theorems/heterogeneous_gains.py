@@ -63,9 +63,9 @@ THEOREM = Theorem(
     id="heterogeneous-gains",
     title="Do gains of its own for each agent make a faster flock?",
     statement=(
-        "Per-agent c1γ and c2γ within bounds can make the slowest mode of the linearised flock decay faster than "
-        "any gains alike. The printed matrix holds the flock's rotation, which no flock at rest does: with the "
-        "rotation set apart the gain nearly vanishes."
+        "Per-agent c1γ and c2γ within bounds can make the slowest mode of the linearised flock decay faster than any "
+        "common gains. The printed matrix resists the flock's rotation, which no law of a flock at rest does: without "
+        "the rotation the improvement nearly vanishes."
     ),
     source="Montanari, Barioni, Duan, Motter, Optimal flock formation induced by agent heterogeneity",
     kind="fixed",

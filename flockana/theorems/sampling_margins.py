@@ -98,10 +98,10 @@ THEOREM = Theorem(
     id="sampling-margins",
     title="How far from instability the sources' time steps are",
     statement=(
-        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, the "
-        "map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN project's "
-        "0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly for the step; "
-        "the R² notebook's 0.05 is half of what is stable, and its 0.1 all but all of it."
+        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, "
+        "the map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN "
+        "project's 0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly "
+        "for the step; the R² notebook's 0.05 is half of the largest stable step, and its 0.1 nearly all of it."
     ),
     source="ours, on the steps of the MSN project, the R² notebook and the bearing-distance paper",
     kind="fixed",

@@ -57,8 +57,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",
             witness={"graph": "frozen undirected path of three"},
             disproof=_PROOF,
-            detail=f"the two agents of an edge want different lengths if their degrees differ: whatever its length, "
-            f"it is off one of them by {0.5 * abs(wanted[1] - wanted[0]):g} or more",
+            detail=(
+                "the two agents of an edge desire different lengths if their degrees differ: whatever its length, it "
+                f"differs from one of the two by {0.5 * abs(wanted[1] - wanted[0]):g} or more"
+            ),
         ),
         judged(
             "runaway",
@@ -75,9 +77,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J5",
     statement=(
-        "With α_i r_i = |N_i| neighbours of different degree want different lengths of their edge, and with equal "
-        "radii perception is mutual, so that no graph is a directed tree. On a frozen path of three the ends come "
-        "to coincide 5/3 behind the middle, and all accelerate by 2/3 for ever."
+        "With α_i r_i = |N_i| neighbours of different degree desire different lengths of their edge, and with equal "
+        "radii perception is mutual, so that no graph is a directed tree. On a fixed path of three agents the ends "
+        "come to coincide 5/3 behind the middle, and all accelerate by 2/3 without end."
     ),
     source="Jond, bearing-distance flocking, section 4, assumptions",
     check=_check,

@@ -82,14 +82,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "two-of-ten",
             [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],
             "with two informed agents of ten the mean speed is about v^d",
-            "the flock takes over the speed of those who are informed",
+            "the flock adopts the speed of the informed agents",
             witness={"mean speed by seed": two},
         ),
         mostly(
             "none-of-ten",
             [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
             f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
-            "a flock of which nobody is informed does not fly at the desired speed",
+            "a flock without informed agents does not fly at the desired speed",
             witness={"mean speed by seed": none},
         ),
     ]
@@ -99,8 +99,8 @@ THEOREM = erratum(
     "J14",
     statement=(
         "When some agents alter their speeds their neighbours follow, and a new global speed results; w^ga = 0 for "
-        "agents that are not informed of v^d. True: whom alignment reaches takes over v^d from a single informed "
-        "agent. Without any the flock agrees on a mean of its own velocities, and not on v^d."
+        "agents that are not informed of v^d. True: all agents that alignment reaches adopt v^d from a single "
+        "informed agent. If none is informed, the flock agrees on a mean of its own velocities, and not on v^d."
     ),
     source="Jond, bearing-distance flocking, section 2.1 and (5)",
     check=_check,

@@ -108,9 +108,9 @@ THEOREM = erratum(
     "J15",
     statement=(
         "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
-        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion, as long as "
-        "that is r or more, g_c <= w^ls (c/r - 1); a stronger cohesion, which is off at r and nearer, makes it slide "
-        "at r. (On the way there agents come closer still: J12.)"
+        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), which is below c whenever there is cohesion, as "
+        "long as it is r or more, g_c <= w^ls (c/r - 1). A stronger cohesion, which is off at distances up to r, "
+        "makes the pair slide at r. (Before that agents come closer still: J12.)"
     ),
     source="Jond, bearing-distance flocking, (6)",
     check=_check,

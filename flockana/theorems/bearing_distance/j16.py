@@ -49,7 +49,7 @@ def _at_walls() -> Claim:
     return limit_claim(
         "at-walls",
         [],
-        escape=Certificate(float(margin), "their speeds towards the walls stay positive for ever", _ROUNDING),
+        escape=Certificate(float(margin), "their speeds towards the walls stay positive at all later times", _ROUNDING),
         computed={"steps off the linear recursion by": off, "eigenvalues": [float(fast.real), float(slow.real)]},
         stated=_REUNITE,
         witness={"q(0)": q.tolist(), "p(0)": p.tolist(), "bound of inputs": _UNBOUNDED},
@@ -127,10 +127,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J16",
     statement=(
-        "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
-        "attraction may grow until a flockmate is found. Two that head for opposite walls at v^d come to rest there "
-        "and never meet. Others are seen to run along the walls, one behind the other, which decides nothing about "
-        "later. Growing radii bring lone agents back; fragments of two or more they leave apart."
+        "Remark 2 says that in a confined environment separated agents eventually reunite, and that otherwise radii "
+        "of attraction may grow until a flockmate is found. Two agents that head for opposite walls at v^d come to "
+        "rest there and never meet. Others run along the walls, one behind the other, which decides nothing about "
+        "later times. Growing radii bring lone agents back, but leave fragments of two or more agents apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,

@@ -98,12 +98,13 @@ def _sides(
 
 THEOREM = Theorem(
     id="cucker-smale-pair",
-    title="Two agents on a line match below a critical relative speed, and part for ever above it",
+    title="Two agents on a line match velocities below a critical relative speed, and separate permanently above it",
     statement=(
-        "Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, "
-        "w + ∫λψ(s) ds from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by "
-        "n. If w(0) < ∫λψ from x(0) on they match, where the integral is w(0); if w(0) is more, as it can be for β > ½ "
-        "only, they part for ever, at w(0) less the integral or more: the condition of Ha and Liu cannot be left out."
+        "Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, w + ∫λψ(s) "
+        "ds from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by n. If w(0) "
+        "< ∫λψ from x(0) on, velocities match at the distance up to which the integral is w(0); if w(0) is more, as "
+        "it can be for β > ½ only, they separate permanently, at a relative speed of at least w(0) minus the "
+        "integral: the condition of Ha and Liu cannot be left out."
     ),
     source="Ours, on Cucker and Smale 2007 and Ha and Liu 2009",
     kind="trajectory",

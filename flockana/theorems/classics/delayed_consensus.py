@@ -133,7 +133,7 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         computed=off,
         stated="the sum over the agents never changes, so that they agree on the average of the start",
         proof=_PROOF,
-        detail=f"the columns of L sum to 0, to {off:.1g} λ_n",
+        detail=f"the columns of L sum to 0, to within {off:.1g} λ_n",
     )
 
 
@@ -154,9 +154,9 @@ THEOREM = erratum(
     title="Consensus bears a delay below π/(2 λ_n), and none above",
     statement=(
         "Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever "
-        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they swing at the "
-        "frequency λ_n. Held against the delay margin that the library finds for any flock, on nets whose spectrum is "
-        "known, and by the root itself just below and just above."
+        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at "
+        "the frequency λ_n. Compared with the delay margin that the library finds for any flock, on nets whose "
+        "spectrum is known, and with the rightmost root just below and just above it."
     ),
     source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
     check=_check,

@@ -43,7 +43,7 @@ def _every_step(run: Trajectory) -> Hypothesis:
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
     """Return the hypothesis of joint connectivity over all later windows: proved, disproved or assumed from the run."""
-    name = "the nets are jointly connected over contiguous bounded windows, for ever"
+    name = "the nets are jointly connected over contiguous bounded windows, at all later times"
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
     if connected.certain:

@@ -118,13 +118,13 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
 
 THEOREM = Theorem(
     id="su-varying",
-    title="A virtual leader of varying velocity: the centre of mass converges, if all are told its acceleration",
+    title="A virtual leader of varying velocity: the centre of mass converges if all agents know its acceleration",
     statement=(
-        "All agents feel the leader with c1, c2 > 0, and are told its acceleration. Then q_c − q_r and p_c − p_r die "
-        "out exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a "
+        "All agents feel the leader with c1, c2 > 0, and know its acceleration. Then q_c − q_r and p_c − p_r decay "
+        "exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a "
         "leader at rest, so that also all velocities match the leader's, every agent stays within sqrt(2 Q(0)/c1) of "
-        "it, and none collide below c*; the positions of single agents do not converge to it. Algorithm 2 as it "
-        "stands, which is not told, leaves a lag."
+        "it, and none collide below c*; the positions of single agents do not converge to it. Algorithm 2 itself, "
+        "without the acceleration, leaves a lag."
     ),
     source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
     kind="trajectory",

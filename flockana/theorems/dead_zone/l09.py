@@ -162,8 +162,8 @@ THEOREM = erratum(
     statement=(
         "Agents with different leaders are said not to match, and a pinned fraction of the agents to follow leaders "
         "whose acceleration is known. (9) has neither leader nor pin: under it all neighbours match. A law with these "
-        "terms does so while each agent has a path in the net to a pinned one and groups keep out of each other's "
-        "range; that a fraction is pinned does not do."
+        "terms does so while each agent has a path in the net to a pinned one and groups stay out of each other's "
+        "range; pinning a fraction of the agents does not suffice."
     ),
     source="Li, Yuan and Liu, sections IV and VI",
     check=_check,

@@ -104,9 +104,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "L10",
     statement=(
-        "The conclusion has necessary and sufficient conditions for the particular case. The paper states one "
+        "The conclusion claims necessary and sufficient conditions for the particular case. The paper states one "
         "condition, in Theorem 1: velocity mismatch, inertias and energy are limited. It does not suffice, and every "
-        "start from distinct places meets it. H̄(0) < (n - 1) ψ̄(r) suffices for a connected flock, and is not necessary."
+        "start from distinct places meets it. H̄(0) < (n - 1) ψ̄(r) suffices for a connected flock, and is not "
+        "necessary."
     ),
     source="Li, Yuan and Liu, section VI",
     check=_check,

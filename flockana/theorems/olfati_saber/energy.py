@@ -138,7 +138,7 @@ def never_rises(
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
         until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
     if stop <= since:
-        return undecided(name, "the motion is not known well enough to tell the sign of dH/dt", needs, proof=proof)
+        return undecided(name, "the motion is not known well enough to determine the sign of dH/dt", needs, proof=proof)
     share = share[since:stop]
     worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
     return judged(
@@ -250,9 +250,9 @@ THEOREM = Theorem(
         "dH/dt = -c2α pᵀL̂p under Algorithm 1, dH_λ/dt = -c2γ‖v‖² - c2α vᵀL̂v in the moving frame under Algorithm 2, "
         "and the form of Theorem 6, with the work of a moving γ-agent, under Algorithm 3: the closed form agrees with "
         "the energy of the integrated run. It is never positive under Algorithms 1 and 2, nor under Algorithm 3 with "
-        "a γ-agent at rest and all agents outside the obstacles. The same holds of every composition of their terms, "
-        "a consensus over a net of its own, a told acceleration and drag included; a thrust adds energy. Of a sum of "
-        "terms of your own the rates that they give are held against the energy of the run."
+        "a γ-agent at rest and all agents outside the obstacles. The same holds for every composition of their terms, "
+        "with a consensus over another net, a feedforward acceleration and drag; a thrust adds energy. For a sum of "
+        "your own terms, the rates that they return are compared with the energy of the run."
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",

@@ -129,5 +129,5 @@ def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], F
     if difference.off + difference.error <= allowed:
         return Hypothesis(name, "met", -difference.off, error=difference.error)
     if difference.off - difference.error <= allowed:
-        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to tell", difference.error)
+        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to decide", difference.error)
     return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}", difference.error)

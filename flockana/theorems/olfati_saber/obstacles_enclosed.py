@@ -54,7 +54,7 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         return condition(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
     if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
         return condition(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
-    return Hypothesis(name, "assumed", detail="the tube is too wide or too short to tell"), 0
+    return Hypothesis(name, "assumed", detail="the tube is too wide or too short to decide"), 0
 
 
 def _stays_outside(tube: Tube) -> Hypothesis:

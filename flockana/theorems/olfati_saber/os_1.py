@@ -67,9 +67,9 @@ THEOREM = Theorem(
     statement=(
         "With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, "
         "(i) almost every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the "
-        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide. Ours: the hypothesis is met if H(0) < "
-        "(n-1) c1α ψ_α(r_α), as a cut leaves n - 1 pairs out of range at least; and (ii) and (iii) need no more of a "
-        "pair potential than `any-potential` asks."
+        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide. Our addition: the hypothesis is met "
+        "if H(0) < (n-1) c1α ψ_α(r_α), as in a disconnected net at least n - 1 pairs are out of range; and (ii) and "
+        "(iii) hold for every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",

@@ -96,11 +96,11 @@ THEOREM = Theorem(
     title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
     statement=(
         "With c1γ, c2γ > 0 and finite K(v(0)), J(x(0)): (i) the group stays cohesive, (ii) almost every solution "
-        "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if "
-        "H_λ(0) < (k+1) c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time "
-        "more pairs can collide (erratum E13). Of (ii) it is proved that each solution converges to one equilibrium, "
-        "and almost each to one with ∇²U_λ >= 0; a strict minimum is certified by its basin. (i), (iii) and (iv) need "
-        "no more of a pair potential than `any-potential` asks."
+        "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if H_λ(0) < (k+1) "
+        "c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time more pairs can "
+        "collide (erratum E13). Proved of (ii): each solution converges to one equilibrium, and almost every one to "
+        "an equilibrium with ∇²U_λ >= 0; a strict minimum is certified by its basin. (i), (iii) and (iv) hold for "
+        "every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 3",
     kind="trajectory",

@@ -72,9 +72,9 @@ THEOREM = Theorem(
     statement=(
         "With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for "
         "t >= t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, "
-        "where H counts every pair once (erratum E2). The source leaves unsaid that the agents must be outside the "
-        "obstacles: inside a sphere the second term can be positive. The condition is found at the samples, and holds "
-        "to the end of the run only."
+        "where H counts every pair once (erratum E2). The source omits that the agents must be outside the obstacles: "
+        "inside a sphere the second term can be positive. The condition is checked at the samples, up to the end of "
+        "the run only."
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",

@@ -127,10 +127,10 @@ THEOREM = erratum(
     "directed-nets",
     title="Directed nets: what holds of Algorithms 1 to 3 and what fails",
     statement=(
-        "Agents with ranges of their own, or a conic neighbourhood, make the net directed. With one range for all, all "
-        "round, the laws are Algorithms 1 to 3. Else action is not reaction: momentum is not conserved and H may rise. "
-        "An agent that sees one other alone, which is not accelerated, still loses c1α ψ_α + ½‖p_i − p_j‖², and "
-        "follows it."
+        "Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, "
+        "all round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H "
+        "may rise. An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − "
+        "p_j‖², and follows it."
     ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
     check=_check,

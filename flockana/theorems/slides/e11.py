@@ -128,7 +128,7 @@ THEOREM = Theorem(
     title=printed("E11"),
     statement=(
         "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
-        "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
+        "that falls with n, agents coincide permanently, in a strict local minimum of U_λ."
     ),
     source="slides, summary of Theorem 3; both student projects",
     kind="trajectory",

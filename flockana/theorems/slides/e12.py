@@ -83,10 +83,10 @@ THEOREM = Theorem(
     id="E12",
     title=printed("E12"),
     statement=(
-        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It lays the "
-        "sine to the reversal of the γ-agent's velocity (what it lays the circle to: E15). The cause of both is one: "
-        "the centre of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 "
-        "of dq_r/dt: at its gains the ratio is then 0.852, and 1.109 with the true p_r. So it is of the flow; the "
+        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It explains "
+        "the sine by the reversal of the γ-agent's velocity (for the circle see E15). Both have one cause: the centre "
+        "of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 of dq_r/dt. At its "
+        "gains the ratio is then 0.852; with the true p_r it is 1.109. These are the ratios of the flow; the "
         "project's own program, which moves one agent after another in place, gives 0.825 with 19 agents (E15)."
     ),
     source="MSN project, conclusion, cases 3 and 4",

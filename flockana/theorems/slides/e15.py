@@ -143,7 +143,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         *_printed(inside, outside, others),
         _agree([*ran, *true, outside], [*gains, home], tolerances),
         _falls("faster", ran, faster, "and its p_r per iteration", proof=_PROOF),
-        _falls("faster-as-run", mapped, "the same of the project's own map", "and the map, agent by agent in place,"),
+        _falls("faster-as-run", mapped, "the same for the project's own map", "and the map, agent by agent in place,"),
         _first_grows(true),
         equal(
             "condition",
@@ -158,11 +158,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "E15",
     statement=(
-        "The MSN project finds that the faster the γ-agent, the smaller the flock's circle: true of its program, with "
-        "its p_r per iteration. It lays the smaller circle of case 4 'most likely' to a flock that starts inside the "
-        "γ-agent's and to a speed just great enough to follow: the start is forgotten, and the circle is smaller at "
-        "every speed. With p_r = dq_r/dt it first grows with the speed, to 1.155 of the γ-agent's, whatever the gains, "
-        "as long as c2γ = 2√c1γ."
+        "The MSN project finds that the flock's circle is smaller if the γ-agent is faster, which is true of its "
+        "program, with its p_r per iteration. It explains the smaller circle of case 4 'most likely' by a start "
+        "inside the γ-agent's circle and a speed just great enough to follow. But the start is forgotten, and the "
+        "circle is smaller at every speed. With p_r = dq_r/dt it first grows with the speed, to 1.155 of the "
+        "γ-agent's, whatever the gains, as long as c2γ = 2√c1γ."
     ),
     source="MSN project, conclusion, case 4",
     check=_check,

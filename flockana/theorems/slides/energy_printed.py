@@ -51,7 +51,7 @@ THEOREM = Theorem(
     title="The energy of Algorithm 3 as printed never rises",
     statement=(
         "With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False "
-        "(E2): the sum counts every pair twice, and what it has too much has no sign."
+        "(E2): the sum counts every pair twice, and the rate of the surplus has no definite sign."
     ),
     source="slides, Algorithm 3",
     kind="trajectory",
