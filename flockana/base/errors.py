@@ -10,7 +10,7 @@ from typing import Any
 
 _NEAREST = 3  # names that are suggested
 _FEW = 16  # names that are all listed
-DIGITS = 40  # of a whole number; longer ones are described by their size: Python itself refuses to write some
+DIGITS = 40  # of a whole number; a longer one is described by its size: Python itself refuses to write some
 
 
 def format_value(value: Any) -> str:

@@ -19,7 +19,7 @@ def check_command(
     """Verify a certificate, such as a basin's, and print what it proves, step by step.
 
     The checker shares only the scalar functions in ball arithmetic with the prover. It rejects a file that was changed,
-    or that claims more than is true.
+    or that claims more than it proves.
 
     Exit status: 0 it holds, 2 bad input, 3 it is rejected, 130 interrupted.
     """

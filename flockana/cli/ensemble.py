@@ -45,7 +45,7 @@ def ensemble_command(
 ) -> int:
     """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.
 
-    With --store, runs are kept as they are done: after Ctrl-C, or anything worse, the same command goes on from there.
+    With --store, finished runs are kept: after Ctrl-C or a crash, the same command continues from there.
     --plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
 
     A Dask cluster: `dask scheduler` on one machine, `dask worker tcp://HOST:8786 --nworkers auto --nthreads 1` on each,

@@ -22,7 +22,7 @@ def export_command(
     dt: Annotated[float | None, typer.Option(help="Longest step; by default a fiftieth of the law's time.")] = None,
     samples: Annotated[int, typer.Option(min=1, help="Number of snapshots.")] = 200,
     consensus: Annotated[
-        Literal["missing", "nearest"], typer.Option(help="A consensus without a pair style: omit, or use nearest.")
+        Literal["missing", "nearest"], typer.Option(help="Consensus without a pair style: leave out, or use nearest.")
     ] = "missing",
     as_json: AsJson = False,
 ) -> int:

@@ -50,7 +50,7 @@ def stability_command(
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-patch:2 (see flockana
     lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
-    moving γ-agent is held where it is at that time.
+    moving γ-agent is fixed at its position at that time.
 
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """

@@ -25,7 +25,16 @@ class LinkKeeping(SumOfTerms):
     """u_i = −Σ_j ∇_i ψ(‖q_j − q_i‖) + c Σ_j (p_j − p_i) over links {i, j}, with ψ(s) = k s²/(r − s).
 
     The tension is that of Ji and Egerstedt (2007), the second-order law that of Zavlanos, Jadbabaie and Pappas (2007).
-    Both let links arise, with hysteresis; here the net is that of the start and does not change. H = Σ ψ + ½ Σ‖p_i‖².
+    Both let links arise, with hysteresis; here the net is given and does not change. H = Σ ψ + ½ Σ‖p_i‖².
+
+    Parameters
+    ----------
+    links : tuple of (int, int)
+        Pairs of agents that are linked at all times.
+    r : float
+        Length that no link reaches.
+    k, c : float
+        Strength of the tension, and gain of the velocity differences.
 
     Examples
     --------

@@ -153,7 +153,7 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         (["animate", "hexagn", "-o", "x.gif"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
         (["animate", "hexagon", "-o", "x.png"], "expected a file name that ends in .gif or .mp4"),
         (["animate", "hexagon", "-o", "x.gif", "--seconds", "0"], "seconds = 0: expected a number > 0"),
-        (["flock"], "unknown command 'flock'; Known: animate, check, "),
+        (["flock"], "unknown command 'flock'; known: animate, check, "),
         (["verfy"], "unknown command 'verfy'; did you mean 'verify'? Known: "),
         ([""], "unknown command ''"),
         (["verify", "--colour"], "--colour"),
