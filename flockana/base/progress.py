@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 _EVERY = 60.0  # seconds between lines off a terminal
-_BASIS = 0.1  # of the total: what is done from which on the time left is told
+_BASIS = 0.1  # share of the total from which on the remaining time is estimated
 
 
 @contextmanager

@@ -35,7 +35,7 @@ def prepare_output() -> None:
     stream = sys.stdout
     if stream is None or stream is not sys.__stdout__ or not isinstance(stream, io.TextIOWrapper):
         return
-    # a letter that the encoding lacks is told by its number, as JSON writes it too
+    # a letter that the encoding lacks is written as its code, as in JSON
     if stream.isatty():
         stream.reconfigure(errors="backslashreplace")
         return

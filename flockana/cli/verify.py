@@ -81,7 +81,7 @@ def verify_command(
     if folder is not None and (pages or complete):
         try:
             written = _write_pages(folder, results, pages, statistics, seed, seconds, complete, name)
-        except FlockanaError as error:  # the verdicts are still to be told
+        except FlockanaError as error:  # the verdicts are still printed
             failure = failure or error
     if as_json:
         from flockana.report.build import verdicts_json

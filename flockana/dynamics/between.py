@@ -124,7 +124,7 @@ class Recorder:
         if some.wanted:
             self._samples.append(some)
             return
-        if not self._samples:  # earlier ones are nobody's
+        if not self._samples:  # no earlier steps are in use
             self._steps, self._single, self._held = [], [], 0
         self._limit_memory()
         self._held += 3 * some.q.size

@@ -18,7 +18,9 @@ Atol = float | tuple[float, float] | None  # a length, (length, speed), or by de
 FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 _ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
-_COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
+_COARSER = (
+    0.25  # power of the tolerance by which more is allowed: the difference of runs at two tolerances shows the error
+)
 
 
 class ErrorFloors(NamedTuple):

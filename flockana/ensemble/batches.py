@@ -49,7 +49,7 @@ def map_in_batches(
                 watch((*_under_way(pending), *batch)[:width])
                 try:
                     sent = workers.executor.submit(function, batch)
-                except Exception as error:  # it broke since we last looked: whoever it was, not this batch
+                except Exception as error:  # the pool broke earlier: this batch is not the cause
                     suspects.extend(_suspected(error, batch, pending, workers))
                     break
                 pending[sent] = batch
@@ -62,7 +62,7 @@ def map_in_batches(
                     results = future.result()
                 except Exception as error:
                     alone = len(batch) == 1 and not pending
-                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` tells if all is over
+                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` raises without a cluster
                     suspected = batch if lost else _suspected(error, batch, pending, workers)
                     if not alone:
                         suspects.extend(suspected)

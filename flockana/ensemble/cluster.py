@@ -93,7 +93,7 @@ def _client(target: Any, address: str) -> Any:
             return _opened(target)
     except Exception as error:
         reason = _reason(error)
-    gc.collect()  # what is left of a client goes now, when no lock of Dask's is held
+    gc.collect()  # free a discarded client now, while no lock of Dask is held
     raise SolverError(
         f"cluster = {address!r}: no scheduler with a worker answers within {CONNECT:g} s ({reason}); start "
         "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
@@ -109,7 +109,7 @@ def _opened(target: Any) -> Any:
             try:
                 # its own limit does not hold for a server that takes the call and says nothing
                 super().start(callback_timeout=CONNECT + _GRACE, **options)
-            except BaseException:  # of a constructor that fails nobody else has the client
+            except BaseException:  # if the constructor fails, no other code can close the client
                 _end(self)
                 raise
 

@@ -76,7 +76,7 @@ def source_files(root: Path) -> list[Path]:
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     """Return the digest of source files by name; comments, layout and docstrings do not count."""
-    # the syntax tree is written differently by each version of Python, which is one of the things that compute
+    # each version of Python writes the syntax tree differently; the version is part of the digest anyway
     total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
     for name, source in sorted(sources.items()):
         total.update(f"\0{name}\0".encode())

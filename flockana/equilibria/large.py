@@ -18,7 +18,7 @@ from flockana.lattice.elimination import Elimination
 
 _FEW, _MOST = 12, 400  # eigenvalues asked for at first and at last
 _BELOW = 1e-7  # of the largest row sum: the shift below zero about which Lanczos' method looks
-_GAP = 1e-9  # of the largest row sum: eigenvalues between which there is no more are not counted apart
+_GAP = 1e-9  # of the largest row sum: eigenvalues that differ by less cannot be separated
 
 
 class LargeLandscape(Landscape):

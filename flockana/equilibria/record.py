@@ -49,7 +49,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
         equilibrium = finish(Potential(law), q, True, "read from a file and verified")
         _compare(equilibrium, data)
         without_digest(data, keys=_KEYS)
-    except SolverError as error:  # whose advice is for those who seek one
+    except SolverError as error:  # the solver's advice concerns a search, not a file
         raise _not_an_equilibrium(path, f"its positions are none of its law; {_REMEDY}") from error
     except KeyError as error:
         raise _not_an_equilibrium(path, f"it lacks {error}; {_REMEDY}") from error

@@ -251,7 +251,7 @@ class Law(LawOfMotion):
         t, q, p = self._checked(t, q, p)
         u = self.checked_flow(t, q, p)[0]
         if not np.isfinite(u).all():
-            self.check_start(q, p)  # tells who is where the law has no input
+            self.check_start(q, p)  # names the agents at which the law has no input
         return u
 
     def energy(self, t: float, q: Any, p: Any) -> float:

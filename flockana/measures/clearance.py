@@ -26,7 +26,7 @@ from flockana.measures.nets import link_lengths, links
 RELATIVE_TOL = 1e-9  # of the halving, relative to the extent of the motion
 ROUNDING = 2.0**-50  # of the coordinates
 _DEPTH = 40  # halvings: below any resolved motion
-_MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
+_MOST = 100_000  # parts open at once; beyond it the bound is not tightened further
 _CHUNK = 50_000  # agent-intervals handled at once
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _DPI = 100
 _STILL: dict[Any, Any] = {"figure.constrained_layout.use": False}
-_WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies
+_WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: width, and least and greatest height of the film
 _FRAMES = 20_000  # a longer film is a slip of the pen
 _SUFFIXES = ".gif", ".mp4"
 
@@ -81,7 +81,7 @@ def animation(
     frames = frame_count(seconds, fps)
     film, view = equal_times(trajectory, frames), film_view(trajectory)
     times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
-    # outside the style, whose layout engine would fit each frame anew and make the view tremble
+    # outside the style, whose layout engine would fit each frame anew and make the view jitter
     figure = Figure(figsize=film_size(view), dpi=_DPI)
     FigureCanvasAgg(figure)
     with style():

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 _MOST = 12
 _SKY, _YELLOW = "#56B4E9", "#F0E442"  # the rest of Okabe and Ito's colours
-# marker and colour of an agent with k neighbours: from 3 to 6 a polygon with k corners; told apart in grey too
+# marker and colour of an agent with k neighbours: from 3 to 6 a polygon with k corners; distinguishable in grey
 _LOOKS: tuple[tuple[Any, str], ...] = (
     ("X", INK),
     ("o", MUTED),

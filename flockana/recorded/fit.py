@@ -18,8 +18,8 @@ from flockana.recorded.shooting import MatchResult, matched, usual_window, windo
 from flockana.recorded.steps import predicted
 
 _LEVEL = 0.95
-_UNKNOWN = 0.5  # relative standard error beyond which the data do not tell a parameter
-_TIED = 0.99  # correlation of two parameters beyond which the data tell one combination only
+_UNKNOWN = 0.5  # relative standard error beyond which a parameter is not identifiable
+_TIED = 0.99  # correlation of two parameters beyond which only one combination is identifiable
 _FAR = 1e6  # residual of a law that cannot be
 _SHORT = 0.25  # of the usual windows: these a search begins with
 _NO_WORSE = 5.0  # standard deviations of the residuals' variance, within which two fits are as good

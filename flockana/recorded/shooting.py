@@ -32,7 +32,7 @@ _COARSE, _FINE = 0.4, 0.1  # of the law's time, over which slopes are carried by
 _CLOSE = 0.3  # gain that coarse slopes promise, from which on they are fine
 _NEAR = 1.0  # gain of steps by the same slopes, within which these still give the covariance
 _LEAST = 1e-6  # of its first value, below which no positive parameter goes
-_FELT = 1e-6  # squared deviations that a parameter moves the residuals by, if it is doubled, for it to be told
+_FELT = 1e-6  # least change of the squared residuals by doubling a parameter that makes it identifiable
 _DAMPED = 1e8  # damping beyond which nothing is left to try
 _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; else they are computed anew
 

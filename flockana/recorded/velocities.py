@@ -34,7 +34,7 @@ class Motions:
     q_sd: FloatArray  # q_sd, p_sd, u_sd: of each coordinate
     p_sd: FloatArray
     u_sd: FloatArray
-    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the data still tell the acceleration
+    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the acceleration is still determined
     noise: float  # standard deviation of a coordinate, stated or estimated
 
 

@@ -14,7 +14,7 @@ from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
 
-_LEAST = 16  # letters in a line of a column that wraps: in fewer nobody reads a sentence
+_LEAST = 16  # letters in a line of a column that wraps; fewer are not readable
 _WIDE = 10_000  # no table is wider
 _PIECE = re.compile(r"[^\s\-/]*[-/]|[^\s\-/]+")  # a word may be broken after a hyphen, and nowhere else
 

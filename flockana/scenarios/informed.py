@@ -27,7 +27,7 @@ _REFERENCES = ("su-2009", "olfati-saber-2006")
 _LEADER = LinearTarget((6.0, 0.0), (1.0, 0.5))
 _CIRCLE = CircleTarget((0.0, 0.0), radius=20.0, frequency=0.05)
 _CONSENSUS = Gains().c2_alpha
-_APART = 60.0  # of a group that nobody joins
+_APART = 60.0  # distance of a group that nobody joins
 _BOX, _SPEED = 100.0, 1.0  # of the survey's start
 
 
@@ -199,12 +199,14 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
     "informed-through": _one_informed,
-    "leader-told": _varying(
-        "leader-told",
+    "leader-known": _varying(
+        "leader-known",
         "A circling leader whose acceleration all agents know: the centre of mass converges to it",
         feedforward=True,
     ),
-    "leader-untold": _varying(
-        "leader-untold", "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind", feedforward=False
+    "leader-unknown": _varying(
+        "leader-unknown",
+        "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind",
+        feedforward=False,
     ),
 }

@@ -196,7 +196,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             reports=(_RESTS, _TOUCHES),
         ),
         _entry(
-            "told-velocity-ahead",
+            "declared-velocity-ahead",
             "Theorem 6 with p_d ≠ 0: a flock ahead of the γ-agent is pulled back",
             "Ours, on Olfati-Saber 2006, Theorem 6 as printed, with q_r fixed at 0 although p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],
@@ -210,7 +210,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             reports=(),
         ),
         _entry(
-            "told-velocity-behind",
+            "declared-velocity-behind",
             "Theorem 6 with p_d ≠ 0: a flock that comes from behind breaks condition (76)",
             "Ours, on Olfati-Saber 2006, Theorem 6 as printed, q_r fixed at (80, 0) and p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],

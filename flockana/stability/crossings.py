@@ -26,7 +26,7 @@ from flockana.stability.rounding import eigen
 ComplexArray = npt.NDArray[np.complex128]
 Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-CLOSE = 1e-6  # relative: the certified lower bound of a margin lies that close to the margin
+CLOSE = 1e-6  # relative distance of the certified lower bound from the margin
 MOST = 3000  # spectra: a search that needs more certifies nothing
 _ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes are taken
 _STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative

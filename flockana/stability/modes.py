@@ -27,7 +27,7 @@ ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothin
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
 _SYMMETRIC = 1e-10  # relative
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
-_ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed that cancel
+_ROUNDINGS = 8.0  # of eps √N times the largest row sum: rounding of sums that cancel
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ from flockana.stability.linearise import linearise
 from flockana.stability.maps import stepped_equation
 
 SCHEMES = {"hold": 0.5, "euler": 0.0, "semi-implicit": 1.0, "taylor": 0.5, "msn": 1.5, "msn-in-place": 1.5}
-CLOSE = 1e-6  # relative: a certified bound lies that close to the margin
+CLOSE = 1e-6  # relative distance of the certified bound from the margin
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
 _TRIALS = 24  # steps at which a search looks
 _NEAR, _FAR = 0.02, 4.0  # times the first guess: where a search begins and ends

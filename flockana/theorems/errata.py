@@ -17,8 +17,11 @@ SORTS: dict[Sort, str] = {
     "vacuous": "true, but of no flock or of hardly any",
     "confirmed": "examined, and true as printed",
 }
-SOURCES = {"E": ("olfati-saber-2006",), "J": ("jond-2025",), "L": ("li-dead-zone",)}  # by the first letter of an id
-# whose errata they are
+SOURCES = {
+    "E": ("olfati-saber-2006",),
+    "J": ("jond-2025",),
+    "L": ("li-dead-zone",),
+}  # sources by the first letter of an id
 FOREWORD = (
     "E1 to E16 are in lecture slides and student projects on Olfati-Saber's paper of 2006. None is shown to be in the "
     "paper itself; the last column says where that was not looked up. The others are in the papers named."
@@ -37,7 +40,7 @@ class Erratum:
     E0 · slides: 1 = 2 ✗ · right: 1 = 1 ✓
     """
 
-    id: str  # of the theorem that checks it; a misprint that was only read has none of its name
+    id: str  # id of the theorem that checks it; a misprint has no theorem
     printer: str  # who prints it
     where: str
     printed: str

@@ -18,7 +18,7 @@ _WORTH = 0.01  # gain in the rate that counts: both searches end at roots that c
 _CUSP = 1e-4  # relative error of a rate at coalescing roots
 _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
     ("printed", 12, {"rotation": "counted"}, "matrix as printed, rotation counted"),
-    ("apart", 12, {"rotation": "apart"}, "rotation set apart"),
+    ("apart", 12, {"rotation": "apart"}, "rotation not counted"),
     ("simplified", 30, {"form": "simplified"}, "simplified form, without ∇²V"),
 )
 

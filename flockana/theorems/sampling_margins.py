@@ -33,7 +33,7 @@ class SourceMap:
     """A source's map at an equilibrium of its law."""
 
     name: str  # of the claim
-    words: str  # whose step, of how many agents
+    words: str  # source, and number of agents
     law: DiscreteLaw  # the map
     q: FloatArray  # equilibrium, or where to look for one
 

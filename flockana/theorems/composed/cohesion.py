@@ -38,7 +38,7 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     error = seen.shape_error + seen.centre_error[:, None]
     at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
     most, path = at_samples.hi.copy(), run.path
-    there = np.zeros(3)  # as paths are, whatever the dimension
+    there = np.zeros(3)  # paths have three components in every dimension
     there[: run.m] = place
     off = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
     for k, h in enumerate(np.diff(path.t).tolist()):

@@ -149,8 +149,10 @@ def never_rises(
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
         witness={"time": float(seen.t[since + worst])},
         proof=proof,
-        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; -rate is at least "
-        f"{share.mid.min():.2g} of the sum of its terms' sizes{until}",
+        detail=(
+            f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
+            f"{share.mid.min():.2g} of the sum of its terms' sizes{until}"
+        ),
     )
 
 

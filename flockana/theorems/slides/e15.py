@@ -29,7 +29,7 @@ _SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of the project's γ-agent
 _PROOF = "tracking-gain"
 _AWAY = 3.0  # radii from the centre of the circle to where a flock outside starts
 _PERIODS = 3.0  # at least: the fit takes the last whole ones of half a run
-_LASTING = 4.5  # time units at least, after half of which what is left of the start is e^-19 of it
+_LASTING = 4.5  # time units at least; after half of them the start has decayed to e^-19
 
 
 def circle_law(speed: float, factor: float) -> Algorithm2:
