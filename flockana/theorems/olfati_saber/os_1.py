@@ -27,7 +27,7 @@ from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _barrier(seen: Observed) -> str | None:
+def _barrier_proof(seen: Observed) -> str | None:
     """The id of the proof of the barrier's bound, which counts up to 60 agents of the default law in the plane."""
     counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
     return proved(seen, "barrier") if counted else None
@@ -56,7 +56,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
-        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
+        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
     ]
     return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
 
