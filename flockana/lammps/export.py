@@ -43,7 +43,7 @@ from flockana.measures.metrics import min_distance
 CONSENSUS = ("missing", "nearest")
 _STEP = 0.02  # by default, in the law's own time
 _MOST_POINTS = 10**7
-# how each file of an export begins, by which one from before is known and may be replaced
+# first line of each file, which identifies an earlier export that may be replaced
 _FIRST_LINE = re.compile(rb"(# )?\d+ agents of \w+, t = \S+ to \S+\s*|# UNITS: lj CONTRIBUTOR: flockana\s*")
 _LONGEST_LINE = 1000  # bytes; ours are shorter
 

@@ -14,7 +14,7 @@ from flockana.stability.rounding import eigen
 from flockana.theorems.claims import spectral, undecided
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
-_WORTH = 0.01  # gain in the rate that counts: both searches end at roots that coalesce, and near the best only
+_WORTH = 0.01  # least relative improvement that counts: both searches end only near the best, where roots coalesce
 _CUSP = 1e-4  # relative error of a rate at coalescing roots
 _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
     ("printed", 12, {"rotation": "counted"}, "matrix as printed, rotation counted"),

@@ -94,8 +94,10 @@ def _apart(seen: Observed) -> Claim:
         _ROUNDING,
         computed=difference,
         stated=f"at t = {seen.t[-1]:g} agents with different leaders do not match, under the law with leaders",
-        detail=f"two groups {_APART:g} m apart whose leaders part at 2 m/s part at {difference:.4g}; of groups that "
-        "start mixed, agents that are not pinned are carried off by the other (scenario dead-zone-leaders)",
+        detail=(
+            f"two groups {_APART:g} m apart whose leaders separate at 2 m/s separate at {difference:.4g} m/s; in "
+            "groups that start mixed, some unpinned agents follow the wrong leader (scenario dead-zone-leaders)"
+        ),
     )
 
 

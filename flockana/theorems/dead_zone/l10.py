@@ -77,8 +77,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             escape=away.separation,
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
-            detail=f"two agents satisfy them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: neither "
-            "cohesion nor one velocity (L4, L7)",
+            detail=(
+                f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
+                "neither stay together nor match velocities (L4, L7)"
+            ),
         ),
         _necessary(),
         limit_claim(

@@ -93,7 +93,10 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
         tolerances.agreement - off,
         computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=f"the ratio, inside or outside, at each speed, with either p_r, is off by {off.mid.max():.1g} at most",
+        detail=(
+            "the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
+            f"{off.mid.max():.1g} at most"
+        ),
     )
 
 
