@@ -214,7 +214,9 @@ def _planarity(facts: dict[str, Any]) -> str:
     if facts["planar graph"]:
         return "planar"
     witness = facts["kuratowski"]
-    return "not planar" + (f": holds a subdivided {witness['kind']} of {witness['links']} links" if witness else "")
+    return "not planar" + (
+        f": contains a subdivision of {witness['kind']} with {witness['links']} links" if witness else ""
+    )
 
 
 def _rigidity_text(rigidity: dict[str, Any]) -> str:

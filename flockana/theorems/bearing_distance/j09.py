@@ -54,7 +54,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=gap,
             stated=stand_off,
             witness="the same agent and alien, 0 < d <= s_i",
-            detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
+            detail=f"with 0 < d <= s_i the agent stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
         always(
             "flock",

@@ -61,7 +61,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         always(
             "order",
             [c >= _IN_ORDER for c in printed],
-            f"{order}, by the letter,",
+            f"{order}, with everything as printed,",
             "C = 1 within 2 s",
             witness={"least C from 2 s on, by seed": printed},
         ),

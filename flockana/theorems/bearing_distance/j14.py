@@ -52,8 +52,10 @@ def _informed_or_not() -> list[Claim]:
             computed=informed[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
-            detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as by x' = M x, whose "
-            f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
+            detail=(
+                f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
+                f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})"
+            ),
         ),
         of_map(
             "none-informed",

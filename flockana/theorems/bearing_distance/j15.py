@@ -89,7 +89,7 @@ def _pair() -> list[Claim]:
             computed=alone,
             stated=_C,
             witness={"g_c": 0.0, "q(0)": "2 m apart"},
-            detail="without cohesion (6) drives a pair towards c, where it vanishes, as is said",
+            detail="without cohesion (6) drives a pair towards c, where it vanishes, as the paper says",
         ),
     ]
 

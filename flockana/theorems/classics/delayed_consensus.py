@@ -80,7 +80,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
         off = max(off, abs(abs(root) - abs(consensus_root(largest, delay))) / largest if sign > 0 else 0.0)
         if sign * root.real / largest - sharp / largest < margin - error:
             margin, error = sign * root.real / largest, sharp / largest
-    words = "grows" if sign > 0 else "decays"
+    words, side = ("grows", "right") if sign > 0 else ("decays", "left")
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
     return spectral(
         name,
@@ -88,8 +88,10 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
         error,
         computed=listed,
         stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
-        detail=f"the rightmost root of {len(nets)} nets off the consensus is {margin:.3g} λ_n or more on that side"
-        f"{closed}",
+        detail=(
+            f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
+            f"the imaginary axis{closed}"
+        ),
     )
 
 

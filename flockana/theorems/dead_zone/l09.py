@@ -130,7 +130,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "energy",
             residuals,
             stated="dH/dt = -k₂ pᵀL̂p within groups - c₂ Σ h_i ‖p_i - p_l‖² - Σ f_i·p_l, in the frames of the leaders",
-            detail="in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
+            detail="it holds in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
             "different leaders add or remove energy",
         ),
         _follow(

@@ -53,10 +53,10 @@ def _necessary() -> Claim:
     """The claim that the condition leaves some start out, by algebra."""
     nothing, stated = _is_finite_apart(), "the condition leaves some start out"
     if nothing is None:
-        return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
+        return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)
     detail = (
-        "a pair's potential is finite at every distance > 0: every start from distinct places meets it, so that as a "
-        "necessary condition it excludes nothing; no other one is stated"
+        "a pair's potential is finite at every distance > 0: every start from distinct positions meets the stated "
+        "condition, which as a necessary one excludes nothing; no other is stated"
     )
     return exact("printed-necessary", not nothing, stated=stated, detail=detail)
 

@@ -138,7 +138,9 @@ def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
     if not planar and len(net.links) <= _WITNESS_LIMIT:
         witness = kuratowski(net.n, net.links)
     bound = planar_bound(net.n)
-    subgraph = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
+    subgraph = (
+        "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
+    )
     return by_count(
         "i-graph",
         0 if planar else 1,

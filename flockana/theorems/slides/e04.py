@@ -128,7 +128,7 @@ def _together(alpha: AlphaInteraction) -> Claim:
         witness={"[n of a lattice below, least n without any state], by dimension": table},
         proof="any-potential",
         detail="the best lattices at rest are below this energy up to n = "
-        + ", ".join(f"{n} ({_SPACES[m]}; no state is from n = {none} on)" for m, (n, none) in table.items())
+        + ", ".join(f"{n} ({_SPACES[m]}; no state from n = {none} on)" for m, (n, none) in table.items())
         + f", by {min(rooms) / alpha.far_potential:.3g} ψ_α(r_α) at least, left for kinetic energy",
     )
 

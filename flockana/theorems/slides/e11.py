@@ -118,7 +118,7 @@ def _thresholds(law: Algorithm2) -> Claim:
         "threshold",
         at[:-1] - at[1:],
         computed={n: list(pair) for n, pair in brackets.items()},
-        detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
+        detail=f"ratio c1γ/c1α from which on a hexagonal patch collapses: {table}",
         **about,
     )
 

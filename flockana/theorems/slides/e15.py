@@ -153,7 +153,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
             proof=_PROOF,
-            detail=f"never for the true p_r; for the project's the left side is {margin:.3g} times the right",
+            detail=(
+                f"the condition never holds for the true p_r; for the project's the left side is {margin:.3g} times "
+                "the right"
+            ),
         ),
     ]
 
