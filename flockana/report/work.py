@@ -41,7 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems by themselves.
+    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems without a run.
 
     Examples
     --------
