@@ -17,7 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import numerics_version
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.theorems import Tolerances, Verdict
 
 Scalar = bool | int | float | str

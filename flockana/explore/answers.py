@@ -19,7 +19,7 @@ from flockana.explore.starts import Start
 from flockana.explore.watching import ensure_small, shown, watched
 from flockana.interactions import AlphaInteraction
 from flockana.player.marks import marks_of
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify
 from flockana.theorems.headline import BYLINES

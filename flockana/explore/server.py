@@ -197,14 +197,14 @@ class _Tab(WebSocketHandler):
         self._ask()
         if self.analysing:
             for seconds, at_once in zip(_PATIENCE, (True, False), strict=True):
-                asyncio.get_running_loop().call_later(seconds, self._replace_if_deaf, number, at_once)
+                asyncio.get_running_loop().call_later(seconds, self._replace_if_unresponsive, number, at_once)
 
     def _ask(self) -> None:
         process = self.process or self._take()
         with suppress(OSError):  # it has ended; `deliver` hears of it
             process.pipe.send((self.number, self.asked))
 
-    def _replace_if_deaf(self, number: int, at_once: bool) -> None:
+    def _replace_if_unresponsive(self, number: int, at_once: bool) -> None:
         """Replace a process that ignores a newer question, once another is ready."""
         spare = self.server.spare
         if at_once and not (spare is not None and spare.ready):

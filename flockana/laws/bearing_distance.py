@@ -154,7 +154,7 @@ class ZoneFlocking(DiscreteLaw):
     }
 
     references = ("jond-2025",)
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"iterate": ("step",)}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"iterate": ("step",)}
     extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "reach": (1, 0), "alien": (1, 0)}
     steps_at_once = 256  # a step of ten agents takes microseconds
 

@@ -72,7 +72,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     """
 
     references: ClassVar[tuple[str, ...]] = ()
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
 
     if TYPE_CHECKING:
         pair: PairInteraction | None
@@ -200,7 +200,7 @@ class Law(LawOfMotion):
     `energy_rate` are the validated public face of the same functions.
     """
 
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "flow": ("acceleration", "energy_rate"),
         "hamiltonian": ("energy",),
     }

@@ -14,7 +14,7 @@ from flockana.player.page import text_of
 from flockana.player.scene import scene
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status

@@ -14,7 +14,7 @@ from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.work import COMPLETE, Record
 from flockana.report.surveys import Survey, SurveyResult
 from flockana.scenarios import Scenario, scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.theorems import theorem
 
 if TYPE_CHECKING:

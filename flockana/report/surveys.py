@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flockana.base.errors import ArgumentError
 from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.scenarios import scenario, scenarios
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 
 _AT_ONCE = 10  # runs in one survey: about a second at most, so that all processes end together
 

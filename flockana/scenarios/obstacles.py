@@ -15,9 +15,9 @@ from flockana.environment.target import Target
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.expected import inconclusive, vacuous, verified
 from flockana.scenarios.findings import in_source_units
-from flockana.scenarios.given import SOURCE
 from flockana.scenarios.obstacle_claims import (
     constrained,
     gets_past,

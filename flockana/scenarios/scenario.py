@@ -15,8 +15,8 @@ from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.start import accepts_lazy
 from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
