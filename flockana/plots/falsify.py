@@ -77,7 +77,7 @@ def search_history(
         axes.plot(run[hits], values[hits], "s", color=VERMILLION, label="refuted", **look)
     if not known.all():
         foot = axes.get_xaxis_transform()
-        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="claim vacuous")
+        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="no margin")
     _scale(axes, values[known])
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(0.5, values.size + 0.5)

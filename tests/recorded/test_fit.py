@@ -108,7 +108,7 @@ def test_slopes_are_carried_by_three_terms_of_the_exponential():
     rate = _Linearised(np.array([[-2.0]]), np.array([[-0.5]]), np.array([[0.0, 0.0, 3.0]]))
     a = 0.2 * np.array([[0.0, 1.0, 0.0], [-2.0, -0.5, 3.0], [0.0, 0.0, 0.0]])
     series = np.eye(3) + a + a @ a / 2.0 + a @ a @ a / 6.0
-    np.testing.assert_allclose(rate.carried(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
+    np.testing.assert_allclose(rate.propagate(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
 
 
 def test_slopes_are_differences_of_solutions_to_the_second_power_of_a_block():
