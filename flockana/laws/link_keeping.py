@@ -124,6 +124,12 @@ class LinkKeeping(SumOfTerms):
         return lengths
 
     def longest(self, energy: float) -> float:
-        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H."""
+        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
+
+        Parameters
+        ----------
+        energy : float
+            H, the energy of the flock.
+        """
         root = sqrt(energy * energy + 4.0 * self.k * energy * self.r)
         return 2.0 * energy * self.r / (energy + root) if energy > 0.0 else 0.0

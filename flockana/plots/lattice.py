@@ -178,7 +178,7 @@ def barrier(
 
     Parameters
     ----------
-    together, ground : mapping of int to float
+    together, lowest : mapping of int to float
         Least energies, by number of agents.
     c_star : float
         The printed bound, ψ_α(0).
