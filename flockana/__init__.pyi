@@ -78,6 +78,7 @@ from .laws.disturbed import Disturbed as Disturbed
 from .laws.explicit_euler import ExplicitEuler as ExplicitEuler
 from .laws.law import Law as Law
 from .laws.led_dead_zone import LedDeadZoneFlocking as LedDeadZoneFlocking
+from .laws.link_keeping import LinkKeeping as LinkKeeping
 from .laws.lossy import Lossy as Lossy
 from .laws.measured import Measured as Measured
 from .laws.minimal import DiscreteMinimalFlocking as DiscreteMinimalFlocking

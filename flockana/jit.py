@@ -1,4 +1,4 @@
-"""numba, as published: how a function is compiled, and where compiled code is kept.
+"""Numba decorators that load numba at the first call, and the folder in which compiled code is kept.
 
 Kernels load numba when they first compute: a list of scenarios needs no compiler. Compiled code lies in a folder of the
 user's own, by the contents of the source file and of all package files that it imports, so that an edited kernel is
@@ -42,7 +42,7 @@ _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is co
 
 
 class Kernel:
-    """A function that is compiled when it is first called.
+    """Function that is compiled when it is first called.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Kernel:
 
     @cached_property
     def dispatcher(self) -> Any:
-        """numba's own form of the function."""
+        """The function as a dispatcher of numba."""
         return _with_cache(self.function, self.kept, lambda numba, cache: numba.njit(cache=cache, **self.options))
 
     @property
@@ -72,7 +72,7 @@ class Kernel:
         return self.function
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run the compiled function; arrays that are frozen are handed over as the arrays that they view."""
+        """Run the compiled function; read-only arrays are passed as writable views."""
         if self._compiled is not None and not self._thaws:
             try:
                 return self._compiled(*arguments)
@@ -88,7 +88,7 @@ class Kernel:
         return self._compiled(*given)  # type: ignore[misc]
 
     def _thawed(self, arguments: tuple[Any, ...]) -> list[Any]:
-        """The arguments with no frozen array among them; a kernel that needs that once will need it again."""
+        """Return the arguments with writable views of read-only arrays; note that this kernel gets such arrays."""
         code, given = self.function.__code__, list(arguments)
         for k, each in enumerate(arguments):
             if type(each) is np.ndarray and not each.flags.writeable and code.co_varnames[k] not in WRITTEN:
@@ -109,10 +109,10 @@ class Kernel:
 
 
 class Inlined(Kernel):
-    """A function that is compiled into the kernels that call it; called from Python it is what was written."""
+    """Function that is compiled into the kernels that call it; called from Python it runs interpreted."""
 
     def __call__(self, *arguments: Any) -> Any:
-        """Compute it, interpreted."""
+        """Run the function in the interpreter."""
         return self.function(*arguments)
 
 
@@ -146,7 +146,7 @@ def register_jitable(function: Callable[..., Any]) -> Inlined:
 
 @cache
 def callback(kernel: Kernel, signature: Any) -> Any:
-    """Return a kernel as a function that compiled code may be handed, compiled for one signature.
+    """Return a kernel compiled for one signature, as a function that compiled code can take as an argument.
 
     Code that calls it does not contain it, as it contains each kernel that it calls by name: what large functions
     share is compiled once.
@@ -159,7 +159,7 @@ def callback(kernel: Kernel, signature: Any) -> Any:
 
 
 def callback_like(kernel: Kernel, result: tuple[Any, ...], *arguments: Any) -> Any:
-    """Return `callback` for the types of these examples of what a kernel returns and is given."""
+    """Return `callback` for the signature of an example result and example arguments."""
     numba = load_numba()
     if numba.config.DISABLE_JIT:
         return kernel.function
@@ -167,7 +167,7 @@ def callback_like(kernel: Kernel, result: tuple[Any, ...], *arguments: Any) -> A
 
 
 def thawed(array: Any) -> Any:
-    """Return a view of an array that numba takes for one that may be written to: its type is the same for all.
+    """Return a view of an array that numba types as writable, so that one compiled version serves all arrays.
 
     Examples
     --------
@@ -180,7 +180,7 @@ def thawed(array: Any) -> Any:
 
 
 class _Memory:
-    """The memory of an array, by numpy's array interface."""
+    """Memory of an array, as numpy's array interface."""
 
     def __init__(self, array: Any) -> None:
         self.array = array  # kept alive by the view's base
@@ -190,7 +190,7 @@ class _Memory:
 
 @cache
 def load_numba() -> Any:
-    """Return numba, which from then on knows kernels by their dispatchers."""
+    """Import numba, teach it to type kernels as their dispatchers, and return it."""
     import numba
     from numba.extending import typeof_impl
 
@@ -202,7 +202,7 @@ def load_numba() -> Any:
 
 
 def _opened(dispatcher: Any) -> Any:
-    """The same dispatcher, which compiles for new types until `compiling` ends."""
+    """Return the dispatcher, allowed to compile for new types until `compiling` ends."""
     if hasattr(dispatcher, "disable_compile"):
         dispatcher.disable_compile(False)
         _OPEN.append(dispatcher)
@@ -210,7 +210,7 @@ def _opened(dispatcher: Any) -> Any:
 
 
 def is_modules_own(known: Any) -> bool:
-    """Whether a function is what the file of its module defines by its name: no other process means another by it."""
+    """Return whether the file of a function's module defines it under its name, so that all processes agree on it."""
     return _named(known) and getattr(sys.modules[known.__module__], "__file__", None) is not None
 
 
@@ -220,7 +220,7 @@ def _named(known: Any) -> bool:
 
 
 def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..., Any]) -> Any:
-    """A function, decorated; its compiled code is kept in a folder named for its sources, if there may be one."""
+    """Return the decorated function; its compiled code is kept in `_folder`, if there is one."""
     numba, folder = load_numba(), _folder(function) if kept else None
     if folder is None:
         return decorator(numba, False)(function)
@@ -236,7 +236,7 @@ def _with_cache(function: Callable[..., Any], kept: bool, decorator: Callable[..
 
 
 def _folder(function: Callable[..., Any]) -> Path | None:
-    """Where compiled code of a function is kept: beside a bound module, else in a folder named for its sources."""
+    """Return the folder of a function's compiled code: beside a bound module, else named after its sources."""
     base = kernels_folder() if is_modules_own(function) else None
     if base is None:
         return None
@@ -247,7 +247,7 @@ def _folder(function: Callable[..., Any]) -> Path | None:
 
 
 def _mark(function: Callable[..., Any], types: Any) -> Path | None:
-    """A file that says that some process has compiled a function for these types."""
+    """Return the path of the file that marks a function as compiled for these types by some process."""
     config, folder = load_numba().config, _folder(function)
     known = (function.__qualname__, types, load_numba().__version__, config.CPU_NAME, config.CPU_FEATURES)
     return None if folder is None else folder / f"{hashlib.sha256(repr(known).encode()).hexdigest()[:16]}.known"
@@ -255,12 +255,12 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
 
 @contextmanager
 def compiling(mark: Path | None = None) -> Iterator[None]:
-    """Compile alone: one thread of one process of this user, for others to load what it made."""
+    """Let one thread of one process compile; others wait and load the result."""
     with _ONE, relaxed_gc():
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         free = folder is None or fcntl is None or (mark is not None and mark.exists())
         with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]
-            while file is not None and time.monotonic() < until:  # a process that was stopped keeps nobody for ever
+            while file is not None and time.monotonic() < until:  # a stopped process must not block others without end
                 try:
                     fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                     break
@@ -292,7 +292,7 @@ def kernels_folder() -> Path | None:
     # of two installations numba would give functions of one name the constants of each other
     installation = repr((__file__, load_numba().__version__, sys.version))
     for place in places:
-        with suppress(OSError, RuntimeError, AttributeError):  # no home, no users to tell apart
+        with suppress(OSError, RuntimeError, AttributeError):  # no home folder, or no user ids
             return sources_folder(_private(place()), hashlib.sha256(installation.encode()).hexdigest()[:16])
     logging.getLogger("flockana").warning(
         "no folder can be written to for compiled kernels: each process compiles its own; set NUMBA_CACHE_DIR to one"
@@ -301,7 +301,7 @@ def kernels_folder() -> Path | None:
 
 
 def _private(folder: Path) -> Path:
-    """A folder that nobody else may write to, as what lies there is run; OSError if it is not, or cannot be."""
+    """Return the folder if this user alone can write to it, as its code is executed; raise OSError otherwise."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     found = folder.lstat()
     if hasattr(os, "getuid") and (folder.is_symlink() or found.st_uid != os.getuid() or found.st_mode & 0o077):
@@ -312,7 +312,7 @@ def _private(folder: Path) -> Path:
 
 @cache
 def sources_folder(base: Path, digest: str) -> Path:
-    """Return the folder for compiled code of some sources; folders that were not used for long are removed."""
+    """Return the folder for compiled code of some sources; remove folders that have not been used for long."""
     folder, now = base / digest, time.time()
     if not folder.is_dir():
         folder.mkdir(mode=0o700, exist_ok=True)
@@ -326,7 +326,7 @@ def sources_folder(base: Path, digest: str) -> Path:
 
 @cache
 def sources_digest(file: str) -> str:
-    """Return a digest of the contents of a file and of all that it imports of the package, and these again."""
+    """Return a digest of a file and of all files of the package that it imports, directly or not."""
     known, found = set[Path](), {Path(file)}
     while found:
         known |= found
@@ -339,7 +339,7 @@ def sources_digest(file: str) -> str:
 
 @cache
 def _imported(file: Path) -> frozenset[Path]:
-    """The files of the package that a file imports, whatever it is itself."""
+    """Return the files of the package that a file imports; none for this module."""
     root, text = Path(__file__).parent, "" if file == Path(__file__) else file.read_text("utf-8")
     names = re.findall(r"^\s*(?:from|import) flockana\.([\w.]+)(?: import (\([^)]*\)|.+))?", text, re.MULTILINE)
     paths = set()

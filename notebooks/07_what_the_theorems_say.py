@@ -126,8 +126,8 @@ from flockana.equilibria.barrier import collision_barrier
 counted = (2, 3, 5, 7, 8)
 barriers = {n: collision_barrier(alpha, n, starts=3) for n in counted}
 for n, found in barriers.items():
-    print(f"n = {n}: rest {found.ground:5.2f}, c* {alpha.c_star:.2f}, barrier {found.together:.2f}", end="")
-    print(f"; allowed above rest: {alpha.c_star - found.ground:.2f} by c*, {found.height:.2f} by the barrier")
+    print(f"n = {n}: rest {found.lowest:5.2f}, c* {alpha.c_star:.2f}, barrier {found.together:.2f}", end="")
+    print(f"; allowed above rest: {alpha.c_star - found.lowest:.2f} by c*, {found.height:.2f} by the barrier")
 
 # %% [markdown]
 # The last column hardly falls: the start may always have some fifty units of energy above rest. With $c^*$ the
@@ -316,9 +316,9 @@ assert fl.verify("os-3", line).claim("iv-instant").status == "verified"
 # %% [markdown]
 # ## All errata at once
 #
-# What is printed, and what is right. `E1` to `E16` are of lecture slides and student projects on the paper; of none is
-# it shown that the paper has it. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
-# *vacuous* (true of next to nothing) or, after all, *confirmed*.
+# What is printed, and what is right. `E1` to `E16` are in lecture slides and student projects on the paper; none is
+# shown to be in the paper itself. An erratum is *wrong*, *incomplete* (true with a hypothesis that is missing),
+# *vacuous* (true, but of hardly any flock) or, after all, *confirmed*.
 
 # %%
 for sort in ("wrong", "incomplete", "vacuous", "confirmed"):

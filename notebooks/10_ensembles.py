@@ -255,7 +255,7 @@ print(safe)
 _ = plots.falsification(broken)
 
 # %% [markdown]
-# **Figure 10.6.** The margin of the claim in each run of the search, and the least so far. Below 0 the claim fails.
+# **Figure 10.6.** The margin of the claim in each run of the search, and the smallest so far. Below 0 the claim fails.
 #
 # That nothing was found below $c^*$ proves nothing. The proof `collisions` does. Now the printed "almost every solution
 # converges to an α-lattice" (erratum E3), among five agents that may start up to 0.5 from where they are in the

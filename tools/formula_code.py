@@ -103,7 +103,7 @@ def shared_text(
         return x0 if x < 1.0 else 0.0
     """
     constants = _Ahead(moving, 0)
-    taken = [constants.taken_out(each) for each in expressions] if constants.variables else expressions
+    taken = [constants.extract_constants(each) for each in expressions] if constants.variables else expressions
     parts = {power.base for each in taken for power in each.atoms(sp.Pow) if abs(power.exp) > 1}
     parts |= {call for each in taken for call in each.atoms(sp.Function) if not isinstance(call, sp.Piecewise)}
     parts -= {*taken}

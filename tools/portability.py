@@ -303,7 +303,7 @@ def table(rows: Sequence[Row]) -> str:
 def arguments() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.portability", description=(__doc__ or "").split("\n\n")[1])
-    parser.add_argument("names", nargs="*", metavar="NAME", help="scenarios and theorems by themselves; default: all")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="scenarios, and theorems without a run; default: all")
     parser.add_argument("--variants", action="append", metavar="PATTERN", help="such as 'blas-*'; may be repeated")
     parser.add_argument("--list", action="store_true", help="print the variants of this machine and end")
     parser.add_argument("--draws", type=int, default=5, metavar="N", help="moved starts (default 5)")

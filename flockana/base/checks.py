@@ -176,7 +176,7 @@ def ensure_fits(name: str, shape: tuple[int, ...], remedy: str) -> None:
     """Raise before an array of floats is allocated that would take more than half of the machine's memory."""
     size = 8 * math.prod(shape)
     if not hasattr(os, "sysconf"):
-        return  # a system that does not tell; the allocation itself may fail
+        return  # the system does not say; the allocation itself may fail
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if 2 * size > memory:
         much = f"{size:.3g}" if size < 10**DIGITS else format_value(size)

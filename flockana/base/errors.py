@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 _NEAREST = 3  # names that are suggested
-_FEW = 16  # names that are all told
-DIGITS = 40  # of a whole number beyond which it is told by its size: Python itself refuses to write some
+_FEW = 16  # names that are all listed
+DIGITS = 40  # of a whole number; a longer one is described by its size: Python itself refuses to write some
 
 
 def format_value(value: Any) -> str:
@@ -53,7 +53,7 @@ class UnknownNameError(ArgumentError):
     kind : str
         What was looked for, such as ``"scenario"``.
     known : iterable of str
-        The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are told.
+        The names that exist; the closest is suggested, whatever the case. Of many only the three nearest are listed.
 
     Examples
     --------
@@ -73,8 +73,9 @@ class UnknownNameError(ArgumentError):
         hint = f"did you mean {close[0]!r}? " if close else ""
         nearest = [folded[one] for one in get_close_matches(wanted, folded, n=_NEAREST, cutoff=0.0)]
         many = len(names) > _FEW
-        rest = f"The nearest of {len(names)}: {', '.join(nearest)}" if many else f"Known: {', '.join(names)}"
-        super().__init__(f"unknown {kind} {format_value(name)}; {hint}{rest}")
+        rest = f"the nearest of {len(names)}: {', '.join(nearest)}" if many else f"known: {', '.join(names)}"
+        rest = f"{hint}{rest[0].upper()}{rest[1:]}" if hint else rest
+        super().__init__(f"unknown {kind} {format_value(name)}; {rest}")
         self._arguments = (str(kind), text, names)
 
     def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, str, list[str]]]:

@@ -25,11 +25,11 @@ def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     facts = list(facts)
     met: FactStatus = "met"
     worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), met)
-    told = [fact for fact in facts if fact.status == worst]
+    deciding = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)
-    detail = "; ".join(dict.fromkeys(fact.detail for fact in told if fact.detail))
-    return Fact(worst, detail, told[0].witness, sum(fact.width for fact in told))
+    detail = "; ".join(dict.fromkeys(fact.detail for fact in deciding if fact.detail))
+    return Fact(worst, detail, deciding[0].witness, sum(fact.width for fact in deciding))
 
 
 @dataclass(frozen=True)

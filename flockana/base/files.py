@@ -80,7 +80,7 @@ def atomic_write(path: str | os.PathLike[str], *, remedy: str = "choose another 
     try:
         yield partial
         os.replace(partial, target)
-    except FileError:  # told already
+    except FileError:  # reported already
         raise
     except OSError as error:
         raise FileError(f"cannot write {str(path)!r}: {error.strerror or error}; {remedy}") from error

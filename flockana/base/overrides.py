@@ -20,13 +20,14 @@ def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool
 def ensure_consistent(item: Any) -> None:
     """Raise if a law overrides a public method whose counterpart for integrators it keeps.
 
-    A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
-    that changes the former alone would be integrated without the change. So would a method set on an instance.
+    A class of the library lists in ``derived_methods`` the public methods that follow from one which integrators call:
+    a user's class that changes only the former would be integrated without the change, as would an instance with a
+    method of its own.
 
     Examples
     --------
     >>> class Law:
-    ...     derives = {"flow": ("acceleration",)}
+    ...     derived_methods = {"flow": ("acceleration",)}
     ...     def flow(self): ...
     ...     def acceleration(self): ...
     >>> class Noisy(Law):
@@ -38,8 +39,8 @@ def ensure_consistent(item: Any) -> None:
     flockana.base.errors.ArgumentError: Noisy defines acceleration, but not flow, from which it follows: ...
     """
     kind = type(item)
-    derives: Mapping[str, tuple[str, ...]] = getattr(kind, "derives", {})
-    for source, derived in derives.items():
+    derived_methods: Mapping[str, tuple[str, ...]] = getattr(kind, "derived_methods", {})
+    for source, derived in derived_methods.items():
         defined = next((k for k, base in enumerate(kind.__mro__) if source in vars(base)), 0)
         for base in kind.__mro__[:defined]:
             for name in () if base.__module__.startswith("flockana.") else derived:
@@ -58,5 +59,5 @@ def ensure_consistent(item: Any) -> None:
         for field in fields(item):
             value = getattr(item, field.name)
             for part in value if isinstance(value, tuple) else (value,):
-                if hasattr(part, "derives"):
+                if hasattr(part, "derived_methods"):
                     ensure_consistent(part)

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 _EVERY = 60.0  # seconds between lines off a terminal
-_BASIS = 0.1  # of the total: what is done from which on the time left is told
+_BASIS = 0.1  # share of the total from which on the remaining time is estimated
 
 
 @contextmanager
@@ -42,14 +42,14 @@ def progress_bar(
 
 def _lines(total: float) -> Callable[[float, str], None]:
     """Return a function that prints progress to stderr at fixed intervals."""
-    started = told = time.monotonic()
+    started = printed = time.monotonic()
 
     def advance(done: float, text: str) -> None:
-        nonlocal told
+        nonlocal printed
         now = time.monotonic()
-        if now - told < _EVERY or not 0.0 < done < total:
+        if now - printed < _EVERY or not 0.0 < done < total:
             return
-        told = now
+        printed = now
         spent = now - started
         left = spent * (total - done) / done
         # before a tenth is done, parts that take longer than others would lead far off

@@ -50,7 +50,7 @@ class Pull(AgentTerm):
 
     Attributes
     ----------
-    start, velocity, told : tuple of arb
+    start, velocity, declared : tuple of arb
         q_r = start + velocity t, and p_r.
     stiffness, damping : arb
         c1γ and c2γ.
@@ -60,7 +60,7 @@ class Pull(AgentTerm):
 
     start: tuple[arb, ...]
     velocity: tuple[arb, ...]
-    told: tuple[arb, ...]
+    declared: tuple[arb, ...]
     stiffness: arb
     damping: arb
     unit: arb | None = None
@@ -69,7 +69,7 @@ class Pull(AgentTerm):
         """Return x − q_r."""
         return [a - (b + c * t) for a, b, c in zip(x, self.start, self.velocity, strict=True)]
 
-    def _slant(self, away: Sequence[Any], unit: arb) -> Any:
+    def _saturation(self, away: Sequence[Any], unit: arb) -> Any:
         """Return 1/√(1 + ‖x − q_r‖²/ℓ²)."""
         squares = list(map(square, away))
         return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
@@ -78,10 +78,10 @@ class Pull(AgentTerm):
         """Return the force at a position and a velocity."""
         away = self._away(t, x)
         if self.unit is not None:
-            slant = self._slant(away, self.unit)
+            slant = self._saturation(away, self.unit)
             away = [a * slant for a in away]
-        told = zip(away, v, self.told, strict=True)
-        return [-self.stiffness * a - self.damping * (w - p) for a, w, p in told]
+        rows = zip(away, v, self.declared, strict=True)
+        return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
         """Return the derivatives of the force by position and velocity, two tables."""
@@ -90,7 +90,7 @@ class Pull(AgentTerm):
         if self.unit is None:
             return [[-self.stiffness if k == h else 0 for h in range(m)] for k in range(m)], drag
         away = self._away(t, x)
-        slant = self._slant(away, self.unit)
+        slant = self._saturation(away, self.unit)
         cube = slant * slant * slant / (self.unit * self.unit)
         pull = [
             [-self.stiffness * ((slant if k == h else 0) - cube * away[k] * away[h]) for h in range(m)]
@@ -101,7 +101,7 @@ class Pull(AgentTerm):
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
         """Return −c2γ ⟨v, v − p_r⟩, for a γ-agent at rest."""
         speed = sum(map(square, v), 0 * v[0])
-        return -self.damping * (speed - sum((w * p for w, p in zip(v, self.told, strict=True)), 0 * v[0]))
+        return -self.damping * (speed - sum((w * p for w, p in zip(v, self.declared, strict=True)), 0 * v[0]))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
         """Return the derivative of the force by time, from the motion of q_r."""

@@ -29,7 +29,7 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
     """Return a list of balls whose sum over the agents is 0."""
     rows = [[arb(x) if isinstance(x, arb) else arb(float(x)) for x in row] for row in values]
     if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
-        raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium")
+        raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium has")
     if not all(x.is_finite() for row in rows for x in row):
         raise ArgumentError(f"{name} holds a number that is not finite: expected finite coordinates")
     middle = [sum(column, arb(0)) / shape[0] for column in zip(*rows, strict=True)]

@@ -39,7 +39,7 @@ from flockana.certified.balls import ball, square
 from flockana.certified.damping import damping
 from flockana.certified.decimals import round_down
 from flockana.certified.lyapunov import Bounds, Decay, decay
-from flockana.certified.shells import ROOT_TWO, Shells, Surroundings, prove
+from flockana.certified.shells import ROOT_TWO, BondTable, Shells, prove
 from flockana.certified.structure import Structure
 from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.measures.nets import components, links
@@ -212,11 +212,11 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
     _ensure_flock(law, q)
     with ctx.workdps(DIGITS):
         computed, rest = enclose_rest(u, q)
-        around = Surroundings(law, u, rest)
+        around = BondTable(law, u, rest)
         radius = _largest(around, share)
         for _ in range(_RETRIES):
             shells = prove(around, around.proposed(radius))
-            found = shells and _concluded(around, law, computed, shells)
+            found = shells and _assemble_basin(around, law, computed, shells)
             if found:
                 return found
             radius *= _RETREAT
@@ -229,7 +229,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError(f"equilibrium has {len(q)} agent: expected two or more, a shape")
     if len(links(q, _APART * law.alpha.d)):
         raise ArgumentError(
-            "the equilibrium has agents at one place: expected distinct ones, or nothing bars collisions"
+            "the equilibrium has coincident agents: expected distinct positions, or collisions cannot be excluded"
         )
     if law.gains.c2_alpha == 0.0 and (law.target is None or law.gains.c2_gamma == 0.0):
         raise ArgumentError("c2_alpha = 0 and no c2_gamma: expected a gain that damps, or no velocities match")
@@ -238,7 +238,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError("the net is disconnected and nothing else holds it together: expected one component")
 
 
-def _largest(around: Surroundings, share: float) -> float:
+def _largest(around: BondTable, share: float) -> float:
     """Return the largest radius for which floating point proposes enough curvature, by bisection."""
     d = float(around.law.alpha.d)
     shortest = min(float(length) for _, length in around.gaps.values())
@@ -255,7 +255,7 @@ def _largest(around: Surroundings, share: float) -> float:
     return low
 
 
-def _concluded(around: Surroundings, law: Any, computed: list[float], shells: Shells) -> Basin | None:
+def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: Shells) -> Basin | None:
     """Return the basin of proved shells; None where the net may part or nothing damps."""
     u, reach = around.u, ROOT_TWO * shells.radius
     lengths = {pair: length for pair, (_, length) in around.gaps.items()}

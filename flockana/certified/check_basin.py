@@ -81,10 +81,10 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
                 f"shell {k}: more than the curvature stated is true",
             )
         yield "the curvature of U along displacements is at least what is stated, shell by shell"
-        yield from _conclusions(data, net, x, lengths, curvatures)
+        yield from _check_bounds(data, net, x, lengths, curvatures)
 
 
-def _conclusions(
+def _check_bounds(
     data: Mapping[str, Any], net: Net, x: Sequence[Sequence[arb]], lengths: Mapping[Pair, arb], k: Sequence[Fraction]
 ) -> Iterator[str]:
     """Check level, curvature, surplus, damping and rate against the shells and the net."""

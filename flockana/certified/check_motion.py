@@ -39,7 +39,7 @@ class Motion:
     gain: Mapping[str, arb]
     start: Vector
     velocity: Vector
-    told: Vector
+    declared: Vector
     n: int
     m: int
     bounded: bool
@@ -84,7 +84,7 @@ class Motion:
         ]
         if self.bounded:
             away = [a / (1 + sum((b * b for b in own), 0 * a)).sqrt() for own in self.agents(away) for a in own]
-        u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.told[k % m]) for k, a in enumerate(away)]
+        u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.declared[k % m]) for k, a in enumerate(away)]
         for (i, sphere), piece in zip(self.near(), pieces[self.n * (self.n - 1) // 2 :], strict=True):
             if piece != 2:
                 for k, push in enumerate(sphere.force(q[i], p[i], piece)):

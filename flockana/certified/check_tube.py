@@ -37,7 +37,7 @@ BITS = 128
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the expected form of a certificate, by key; only Algorithm 3 has spheres and a clearance."""
-    law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "told")}
+    law: dict[str, Any] = PAIR_LAW | {key: [NUMBER] for key in ("start", "velocity", "declared")}
     if bounded := data["law"]["algorithm"] == "Algorithm3":
         law |= dict.fromkeys(("beta_d", "beta_eps", "beta_h", "c1_beta", "c2_beta"), NUMBER)
         law |= {"spheres": [{"centre": [NUMBER], "radius": NUMBER}]}
@@ -76,10 +76,10 @@ class Run(Motion):
         bounded = law["algorithm"] == "Algorithm3"
         gain = {name: number(law[name]) for name in ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")}
         ensure(all(g >= 0 for g in gain.values()), "a gain is negative")
-        start, velocity, told = ([number(x) for x in law[name]] for name in ("start", "velocity", "told"))
-        led = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *told)
+        start, velocity, declared = ([number(x) for x in law[name]] for name in ("start", "velocity", "declared"))
+        led = (gain["c1_gamma"], gain["c2_gamma"], *start, *velocity, *declared)
         ensure(law["algorithm"] != "Algorithm1" or all(x == 0 for x in led), "Algorithm 1 has no γ-agent")
-        ensure(len(start) == len(velocity) == len(told) == m, "the γ-agent has another dimension")
+        ensure(len(start) == len(velocity) == len(declared) == m, "the γ-agent has another dimension")
         ensure(not (bounded and any(x != 0 for x in velocity)), "its γ-agent moves")
         spheres = tuple(Sphere.of(law, one) for one in law["spheres"]) if bounded else ()
         ensure(all(len(one.centre) == m and one.radius > 0 for one in spheres), "a sphere of another dimension")
@@ -87,7 +87,7 @@ class Run(Motion):
         par = AlphaParameters(**{name: law[name] for name in ("d", "r", "eps", "h", "a", "b")})
         weight = number(data["weight"])
         ensure(bool(weight > 0), "the weight is not positive")
-        return cls(par, gain, start, velocity, told, n, m, bounded, spheres, weight)
+        return cls(par, gain, start, velocity, declared, n, m, bounded, spheres, weight)
 
     def follow(self, data: Mapping[str, Any]) -> Iterator[str]:
         """Check the run step by step, then the claims about all of it."""

@@ -52,9 +52,9 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
     if isinstance(law, _LED):
         path = cast(Any, law).target.harmonic.terms
         unit = arb(exact(cast(Any, law).alpha.unit)) if isinstance(law, Algorithm3) else None
-        start, velocity, told = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
-        told = tuple(a + b for a, b in zip(velocity, told, strict=True))  # p_r = dq_r/dt + what is told beside it
-        terms = (Pull(start, velocity, told, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
+        start, velocity, offset = (tuple(arb(exact(x)) for x in path[k].tolist()) for k in (0, 1, 4))
+        declared = tuple(a + b for a, b in zip(velocity, offset, strict=True))  # p_r = dq_r/dt + offset
+        terms = (Pull(start, velocity, declared, arb(exact(gains.c1_gamma)), arb(exact(gains.c2_gamma)), unit),)
         rates += [gains.c2_gamma, sqrt(gains.c1_gamma)]
     if isinstance(law, Algorithm3) and law.obstacles:
         terms = (*terms, *sphere_terms(law))

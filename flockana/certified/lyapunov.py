@@ -30,8 +30,8 @@ from flockana.base.checks import FloatArray
 from flockana.certified.balls import ball
 from flockana.certified.decimals import round_down, round_up
 
-_DIGITS, _CHOSEN = 3, 9  # of what is proved, and of the choice, some of whose differences are small
-_LEAST, _STEPS = 1e-6, 4000  # values of ε, from such a share of the largest: 0.4 % apart
+_DIGITS, _CHOSEN = 3, 9  # digits of proved numbers, and of the parameters, whose differences can be small
+_LEAST, _STEPS = 1e-6, 4000  # values of ε that are tried, from this share of the largest up, 0.4 % apart
 _HALVINGS = 60
 
 

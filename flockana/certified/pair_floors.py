@@ -30,7 +30,7 @@ LEVELS = 4  # cells of the first cut: 2^4 to either side, as many as there are s
 SHELLS = 2**LEVELS
 _DEEPEST = 16
 _POINTS = 801  # at which floating point looks
-_SPARE = (0.03, 1e-5)  # of K (η/ℓ0)², and of K: what a proposed β keeps in hand
+_SPARE = (0.03, 1e-5)  # of K (η/ℓ0)², and of K: margin that a proposed β keeps
 
 
 @dataclass(frozen=True)

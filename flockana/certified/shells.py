@@ -43,7 +43,7 @@ class Bond:
 
 
 @dataclass(frozen=True)
-class Floors:
+class ProposedBounds:
     """Bounds proposed in floating point for a radius: α and β of each bond in each shell, and curvatures."""
 
     radius: float
@@ -57,7 +57,7 @@ class Floors:
         return float(np.min(np.cumsum(self.curvatures) / np.arange(1, SHELLS + 1)))
 
 
-class Surroundings:
+class BondTable:
     """Bonds about an enclosed equilibrium, and the matrices of their bounds."""
 
     def __init__(self, law: Any, u: Structure, rest: Balls) -> None:
@@ -104,7 +104,7 @@ class Surroundings:
         found = least_eigenvalue(total + identity(total.nrows()) * shift)
         return arb("-inf") if found is None else (found - shift).lower()
 
-    def proposed(self, radius: float) -> Floors:
+    def proposed(self, radius: float) -> ProposedBounds:
         """Return bounds for a radius, proposed in floating point with the best slack in each shell."""
         reach = float(ROOT_TWO.p) / float(ROOT_TWO.q) * radius
         bonds = self.bonds(fmpq(*reach.as_integer_ratio()))
@@ -129,7 +129,7 @@ class Surroundings:
                 if least > best:
                     best, along[i], across[i] = least, a, b
             curvatures[i] = best
-        return Floors(radius, along, across, curvatures)
+        return ProposedBounds(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return (F'', T) in floating point."""
@@ -200,7 +200,7 @@ class Shells:
         return min(least)
 
 
-def prove(around: Surroundings, floors: Floors) -> Shells | None:
+def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
     """Return proposed bounds rounded down and proved; None where a bound is not certain."""
     radius = round_down(arb(floors.radius), _DIGITS)
     reach = ROOT_TWO * radius

@@ -56,7 +56,9 @@ class Structure:
         if led:
             ensure_one_gain(gains)
         if not gains.c1_alpha > 0.0:
-            raise ArgumentError(f"c1_alpha = {gains.c1_alpha:g}: expected more than 0, or nothing holds the agents")
+            raise ArgumentError(
+                f"c1_alpha = {gains.c1_alpha:g}: expected more than 0, or no force holds the agents together"
+            )
         return cls(
             AlphaParameters.of(law.alpha),
             c1_alpha=exact(gains.c1_alpha),

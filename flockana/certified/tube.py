@@ -128,12 +128,12 @@ class Tube:
     @property
     def q(self) -> FloatArray:
         """Midpoints of the positions at the steps, shape (T, n, m), for drawing."""
-        return self._middles[:, 0]
+        return self._midpoints[:, 0]
 
     @property
     def p(self) -> FloatArray:
         """Midpoints of the velocities at the steps, shape (T, n, m), for drawing."""
-        return self._middles[:, 1]
+        return self._midpoints[:, 1]
 
     @cached_property
     def boxes(self) -> tuple[list[arb], ...]:
@@ -142,13 +142,13 @@ class Tube:
             return tuple(one.hull for one in self.sets)
 
     @cached_property
-    def _middles(self) -> FloatArray:
+    def _midpoints(self) -> FloatArray:
         return self._array([[float(x.mid()) for x in box] for box in self.boxes])
 
     @cached_property
     def radii(self) -> FloatArray:
         """Half-widths of the boxes of positions and of velocities about `q` and `p`, rounded up, shape (T, 2, n, m)."""
-        rows = zip(self.boxes, self._middles.reshape(len(self.t), -1).tolist(), strict=True)
+        rows = zip(self.boxes, self._midpoints.reshape(len(self.t), -1).tolist(), strict=True)
         with ctx.workprec(BITS):
             return self._array([[up((x - y).abs_upper()) for x, y in zip(box, row, strict=True)] for box, row in rows])
 

@@ -86,17 +86,17 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
     law, gains, zero = tube.law, tube.law.gains, ["0"] * tube.m
     led = isinstance(law, Algorithm2 | Algorithm3)
     terms = law.target.harmonic.terms if led else np.zeros((5, tube.m))
-    path = {"start": terms[0], "velocity": terms[1], "told": terms[1] + terms[4]}
+    path = {"start": terms[0], "velocity": terms[1], "declared": terms[1] + terms[4]}
     numbers = {name: _decimal(getattr(law.alpha, name)) for name in ("d", "r", "eps", "h", "a", "b")}
     numbers |= {name: _decimal(getattr(gains, name)) for name in ("c1_alpha", "c2_alpha")}
     numbers |= {name: _decimal(getattr(gains, name)) if led else "0" for name in ("c1_gamma", "c2_gamma")}
-    told = {name: [_decimal(x) for x in row] if led else zero for name, row in path.items()}
+    target = {name: [_decimal(x) for x in row] if led else zero for name, row in path.items()}
     return {
         "format": FORMAT,
         "kind": "tube",
         "statement": TUBE,
         "prose": list(TUBE_PROSE),
-        "law": {"algorithm": type(law).__name__, **numbers, **told, **_spheres(law)},
+        "law": {"algorithm": type(law).__name__, **numbers, **target, **_spheres(law)},
         "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
         "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],
         "weight": _decimal(weight),

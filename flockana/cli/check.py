@@ -9,7 +9,7 @@ import typer
 
 from flockana.cli.options import AsJson
 from flockana.cli.show import show_json
-from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.status import OK, UNEXPECTED, print_error
 
 
 def check_command(
@@ -19,7 +19,7 @@ def check_command(
     """Verify a certificate, such as a basin's, and print what it proves, step by step.
 
     The checker shares only the scalar functions in ball arithmetic with the prover. It rejects a file that was changed,
-    or that claims more than is true.
+    or that claims more than it proves.
 
     Exit status: 0 it holds, 2 bad input, 3 it is rejected, 130 interrupted.
     """
@@ -31,7 +31,7 @@ def check_command(
     try:
         found = check_certificate(file)
     except RejectedError as error:
-        complain(f"{file} is rejected: {error}")
+        print_error(f"{file} is rejected: {error}")
         return UNEXPECTED
     if as_json:
         show_json(asdict(found))

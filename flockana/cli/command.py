@@ -23,14 +23,14 @@ class Command(TyperCommand):
             left = super().parse_args(ctx, args)
         except Exception as error:  # typer's own kinds, or click's, depending on its version
             value = given.get(str(getattr(getattr(error, "param", None), "name", "")))
-            told: Any = getattr(error, "format_message", None)
-            if not isinstance(value, str) or told is None or repr(value) in told():
+            format_message: Any = getattr(error, "format_message", None)
+            if not isinstance(value, str) or format_message is None or repr(value) in format_message():
                 raise
-            raise ArgumentError(f"{told().rstrip('.')}; got {value!r}") from error
+            raise ArgumentError(f"{format_message().rstrip('.')}; got {value!r}") from error
         paths = _paths(self.callback)
         for param in self.params:
             if param.name in paths and given.get(param.name) == "":
-                _refuse_empty(param)
+                _ensure_nonempty(param)
         return left
 
 
@@ -40,7 +40,7 @@ def _paths(command: Any) -> set[str]:
     return {name for name, kind in hints.items() if kind is Path or Path in get_args(kind)}
 
 
-def _refuse_empty(param: Any) -> None:
+def _ensure_nonempty(param: Any) -> None:
     """Raise on an empty path, as from an unset variable."""
     name = param.opts[0] if param.param_type_name == "option" else param.metavar
     here = "; this folder is '.'" if param.metavar in _FOLDERS else ""

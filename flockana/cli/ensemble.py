@@ -46,7 +46,7 @@ def ensemble_command(
 ) -> int:
     """Run and verify a scenario for many seeds, and print in which share of the runs each claim holds.
 
-    With --store, runs are kept as they are done: after Ctrl-C, or anything worse, the same command goes on from there.
+    With --store, finished runs are kept: after Ctrl-C or a crash, the same command continues from there.
     --plot draws the shares; over one --set option with several values, against it; over two, the phase diagram.
 
     A Dask cluster: `dask scheduler` on one machine, `dask worker tcp://HOST:8786 --nworkers auto --nthreads 1` on each,
@@ -142,13 +142,13 @@ def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str])
     if len(axes) == 2:
         plots.phase_diagram(phases(runs), axes[0], axes[1], ax=ax, title=title)
     elif axes:
-        plots.share_against(table, axes[0], claims=_telling(table), ax=ax, title=title)
+        plots.share_against(table, axes[0], claims=_most_varying(table), ax=ax, title=title)
     else:
         judged = (table.verified + table.refuted).values > 0  # the others have nothing to show
         plots.share_bars(table, claims=table.claim.values[judged].tolist(), ax=ax, title=title)
 
 
-def _telling(table: xarray.Dataset) -> list[str]:
+def _most_varying(table: xarray.Dataset) -> list[str]:
     """Return the claims whose share varies most with the parameter, in their order."""
     import numpy as np
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Drawing, Range, Scale, SourceName, Start, Time, output
 from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.status import OK, UNEXPECTED, print_error
 
 if TYPE_CHECKING:
     from flockana.equilibria import Equilibrium
@@ -34,7 +34,7 @@ def equilibrium_command(
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-spiral:19 (see flockana
     lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
-    moving γ-agent is held where it is at that time. Steps of semi-implicit Euler leave equilibria as they are. Under
+    moving γ-agent is fixed at its position at that time. Semi-implicit Euler has the equilibria of its law. Under
     dead-zone flocking strain is measured on contacts, pairs closer than d1.
 
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
@@ -52,7 +52,7 @@ def equilibrium_command(
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         equilibrium = find_equilibrium(law, q)
     except SolverError as error:
-        complain(error)
+        print_error(error)
         return UNEXPECTED
     facts = summary(equilibrium, source)
     if as_json:

@@ -23,7 +23,7 @@ def export_command(
     dt: Annotated[float | None, typer.Option(help="Longest step; by default a fiftieth of the law's time.")] = None,
     samples: Annotated[int, typer.Option(min=1, help="Number of snapshots.")] = 200,
     consensus: Annotated[
-        Literal["missing", "nearest"], typer.Option(help="A consensus without a pair style: omit, or use nearest.")
+        Literal["missing", "nearest"], typer.Option(help="Consensus without a pair style: leave out, or use nearest.")
     ] = "missing",
     as_json: AsJson = False,
 ) -> int:
@@ -35,7 +35,7 @@ def export_command(
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    told = export_lammps(
+    exported = export_lammps(
         item.law,
         item.q0,
         item.p0,
@@ -48,16 +48,16 @@ def export_command(
         consensus=consensus,
     )
     if as_json:
-        numbers = {"steps": told.steps, "dt": told.dt, "force error": told.force_error}
-        words = {name: list(getattr(told, name)) for name in ("exact", "near", "missing")}
-        show_json({"scenario": name, **numbers, **words, "files": [str(path) for path in told.files]})
+        numbers = {"steps": exported.steps, "dt": exported.dt, "force error": exported.force_error}
+        words = {name: list(getattr(exported, name)) for name in ("exact", "near", "missing")}
+        show_json({"scenario": name, **numbers, **words, "files": [str(path) for path in exported.files]})
         return OK
-    console = show(f"{item.name} for LAMMPS: {told.steps} steps of {told.dt:.6g}")
-    for word, texts in (("exact", told.exact), ("nearly", told.near), ("missing", told.missing)):
+    console = show(f"{item.name} for LAMMPS: {exported.steps} steps of {exported.dt:.6g}")
+    for word, texts in (("exact", exported.exact), ("nearly", exported.near), ("missing", exported.missing)):
         for text in texts:
             console.print(f"{word}: {text}", markup=False)
     console.print(
-        f"table: force off by at most {told.force_error:.3g}, energy by {told.energy_error:.3g}", markup=False
+        f"table: force off by at most {exported.force_error:.3g}, energy by {exported.energy_error:.3g}", markup=False
     )
-    show_files(**{path.name: path for path in told.files})
+    show_files(**{path.name: path for path in exported.files})
     return OK

@@ -66,13 +66,13 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
     law = _ensured(integrated_law(item.law), item.q0.shape[1], potential)
     ensure_small(*item.q0.shape)
     if start == "start":
-        return _held(law, item.t_span[0]), item.q0
+        return _with_fixed_target(law, item.t_span[0]), item.q0
     run = item.run()
     if run.status == "interrupted":
         raise KeyboardInterrupt
     if run.status != "complete":
         raise SolverError(f"the run of {name} {run.status}: {run.message}; use --start start")
-    return _held(law, float(run.t[-1])), run.q[-1]
+    return _with_fixed_target(law, float(run.t[-1])), run.q[-1]
 
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
@@ -98,7 +98,7 @@ def _of_source(
     given = read_source(name, d=d, r=r, time=time)
     if given.law is not None:
         _ensure_free(name, algorithm=algorithm, d=d, r=r)
-        return _held(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
+        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
     alpha = AlphaInteraction(d=given.d, r=given.r)
     if algorithm != 2:
         return Algorithm1(alpha), given.q
@@ -107,7 +107,7 @@ def _of_source(
     return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
 
 
-def _held(law: Any, t: float) -> Any:
+def _with_fixed_target(law: Any, t: float) -> Any:
     """Return the law with its γ-agent fixed at its position at time t."""
     from flockana.environment.targets import StaticTarget
 

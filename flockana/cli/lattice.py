@@ -21,7 +21,7 @@ _CROSSING = "each decided exactly, for the positions as stored"
 
 def lattice_command(
     source: Annotated[str, typer.Argument(metavar="SOURCE", help="A file, or a builder with its size.")],
-    d: Annotated[float | None, typer.Option("--d", help="Scale; by default the run's, else 7.")] = None,
+    d: Annotated[float | None, typer.Option("--d", help="Desired distance; by default the run's, else 7.")] = None,
     r: Annotated[float | None, typer.Option("--r", help="Range; by default the run's, else 1.2 d.")] = None,
     tol: Annotated[
         float | None,
@@ -214,7 +214,9 @@ def _planarity(facts: dict[str, Any]) -> str:
     if facts["planar graph"]:
         return "planar"
     witness = facts["kuratowski"]
-    return "not planar" + (f": holds a subdivided {witness['kind']} of {witness['links']} links" if witness else "")
+    return "not planar" + (
+        f": contains a subdivision of {witness['kind']} with {witness['links']} links" if witness else ""
+    )
 
 
 def _rigidity_text(rigidity: dict[str, Any]) -> str:

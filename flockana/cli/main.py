@@ -33,7 +33,7 @@ from flockana.cli.observe import observe_command
 from flockana.cli.prove import prove_command
 from flockana.cli.run import run_command
 from flockana.cli.stability import stability_command
-from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, complain
+from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, print_error
 from flockana.cli.streams import finish_output, prepare_output
 from flockana.cli.verify import verify_command
 
@@ -107,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 freeze_gc()
         finish_output()
     except FlockanaError as error:
-        complain(error)
+        print_error(error)
         code = BAD_INPUT
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
@@ -116,8 +116,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         message = getattr(error, "format_message", None)
         if message is None:
             raise
-        complain(message())
+        print_error(message())
         code = BAD_INPUT
     if code == INTERRUPTED:  # by us, or by typer, which returns this status itself when it sees Ctrl-C first
-        complain("interrupted")
+        print_error("interrupted")
     sys.exit(code or OK)

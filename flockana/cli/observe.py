@@ -29,7 +29,7 @@ def observe_command(
     fit: Annotated[bool, typer.Option("--fit", help="Fit the law's gains.")] = False,
     bound: Annotated[float | None, typer.Option(help="Largest error of a recorded position.")] = None,
     sd: Annotated[float | None, typer.Option(help="Standard deviation, instead of --bound.")] = None,
-    d: Annotated[float | None, typer.Option("--d", help="Scale of nets and lattices; by default the law's.")] = None,
+    d: Annotated[float | None, typer.Option("--d", help="Desired distance; by default the law's.")] = None,
     r: Annotated[float | None, typer.Option("--r", help="Range of nets; by default 1.2 d.")] = None,
     dt: Annotated[float | None, typer.Option(help="Time between frames, if the file has no times.")] = None,
     clock: Annotated[float | None, typer.Option(help="Seconds in one time unit, if times are dates.")] = None,
@@ -97,7 +97,7 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
         alpha = scaled_alpha(d, r)
         return alpha.length, alpha.range
     if law is None:
-        raise ArgumentError("no law, --d or --r: expected --law NAME, or --d, the scale that neighbours keep")
+        raise ArgumentError("no law, --d or --r: expected --law NAME, or --d, the desired distance of neighbours")
     return law_scales(law)
 
 

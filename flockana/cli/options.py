@@ -26,7 +26,7 @@ Algorithm = Annotated[
     int | None,
     typer.Option("--algorithm", "--law", min=1, max=2, help="Algorithm 1 (default) or 2, if the source has no law."),
 ]
-Scale = Annotated[float | None, typer.Option("--d", help="Scale d, if the source has no law.")]
+Scale = Annotated[float | None, typer.Option("--d", help="Desired distance d, if the source has no law.")]
 Range = Annotated[float | None, typer.Option("--r", help="Range r, if the source has no law; by default 1.2 d.")]
 
 # processes, and what is printed and written

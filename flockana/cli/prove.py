@@ -35,7 +35,7 @@ def prove_command(
     """Check the executable proofs, print what each proves, and write certificates (Markdown with LaTeX, and JSON).
 
     A proof whose steps all hold is `proved`. One with a step that does not hold is `FAILED`. One that takes too long,
-    lacks a library or cannot tell is `unknown`, which is not `false`, and fails the run too.
+    lacks a library or cannot decide is `unknown`, which does not mean false, and fails the run too.
 
     Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
     """

@@ -10,7 +10,7 @@ import typer
 
 from flockana.cli.options import Algorithm, AnySeed, AsJson, Range, Scale, SourceName, Start, Time
 from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import OK, UNEXPECTED, complain
+from flockana.cli.status import OK, UNEXPECTED, print_error
 from flockana.cli.threads import one_thread_for_matrices
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def stability_command(
     SOURCE is a scenario of the catalogue (its law, from the end of its run or from its start), a run that was saved
     (.nc), an equilibrium's file (.json), a CSV of positions, or a builder such as hexagonal-patch:2 (see flockana
     lattice --help). For a CSV or a builder the law is Algorithm 1 or 2 with default parameters, --d and --r. A
-    moving γ-agent is held where it is at that time.
+    moving γ-agent is fixed at its position at that time.
 
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
@@ -66,13 +66,13 @@ def stability_command(
     ensure_file(plot, KINDS)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
-        _tell_time(len(q), as_given=as_given)
+        _print_expected_time(len(q), as_given=as_given)
         here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
         linear = linearise(law, here, allow_residual=as_given)
         slow = slowest(linear, modes)
         facts = summary(linear, slow, source) | margins_and_norms(linear, delay=delay, norms=norms, strict=not as_given)
     except SolverError as error:
-        complain(error)
+        print_error(error)
         return UNEXPECTED
     if as_json:
         show_json(facts)
@@ -85,7 +85,7 @@ def stability_command(
     return OK
 
 
-def _tell_time(n: int, *, as_given: bool) -> None:
+def _print_expected_time(n: int, *, as_given: bool) -> None:
     """Print the expected time for a large flock on the error stream; raise if it is too long."""
     from flockana.base.errors import ArgumentError
 
@@ -255,4 +255,4 @@ def _mode_table(slow: tuple[Mode, ...]) -> Table:
 
 def _follows(law: Any) -> bool:
     """Return whether the centre of mass follows a γ-agent by its own linear equation."""
-    return law.target is not None and law.splits
+    return law.target is not None and law.centre_decouples

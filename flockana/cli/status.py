@@ -7,6 +7,6 @@ import typer
 OK, BAD_INPUT, UNEXPECTED, INTERRUPTED = 0, 2, 3, 130
 
 
-def complain(message: object) -> None:
+def print_error(message: object) -> None:
     """Print an error in one line on the error stream."""
     typer.echo(f"flockana: {' '.join(str(message).split())}", err=True)

@@ -10,7 +10,7 @@ from typing import Any
 from flockana.base.errors import FileError
 
 
-class _Outlet(io.FileIO):
+class _PipedOutput(io.FileIO):
     """Standard output that drops text once its reader has left."""
 
     gone = False
@@ -35,13 +35,13 @@ def prepare_output() -> None:
     stream = sys.stdout
     if stream is None or stream is not sys.__stdout__ or not isinstance(stream, io.TextIOWrapper):
         return
-    # a letter that the encoding lacks is told by its number, as JSON writes it too
+    # a letter that the encoding lacks is written as its code, as in JSON
     if stream.isatty():
         stream.reconfigure(errors="backslashreplace")
         return
     stream.flush()
     sys.stdout = io.TextIOWrapper(
-        io.BufferedWriter(_Outlet(stream.fileno(), "wb", closefd=False)),
+        io.BufferedWriter(_PipedOutput(stream.fileno(), "wb", closefd=False)),
         encoding=stream.encoding,
         errors="backslashreplace",
         newline=None,

@@ -80,8 +80,8 @@ def verify_command(
     seconds, complete, written = time.perf_counter() - started, code in (OK, UNEXPECTED), None
     if folder is not None and (pages or complete):
         try:
-            written = _written(folder, results, pages, statistics, seed, seconds, complete, name)
-        except FlockanaError as error:  # the verdicts are still to be told
+            written = _write_pages(folder, results, pages, statistics, seed, seconds, complete, name)
+        except FlockanaError as error:  # the verdicts are still printed
             failure = failure or error
     if as_json:
         from flockana.report.build import verdicts_json
@@ -129,7 +129,7 @@ def _gathered(
     return pages, gather(many, surveyed, figures=figures)
 
 
-def _written(
+def _write_pages(
     folder: Path,
     results: Sequence[Done],
     pages: Sequence[Page],

@@ -124,29 +124,29 @@ class Recorder:
         if some.wanted:
             self._samples.append(some)
             return
-        if not self._samples:  # earlier ones are nobody's
+        if not self._samples:  # no earlier steps are in use
             self._steps, self._single, self._held = [], [], 0
-        self._keep_to_memory()
+        self._limit_memory()
         self._held += 3 * some.q.size
         if isinstance(some, Sample):
             self._single.append(some)
             if len(self._single) < _TOGETHER:
                 return
-        self._put_together()
+        self._assemble()
         if isinstance(some, Samples):
             self._steps.append(some)
 
-    def _put_together(self) -> None:
+    def _assemble(self) -> None:
         if self._single:
             self._steps.append(Samples.of(self._single))
             self._single = []
 
     def between(self) -> Between | None:
         """Return the steps between the samples; None if there are none."""
-        self._put_together()
+        self._assemble()
         if not (self._steps and self._samples):
             return None
-        self._keep_to_memory()
+        self._limit_memory()
         times = np.concatenate([np.atleast_1d(some.t) for some in self._samples])
         t, q, p, u = (np.concatenate([getattr(some, name) for some in self._steps]) for name in ("t", "q", "p", "u"))
         inside = (t > times[0]) & (t < times[-1])
@@ -159,14 +159,14 @@ class Recorder:
         exact, knots = np.zeros(q.shape[1]), np.sort(np.concatenate([times, t]))
         return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
-    def _keep_to_memory(self) -> None:
+    def _limit_memory(self) -> None:
         """Drop every other step if there are too many, and free their memory.
 
         Where a step is left out, no sample may come between its neighbours any more.
         """
         if self._held <= self.most or not self._samples:
             return
-        self._put_together()
+        self._assemble()
         first = next(self._samples[0].each()).t
         knots = sorted((one for some in (*self._samples, *self._steps) for one in some.each()), key=lambda one: one.t)
         knots = [one for one in knots if one.t >= first]

@@ -69,7 +69,7 @@ class Engine(Stepper):
             self.failure = at_a_pole(t)
         elif made.status != RUNNING:
             why = _SMALL if made.status == TOO_SMALL else "the state is no longer finite"
-            self.failure = self.plan.gave_up(t + made.h, why)
+            self.failure = self.plan.describe_failure(t + made.h, why)
         return int(made.steps)
 
     def _sort(self) -> None:

@@ -23,7 +23,7 @@ def followed(
     before = State(q0, p0, np.zeros_like(q0))
     past = law.start(q0, p0)["past"]
     for k in range(len(past) - 1):
-        _ensure_met(
+        _ensure_encounters_resolved(
             check, law.dt, State(*past[k, :3]), State(*past[k + 1, :3]), t_span[0] - (len(past) - 1 - k) * law.dt
         )
     first = 0
@@ -32,7 +32,7 @@ def followed(
             after = State(*state)
             if t > t_span[0]:
                 # the input of a step is its mean: that of both of its ends, to the order that paths are looked at
-                _ensure_met(check, law.dt, before._replace(u=after.u), after, t - law.dt)
+                _ensure_encounters_resolved(check, law.dt, before._replace(u=after.u), after, t - law.dt)
             before = after
         kept = (
             slice(None) if wanted is None else np.flatnonzero(np.isin(np.arange(first, first + len(samples.t)), wanted))
@@ -42,7 +42,7 @@ def followed(
             yield Samples(samples.t[kept], samples.q[kept], samples.p[kept], samples.u[kept], {})
 
 
-def _ensure_met(check: Encounters, h: float, before: State, after: State, t: float) -> None:
+def _ensure_encounters_resolved(check: Encounters, h: float, before: State, after: State, t: float) -> None:
     share = check.share(h, before, after) if check.any else 1.0
     if share < 1.0:
         raise ArgumentError(

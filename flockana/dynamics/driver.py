@@ -69,7 +69,7 @@ def _driven(
         if stepper.failure:
             tally.fail(stepper.failure)
             return
-        stepper.go_on(good)
+        stepper.continue_from(good)
 
 
 def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:

@@ -161,7 +161,7 @@ class StepChecks:
             self._judged = Judged(around, self._rules, self._ledger, share)
         return self._judged
 
-    def look(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
+    def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
         shorter, singular, self.near = checked(block, 0, self.judged(order), self._view, kept, self.near)
         return shorter, singular

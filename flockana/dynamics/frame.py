@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.tolerance import Control, Floors
+from flockana.dynamics.tolerance import Control, ErrorFloors
 
 Flow = Callable[[float, FloatArray, FloatArray], tuple[FloatArray, float]]
-EXACT = Control(0.0, Floors(0.0, 0.0, 0.0))
+EXACT = Control(0.0, ErrorFloors(0.0, 0.0, 0.0))
 
 
 class Plan(NamedTuple):
@@ -24,7 +24,7 @@ class Plan(NamedTuple):
     control: Control = EXACT  # tolerances, and the longest step
     dt: float = 0.0  # step of a method of fixed steps, 0 for others
 
-    def gave_up(self, t: float, why: str) -> str:
+    def describe_failure(self, t: float, why: str) -> str:
         """Return in words why a run ended early."""
         if self.dt:
             return f"RK4 left the finite numbers at t = {t:g}: reduce dt = {self.dt:g}"

@@ -50,7 +50,7 @@ def discrete(
         own = np.arange(first + 1, last + 1)
         if wanted is not None:
             own = wanted[slice(*np.searchsorted(wanted, [first + 1, last + 1]))]
-        made, rows, states = _stretch(law, t0 + first * dt, q, p, memory, own - first, last - first)
+        made, rows, states = _chunk(law, t0 + first * dt, q, p, memory, own - first, last - first)
         qs, ps, us, series = states
         good = made.size
         if not finite(qs, ps):
@@ -76,7 +76,7 @@ def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray
     return None if keep is None else _nearest(t_span[0], law.dt, count_steps(*t_span, law.dt, np.floor), keep)
 
 
-def _stretch(
+def _chunk(
     law: DiscreteLaw,
     t: float,
     q: FloatArray,

@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.memory import ResultCache
 from flockana.dynamics.between import Between, Course, merged
-from flockana.dynamics.tolerance import Floors, rounding_floors
+from flockana.dynamics.tolerance import ErrorFloors, rounding_floors
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.clearance import Clearance, clearance
 from flockana.measures.measure import Flock, Measure, Series, measures
@@ -84,7 +84,7 @@ class MeasuredRun(ResultCache):
         return residual
 
     @cached_property
-    def floors(self) -> Floors:
+    def floors(self) -> ErrorFloors:
         """Least error (position, speed, work) to expect at any sample: the tolerance of one step, or rounding.
 
         An adaptive solver lets every step be wrong by this much whatever the state, so that positions, velocities and
@@ -96,7 +96,7 @@ class MeasuredRun(ResultCache):
             energies.append(self.energy())
         rounding = rounding_floors(self.t, self.q, self.p, self.u, np.concatenate(energies or [np.empty(0)]))
         allowed = self.stats.get("floors", rounding)
-        return Floors(*map(max, allowed, rounding))
+        return ErrorFloors(*map(max, allowed, rounding))
 
     def metrics(self) -> xarray.Dataset:
         """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""

@@ -60,7 +60,7 @@ class Tally:
     steps: int = 0
     status: str = "complete"  # as in `Trajectory`
     message: str = "reached the end of the time span"
-    notes: dict[str, Any] = field(default_factory=dict)  # what else there is to tell, for `Trajectory.stats`
+    notes: dict[str, Any] = field(default_factory=dict)  # further entries of `Trajectory.stats`
 
     def fail(self, message: str) -> None:
         """Note that the run ended early, and why."""

@@ -75,7 +75,7 @@ def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def _ensure_unharmed(run: Any, attributes: Mapping[str, Any], source: Path) -> Any:
+def _ensure_intact(run: Any, attributes: Mapping[str, Any], source: Path) -> Any:
     """Return the loaded run, sealed if it was; raise if a field differs from the one that was saved."""
     if "seal" not in attributes:
         raise FileError(
@@ -150,7 +150,7 @@ def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
             stats=read_json(data.attrs["stats"]),
             between=_read_between(data),
         )
-        return cast(_Run, _ensure_unharmed(run, data.attrs, source))
+        return cast(_Run, _ensure_intact(run, data.attrs, source))
     except (KeyError, ValueError, TypeError, RecursionError) as error:
         raise FileError(f"{source} is damaged: {error!r}; run the simulation again") from error
 

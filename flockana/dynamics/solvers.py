@@ -24,7 +24,7 @@ from flockana.laws.law import Law
 SCIPY = "scipy-"  # what the name of a method begins with if it is to be scipy's in any case
 
 
-class Classical:
+class ClassicalRungeKutta:
     """The classical Runge-Kutta method of order 4, stepped towards a time as scipy's solvers are."""
 
     def __init__(
@@ -81,7 +81,7 @@ class Solver(Stepper):
         self._course: Callable[[float], FloatArray] | None = None
         if self.plan.dt:
             first = np.inf if first is None else first
-            self._solver: Any = Classical(self._rhs, t, y, until, self.block.f[0].copy(), first)
+            self._solver: Any = ClassicalRungeKutta(self._rhs, t, y, until, self.block.f[0].copy(), first)
             return
         import scipy.integrate
 
@@ -106,7 +106,7 @@ class Solver(Stepper):
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
                     t = float(self.block.t[row])
                     self.block.energy[row] = self.law.hamiltonian(t, *self.frame.state(t, self.block.y[row]))
-            shorter, singular = checks.look(self.block, self.order, self.pairs)
+            shorter, singular = checks.examine(self.block, self.order, self.pairs)
             if singular:
                 self.failure = at_a_pole(float(self.block.t[0]))
                 return 0
@@ -125,7 +125,7 @@ class Solver(Stepper):
             return False
         start = float(self.block.t[0])
         if self.block.t[1] <= start:
-            self.failure = self.plan.gave_up(start, "its step is lost in the rounding of the time")
+            self.failure = self.plan.describe_failure(start, "its step is lost in the rounding of the time")
         return not self.failure
 
     def _attempt(self) -> bool:
@@ -139,7 +139,7 @@ class Solver(Stepper):
             if isinstance(error, ArgumentError):
                 raise
             why = str(error)
-        self.failure = self.plan.gave_up(float(self._solver.t), why)
+        self.failure = self.plan.describe_failure(float(self._solver.t), why)
         return False
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -40,7 +40,7 @@ class Stepper(ABC):
         found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
         return found
 
-    def go_on(self, good: int) -> None:
+    def continue_from(self, good: int) -> None:
         """Go on from the end of the last step."""
         for rows in self.block:
             rows[0] = rows[good]

@@ -82,7 +82,7 @@ def switched(
             due.popleft()
         yield reached._replace(wanted=_drop(due, t) or keep is None)
         if switch is None:
-            solver.go_on(1)
+            solver.continue_from(1)
             continue
         sliding = switches.cross(t, reached.q, reached.p)
         tally.notes["switches"] = switches.count
@@ -91,7 +91,7 @@ def switched(
             tally.fail(f"sliding at t = {t:.6g}: {sliding}")
             return
         solver.begin(flow, t, y)
-        beside = _beside(sample(t, y))
+        beside = _sample_after(sample(t, y))
 
 
 def _drop(due: deque[float], t: float) -> bool:
@@ -99,7 +99,7 @@ def _drop(due: deque[float], t: float) -> bool:
     return bool(due) and due[0] == t and due.popleft() == t
 
 
-def _beside(switch: Sample) -> Sample:
+def _sample_after(switch: Sample) -> Sample:
     """Return a second sample just after a switch, from which the path continues with the other side's input."""
     gap = 4.0 * float(np.spacing(abs(switch.t)))
     return switch._replace(t=switch.t + gap, q=switch.q + gap * switch.p, wanted=False)

@@ -18,10 +18,12 @@ Atol = float | tuple[float, float] | None  # a length, (length, speed), or by de
 FLOOR = 1e-2  # of the relative tolerance: the default absolute one, over the law's scales
 FINEST = 3e-14  # relative tolerance below which the solvers cannot go
 _ROUNDINGS = 1.0  # of the largest coordinate, at that tolerance: what a force makes of rounded places is noise
-_COARSER = 0.25  # power of the tolerance by which more is allowed: runs at two tolerances differ, and so tell the error
+_COARSER = (
+    0.25  # power of the tolerance by which more is allowed: the difference of runs at two tolerances shows the error
+)
 
 
-class Floors(NamedTuple):
+class ErrorFloors(NamedTuple):
     """Absolute errors that a run allows whatever its state: of a coordinate, a velocity, and the energy balance."""
 
     place: float
@@ -33,7 +35,7 @@ class Control(NamedTuple):
     """Step control of an adaptive solver: relative and absolute tolerances, and the longest step."""
 
     rtol: float
-    floor: Floors
+    floor: ErrorFloors
     longest: float = np.inf
 
 
@@ -71,7 +73,7 @@ def options_in_units(options: Mapping[str, Any], length: float, time: float) -> 
 
 def error_floor(
     law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: Atol
-) -> Floors:
+) -> ErrorFloors:
     """Return absolute tolerances: those given, completed by the law's own speed, or by default a hundredth of `rtol`.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
@@ -94,12 +96,12 @@ def error_floor(
     length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
     energy = max(energy, blur * len(q0) * scales.energy)
     start = law.hamiltonian(t_span[0], q0, p0)
-    return Floors(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
+    return ErrorFloors(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
 
 
-def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> Floors:
+def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:
     """Return rounding errors of the largest numbers of a run, and of the distances moved within the time's rounding."""
     late, far, fast, hard, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
     tick = float(np.spacing(late))
     place, speed, work = (float(np.spacing(x)) for x in (far, fast, much))
-    return Floors(place + tick * fast, speed + tick * hard, work)
+    return ErrorFloors(place + tick * fast, speed + tick * hard, work)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-PLOTS, PLAYER = "flockana.plots", "flockana.player"  # who draws is named, not imported: this room lies below
+PLOTS, PLAYER = "flockana.plots", "flockana.player"  # named, not imported: this room is below both
 _KINDS = {"extra": "series by name", "stats": "facts by name", "between": "a Between, or None"}
 STATUSES = ("complete", "interrupted", "failed")
 

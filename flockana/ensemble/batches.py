@@ -49,7 +49,7 @@ def map_in_batches(
                 watch((*_under_way(pending), *batch)[:width])
                 try:
                     sent = workers.executor.submit(function, batch)
-                except Exception as error:  # it broke since we last looked: whoever it was, not this batch
+                except Exception as error:  # the pool broke earlier: this batch is not the cause
                     suspects.extend(_suspected(error, batch, pending, workers))
                     break
                 pending[sent] = batch
@@ -62,14 +62,14 @@ def map_in_batches(
                     results = future.result()
                 except Exception as error:
                     alone = len(batch) == 1 and not pending
-                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` tells if all is over
+                    lost = workers.loses and not isinstance(error, FlockanaError)  # `width` raises without a cluster
                     suspected = batch if lost else _suspected(error, batch, pending, workers)
                     if not alone:
                         suspects.extend(suspected)
                         break  # what else is done is still pending, or under suspicion
                     dead.append((batch[0], None))
                     if len(dead) == HOPELESS:
-                        raise _hopeless() from error
+                        raise _workers_died() from error
                 else:
                     size = batch_size(results)
                     yield (*dead, *zip(batch, results, strict=True))
@@ -114,7 +114,7 @@ def _suspected(error: BaseException, batch: Batch, pending: Pending, workers: Wo
     raise error
 
 
-def _hopeless() -> SolverError:
+def _workers_died() -> SolverError:
     return SolverError(
         f"{HOPELESS} worker processes died one after the other: a script that starts them must do so under "
         "`if __name__ == '__main__':`; if memory is short, use jobs=1 (--jobs 1)"

@@ -30,8 +30,8 @@ from flockana.ensemble.work import COMPLETE, Job, Request, Scalar, reference, re
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenarios
 from flockana.scenarios import scenario as named_scenario
+from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.flock import chosen as chosen_flock
-from flockana.scenarios.given import SOURCE
 from flockana.theorems import Tolerances, theorem, theorems
 
 if TYPE_CHECKING:

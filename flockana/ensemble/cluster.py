@@ -41,7 +41,7 @@ def connected(address: str, count: int) -> Iterator[tuple[Executor, Callable[[],
         client = _client(own or address, address)
         try:
             # by default Dask takes two calls that look alike for one and gives the first one's result again
-            yield client.get_executor(pure=False), _Width(client)
+            yield client.get_executor(pure=False), _ClusterSize(client)
         finally:
             _end(client)
     finally:
@@ -93,7 +93,7 @@ def _client(target: Any, address: str) -> Any:
             return _opened(target)
     except Exception as error:
         reason = _reason(error)
-    gc.collect()  # what is left of a client goes now, when no lock of Dask's is held
+    gc.collect()  # free a discarded client now, while no lock of Dask is held
     raise SolverError(
         f"cluster = {address!r}: no scheduler with a worker answers within {CONNECT:g} s ({reason}); start "
         "them with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, and give the scheduler's address"
@@ -109,7 +109,7 @@ def _opened(target: Any) -> Any:
             try:
                 # its own limit does not hold for a server that takes the call and says nothing
                 super().start(callback_timeout=CONNECT + _GRACE, **options)
-            except BaseException:  # of a constructor that fails nobody else has the client
+            except BaseException:  # if the constructor fails, no other code can close the client
                 _end(self)
                 raise
 
@@ -131,7 +131,7 @@ def _threads(client: Any, limit: float) -> int:
     return int(sum(client.sync(client.scheduler.ncores, callback_timeout=limit).values()))
 
 
-class _Width:
+class _ClusterSize:
     """Number of runs that a cluster can make at once, at present."""
 
     def __init__(self, client: Any) -> None:

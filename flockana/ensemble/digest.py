@@ -76,15 +76,15 @@ def source_files(root: Path) -> list[Path]:
 
 def digest_of_sources(sources: Mapping[str, bytes]) -> str:
     """Return the digest of source files by name; comments, layout and docstrings do not count."""
-    # the syntax tree is written differently by each version of Python, which is one of the things that compute
+    # each version of Python writes the syntax tree differently; the version is part of the digest anyway
     total = hashlib.sha256(json.dumps([platform.python_version_tuple()[:2], _libraries()]).encode())
     for name, source in sorted(sources.items()):
         total.update(f"\0{name}\0".encode())
-        total.update(_meaning(source) if name.endswith(".py") else source)
+        total.update(_code_without_comments(source) if name.endswith(".py") else source)
     return total.hexdigest()[:16]
 
 
-def _meaning(source: bytes) -> bytes:
+def _code_without_comments(source: bytes) -> bytes:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         body = getattr(node, "body", None)

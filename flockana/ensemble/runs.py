@@ -18,7 +18,7 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
     """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
         for done in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
-            yield tuple(_died(job) if record is None else record for job, record in done)
+            yield tuple(_lost_run(job) if record is None else record for job, record in done)
     except FlockanaError:
         raise
     except Exception as error:  # what a run raises is in its record: this comes from who works
@@ -28,7 +28,7 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
         ) from error
 
 
-def _died(job: Job) -> Record:
+def _lost_run(job: Job) -> Record:
     return Record(job, DIED, "the worker process that made this run ended")
 
 

@@ -17,7 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble.digest import numerics_version
 from flockana.measures.measure import measures
 from flockana.scenarios import Flock, Scenario, scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.theorems import Tolerances, Verdict
 
 Scalar = bool | int | float | str
@@ -152,7 +152,7 @@ def run_one(request: Request, job: Job) -> Record:
             if run.status != COMPLETE:  # of a part of the run no claim about the whole follows
                 record = Record(job, FAILED, run.message, stats=_stats(run))
             else:
-                record = _judged(request, job, item, run)
+                record = _judge_run(request, job, item, run)
     except Exception as error:
         record = Record(job, ERROR, f"{type(error).__name__}: {' '.join(str(error).split())}")
     return replace(record, seconds=time.perf_counter() - started)
@@ -171,7 +171,7 @@ def build(request: Request, job: Job) -> Scenario:
     return made
 
 
-def _judged(request: Request, job: Job, item: Scenario, run: Trajectory) -> Record:
+def _judge_run(request: Request, job: Job, item: Scenario, run: Trajectory) -> Record:
     verdicts = _verdicts(request, item, run)
     claims = {
         f"{verdict.theorem}:{claim.name}": (claim.status, _number(claim.margin), _number(claim.error))

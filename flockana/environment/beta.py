@@ -129,8 +129,8 @@ def check_free(q: FloatArray, obstacles: Sequence[Obstacle]) -> None:
     free = _free_point(q[i], obstacles)
     if free is None:
         raise InsideObstacleError(
-            f"agent {i} at {q[i].tolist()} starts inside {where}{others}, and the overlapping obstacles leave no free "
-            "point that pushing it out would find: move the agent or an obstacle"
+            f"agent {i} at {q[i].tolist()} starts inside {where}{others}, and no free point was found by pushing it "
+            "out of the overlapping obstacles: move the agent or an obstacle"
         )
     raise InsideObstacleError(
         f"agent {i} at {q[i].tolist()} starts inside {where}{others}: "

@@ -43,7 +43,7 @@ class Obstacle(ABC):
     """
 
     kernels: ObstacleKernels
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("beta_agents", "clearance", "contains")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("beta_agents", "clearance", "contains")}
 
     @property
     @abstractmethod

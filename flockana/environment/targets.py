@@ -271,9 +271,9 @@ class RescaledVelocity(Target):
         path = self.target.harmonic
         if path is None:
             return None
-        told = np.zeros_like(path.terms)  # only the true rate is told, whatever its own p_r is
-        told[:4] = path.terms[:4]
-        return Harmonic(told, path.omega, self.factor)
+        terms = np.zeros_like(path.terms)  # p_r is a multiple of the true rate, whatever the target's own p_r
+        terms[:4] = path.terms[:4]
+        return Harmonic(terms, path.omega, self.factor)
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class Alien:
         if self.territory is None:
             return
         if not isinstance(self.territory, SimplePolygon) or start.size != 2:
-            raise ArgumentError(f"territory = {self.territory!r}: expected a SimplePolygon, of an alien in the plane")
+            raise ArgumentError(f"territory = {self.territory!r}: expected a SimplePolygon, and an alien in the plane")
         if not self.territory.holds(start):
             raise ArgumentError(f"start = {self.start}: expected a point of the alien's territory {self.territory}")
 

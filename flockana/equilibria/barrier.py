@@ -37,14 +37,14 @@ class Barrier:
     m: int
     # lowest V found with a coincident pair: an upper bound of the true minimum, the unsafe side of a certificate
     together: float
-    ground: float  # lowest V found at all
+    lowest: float  # lowest V found at all
     state: FloatArray  # shape (n, m): the configuration with a coincident pair
     solves: int  # successful solves behind the two figures
 
     @property
     def height(self) -> float:
-        """Energy needed to make two agents of the best flock coincide, `together` − `ground`."""
-        return self.together - self.ground
+        """Energy needed to make two agents of the best flock coincide, `together` − `lowest`."""
+        return self.together - self.lowest
 
 
 def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: int = 24, seed: int = 0) -> Barrier:
@@ -62,11 +62,11 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
     apart = np.zeros((n, m, m))
     apart[0], apart[1] = np.eye(m), -np.eye(m)
     tie = np.hstack([translations, apart.reshape(n * m, m)])
-    ground, together, state, solves = inf, inf, np.full((n, m), np.nan), 0
+    lowest, together, state, solves = inf, inf, np.full((n, m), np.nan), 0
     for q in _starts(alpha, n, m, starts, seed):
         low, converged, _ = free.solve(q, basis=translations)
         if converged:
-            ground, solves = min(ground, alpha.potential_energy(low)), solves + 1
+            lowest, solves = min(lowest, alpha.potential_energy(low)), solves + 1
     for q in _starts(alpha, n - 1, m, starts, seed):
         doubled = _most_linked_first(q, alpha)
         doubled = np.vstack([doubled[:1], doubled])
@@ -75,7 +75,7 @@ def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: in
             solves += 1
             if (value := alpha.potential_energy(low)) < together:
                 together, state = value, low
-    return Barrier(n, m, together, ground, state, solves)
+    return Barrier(n, m, together, lowest, state, solves)
 
 
 def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> list[FloatArray]:

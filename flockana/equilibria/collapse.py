@@ -102,7 +102,9 @@ def threshold(
     while seen(low) is not False:
         low /= factor
         if low * _RANGE < lowest:
-            raise SolverError(f"collapse, or no answer, at ratios down to {low:.3g}: expected no collapse at the least")
+            raise SolverError(
+                f"collapse, or no result, at all ratios down to {low:.3g}: expected no collapse at the smallest"
+            )
     high, doubt = factor * low, False
     while (collapsed := seen(high)) is not True:
         doubt = doubt or collapsed is None

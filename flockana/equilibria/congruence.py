@@ -11,7 +11,7 @@ from flockana.base.checks import FloatArray
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-_FLAT = 1e-6  # of the extent: so near a line or a plane a configuration lies in it
+_FLAT = 1e-6  # share of the extent: a configuration this near to a line or plane counts as in it
 
 
 def spectrum_of_distances(q: FloatArray) -> FloatArray:

@@ -27,7 +27,7 @@ from flockana.base.checks import FloatArray
 EPS = float(np.finfo(np.float64).eps)
 _ROUNDING = 8.0  # of eps √N ‖H‖: eigenvalues of a symmetric matrix come out to a few eps ‖H‖
 _REACH = 0.05  # of the law's length: a critical point farther off than that is another one
-_FREE = 1e-6  # what is left of a unit shift off the rigid motions, if it is one of them
+_FREE = 1e-6  # norm below which a unit translation, minus its projection on the rigid motions, counts as one of them
 _GROUP = 2.0  # eigenvalues within this factor are tried together
 
 

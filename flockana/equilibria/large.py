@@ -18,7 +18,7 @@ from flockana.lattice.elimination import Elimination
 
 _FEW, _MOST = 12, 400  # eigenvalues asked for at first and at last
 _BELOW = 1e-7  # of the largest row sum: the shift below zero about which Lanczos' method looks
-_GAP = 1e-9  # of the largest row sum: eigenvalues between which there is no more are not counted apart
+_GAP = 1e-9  # of the largest row sum: eigenvalues that differ by less cannot be separated
 
 
 class LargeLandscape(Landscape):
@@ -48,8 +48,8 @@ class LargeLandscape(Landscape):
                 return np.append(values, top), np.column_stack([vectors, its])
             few *= 2
         raise SolverError(
-            f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not to be told apart: "
-            "too many to classify so large a flock; take its connected parts one by one"
+            f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not distinguishable from "
+            "each other: too many to classify so large a flock; take its connected parts one by one"
         )
 
     def _count(self, bound: float) -> int:
@@ -61,7 +61,7 @@ class LargeLandscape(Landscape):
 
         return (self.here + by * eye_array(self.q.size)).tocsr()
 
-    def _off(self, x: FloatArray) -> FloatArray:
+    def _off_rigid(self, x: FloatArray) -> FloatArray:
         """Project vectors off the rigid motions."""
         rest: FloatArray = x - self.rigid @ (self.rigid.T @ x)
         return rest
@@ -70,21 +70,21 @@ class LargeLandscape(Landscape):
         """Return eigenvalues nearest to a shift below zero, rising, by Rayleigh quotients."""
         shift = _BELOW * self.size
         solve = Elimination(self._shifted(shift), self.q).solve
-        return self._lanczos(lambda x: self._off(solve(self._off(x))), count, "LM")
+        return self._lanczos(lambda x: self._off_rigid(solve(self._off_rigid(x))), count, "LM")
 
     def _largest(self) -> tuple[FloatArray, FloatArray]:
-        return self._lanczos(lambda x: self._off(self.here @ self._off(x)), 1, "LA")
+        return self._lanczos(lambda x: self._off_rigid(self.here @ self._off_rigid(x)), 1, "LA")
 
     def _lanczos(self, act: Any, count: int, which: Any) -> tuple[FloatArray, FloatArray]:
         from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
         size = self.q.size
         operator: Any = LinearOperator((size, size), matvec=act, dtype=np.float64)
-        start = self._off(np.random.default_rng(0).standard_normal(size))
+        start = self._off_rigid(np.random.default_rng(0).standard_normal(size))
         try:
             _, vectors = eigsh(operator, k=count, which=which, v0=start, ncv=min(size, 2 * count + 20))
         except ArpackError as error:
             raise SolverError(f"ARPACK found no {count} curvatures of {size} ({error})") from error
-        vectors = np.linalg.qr(self._off(vectors))[0]
+        vectors = np.linalg.qr(self._off_rigid(vectors))[0]
         values, turns = np.linalg.eigh(vectors.T @ (self.here @ vectors))
         return values, vectors @ turns

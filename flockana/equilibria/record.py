@@ -49,12 +49,12 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
         equilibrium = finish(Potential(law), q, True, "read from a file and verified")
         _compare(equilibrium, data)
         without_digest(data, keys=_KEYS)
-    except SolverError as error:  # whose advice is for those who seek one
-        raise _not_one(path, f"its positions are none of its law; {_REMEDY}") from error
+    except SolverError as error:  # the solver's advice concerns a search, not a file
+        raise _not_an_equilibrium(path, f"its positions are none of its law; {_REMEDY}") from error
     except KeyError as error:
-        raise _not_one(path, f"it lacks {error}; {_REMEDY}") from error
+        raise _not_an_equilibrium(path, f"it lacks {error}; {_REMEDY}") from error
     except (ValueError, TypeError, AttributeError, RecursionError, FlockanaError) as error:
-        raise _not_one(path, f"{error}; {_REMEDY}") from error
+        raise _not_an_equilibrium(path, f"{error}; {_REMEDY}") from error
     return equilibrium
 
 
@@ -63,17 +63,17 @@ def _read(path: str | Path) -> dict[str, Any]:
     try:
         data = read_json(read_text_file(path))
     except FlockanaError as error:
-        raise _not_one(path, error) from error
+        raise _not_an_equilibrium(path, error) from error
     except ValueError as error:
-        raise _not_one(path, f"it is no JSON ({error}); {_EXPECTED}") from error
+        raise _not_an_equilibrium(path, f"it is no JSON ({error}); {_EXPECTED}") from error
     if not isinstance(data, dict) or "format" not in data:
-        raise _not_one(path, _EXPECTED)
+        raise _not_an_equilibrium(path, _EXPECTED)
     if data["format"] != _FORMAT:
-        raise _not_one(path, f"its format is {data['format']!r}; {_EXPECTED}")
+        raise _not_an_equilibrium(path, f"its format is {data['format']!r}; {_EXPECTED}")
     return data
 
 
-def _not_one(path: str | Path, reason: object) -> FileError:
+def _not_an_equilibrium(path: str | Path, reason: object) -> FileError:
     return FileError(f"{path} holds no equilibrium: {reason}")
 
 

@@ -85,7 +85,7 @@ class Distinct:
 class Search:
     """Distinct equilibria reached from many starts."""
 
-    # distinct equilibria, lowest energy first; degenerate ones are told apart by their energy only
+    # distinct equilibria, lowest energy first; degenerate ones are distinguished by their energy only
     found: tuple[Distinct, ...]
     starts: int  # how many starts there were
     failures: tuple[str, ...] = field(default=(), repr=False)  # messages of the solves that found nothing

@@ -15,7 +15,7 @@ from flockana.measures.metrics import coincident_pairs, connectivity, velocity_m
 from flockana.measures.nets import link_lengths, links
 
 DENSE_LIMIT = 4000  # rows of a Hessian whose whole spectrum is still a matter of seconds
-_ON_A_LINE = 1e-9  # of the flock's size: what stands off a line by less stands on it, as far as a solver can tell
+_ON_A_LINE = 1e-9  # of the flock's size: agents off a line by less count as on it, within a solver's accuracy
 _ROUNDINGS = 8.0  # of the places, as stored far from the origin
 
 
@@ -88,7 +88,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
             turn[:, a], turn[:, b] = x[:, b], -x[:, a]
             motions.append(turn.ravel() / (size or 1.0))
     basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
-    # what stands on a line but for the rounding of its places does not turn about it
+    # a flock that is on a line but for rounding has no rotation about it
     rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
     independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
     return independent

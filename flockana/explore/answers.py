@@ -19,7 +19,7 @@ from flockana.explore.starts import Start
 from flockana.explore.watching import ensure_small, shown, watched
 from flockana.interactions import AlphaInteraction
 from flockana.player.marks import marks_of
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.stability import linearise
 from flockana.theorems import theorem, verify
 from flockana.theorems.headline import BYLINES
@@ -76,7 +76,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "duration": parts.t_span[1] - parts.t_span[0],
         "numbers": listed,
         "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + _reporting(parts),
-        "ratio": _squeezed(parts.law),
+        "ratio": _collapses_by_ratio(parts.law),
         "python": program(parts),
     }
 
@@ -105,7 +105,7 @@ def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
             statement = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in parts.source.reports)
             yield "verdict", found.to_dict() | {"marks": marks_of(run, [found]), "statement": statement}
     yield "poles", poles(run)
-    if _squeezed(parts.law):
+    if _collapses_by_ratio(parts.law):
         yield "threshold", _threshold(parts.law.pair, *parts.q0.shape)
 
 
@@ -115,13 +115,13 @@ def poles(run: Trajectory) -> dict[str, Any]:
     if law is None:
         return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
     if q.size > _POLES:
-        return {"note": f"{q.size} coordinates: a page finds the poles of at most {_POLES}; use flockana stability"}
+        return {
+            "note": f"{q.size} coordinates: this page computes the poles of at most {_POLES}; use flockana stability"
+        }
     t = float(run.t[-1])
     try:
         linear = linearise(law, q, t=t, allow_residual=True)
-        note = (
-            f"As if the flock stood still where the run ends, which is no equilibrium (residual {linear.residual:.2g})"
-        )
+        note = f"Linearised at the end of the run as if at rest; it is no equilibrium (residual {linear.residual:.2g})"
         if linear.residual <= _RESTING and not law.obstacles:
             rest = find_equilibrium(law, q, t=t, max_iter=_SOUGHT) if law.conservative else resting_state(law, q, t=t)
             linear = linearise(law, rest, t=t)
@@ -156,17 +156,19 @@ def _few(names: list[str]) -> list[str]:
     return [*named, f"{soft} soft ones"] if soft else named
 
 
-def _squeezed(law: Any) -> bool:
+def _collapses_by_ratio(law: Any) -> bool:
     """Return whether a γ-agent pulls all agents alike, so that c1γ/c1α decides on collapse (erratum E11)."""
     gains = getattr(law, "gains", None)
-    follows = law.target is not None and getattr(law, "splits", False) and isinstance(law.pair, AlphaInteraction)
+    follows = (
+        law.target is not None and getattr(law, "centre_decouples", False) and isinstance(law.pair, AlphaInteraction)
+    )
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
 
 
 @cache
 def _threshold(alpha: AlphaInteraction, n: int, m: int) -> dict[str, Any]:
     if n > _SQUEEZED or m != 2:
-        return {"note": f"threshold of collapse: sought for at most {_SQUEEZED} agents, in the plane"}
+        return {"note": f"threshold of collapse: computed in the plane, for at most {_SQUEEZED} agents"}
     try:
         low, high = collapse_threshold(alpha, n, halvings=2)
     except FlockanaError as error:

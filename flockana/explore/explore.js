@@ -106,8 +106,8 @@ async function show(of, bytes) {
   if (state.playing && time < last) made.play();
   if (focus) (next.querySelector(`[aria-label="${focus.getAttribute("aria-label")}"]`) || next.querySelector("canvas")).focus();
   by("hint").textContent = run.m === 3
-    ? "A run in three dimensions turns under the mouse; to place an agent, type its coordinates."
-    : "At the start of the run agents, balls, walls and the γ-agent can be dragged; a click on an agent goes back there.";
+    ? "Drag to turn a run in three dimensions; to place an agent, type its coordinates."
+    : "At the start of the run agents, balls, walls and the γ-agent can be dragged; a click on an agent returns to the start.";
   requestAnimationFrame(() => {  // drawn
     if (document.body.dataset.number !== String(of)) document.body.dataset.frames = String(Math.round(performance.now() - since));
     document.body.dataset.number = String(of);

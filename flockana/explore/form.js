@@ -2,7 +2,7 @@
 const DECADES = 1.5, RATIOS = [-3, 2];
 
 function explorerForm(place, groups, ask) {
-  let current = null, told = null, threshold = null;
+  let current = null, latest = null, threshold = null;
   const make = (kind, words, parent, attributes = {}) => {
     const node = document.createElement(kind);
     if (words) node.textContent = words;
@@ -43,16 +43,16 @@ function explorerForm(place, groups, ask) {
   const row = make("div", "", agents, { class: "vector" });
   const agent = make("input", "", row, { type: "number", min: 0, step: 1, value: 0, "aria-label": "Number of the agent" });
   const axes = ["x", "y", "z"].map((name) => make("input", "", row, { type: "number", step: "any", "aria-label": `${name} of the agent` }));
-  const where = () => told.q0[Number(agent.value)] || [];
-  const fill = () => axes.forEach((node, c) => { node.hidden = c >= told.m; node.value = c < told.m && where().length ? short(where()[c]) : ""; });
+  const where = () => latest.q0[Number(agent.value)] || [];
+  const fill = () => axes.forEach((node, c) => { node.hidden = c >= latest.m; node.value = c < latest.m && where().length ? short(where()[c]) : ""; });
   agent.addEventListener("input", fill);
   axes.forEach((node) => node.addEventListener("change", () => {
-    const given = axes.slice(0, told.m);
+    const given = axes.slice(0, latest.m);
     if (where().length && given.map(finite).every(Boolean)) move(Number(agent.value), given.map((each) => Number(each.value)));
   }));
   function move(number, point) { ask({ ...current, moved: { ...current.moved, [number]: point } }); }
   function change(path, value) {
-    const changes = { ...current.changes, [path]: value }, { usual } = told.numbers.find((each) => each.path === path);
+    const changes = { ...current.changes, [path]: value }, { usual } = latest.numbers.find((each) => each.path === path);
     if (String(usual) === String(value)) delete changes[path];
     ask({ ...current, changes });
   }
@@ -112,7 +112,7 @@ function explorerForm(place, groups, ask) {
     ratio = { set: () => { output.textContent = short(value()); if (document.activeElement !== range) range.value = String(Math.log10(Math.max(value(), 1e-9))); },
       tell: () => {
         mark.replaceChildren();
-        if (!threshold) { make("span", "threshold of collapse: being sought", mark); return; }
+        if (!threshold) { make("span", "threshold of collapse: being computed", mark); return; }
         if (threshold.note) { make("span", threshold.note, mark); return; }
         const share = (Math.log10(threshold.high) - RATIOS[0]) / (RATIOS[1] - RATIOS[0]);
         make("i", "", mark).style.left = `calc(${100 * share}% + ${8 - 16 * share}px)`;
@@ -120,12 +120,12 @@ function explorerForm(place, groups, ask) {
       } };
     ratio.tell();
   }
-  const of = (path) => told.numbers.find((each) => each.path === path).value;
+  const of = (path) => latest.numbers.find((each) => each.path === path).value;
 
   function show(asked, form) {
     current = { changes: {}, moved: {}, ...asked };
     if (!form) return;
-    told = form;
+    latest = form;
     chosen.value = `${current.kind}:${current.name}`;
     for (const [name, input] of Object.entries(fields)) {
       input.parentElement.hidden = (name !== "duration" && current.kind === "file") || ((name === "n" || name === "m") && current.kind !== "law");
@@ -139,8 +139,8 @@ function explorerForm(place, groups, ask) {
   }
   function build() {
     numbers.replaceChildren(); shown = []; ratio = null;
-    if (told.ratio) squeeze(numbers);
-    const groups = Map.groupBy ? Map.groupBy(told.numbers, ({ path }) => path.split(".")[0]) : grouped();
+    if (latest.ratio) squeeze(numbers);
+    const groups = Map.groupBy ? Map.groupBy(latest.numbers, ({ path }) => path.split(".")[0]) : grouped();
     for (const [name, list] of groups) {
       const group = make("details", "", numbers);
       group.open = ["gains", "alpha", "interaction", "obstacles", "target", "weight", "law"].includes(name);
@@ -150,9 +150,9 @@ function explorerForm(place, groups, ask) {
   }
   function grouped() {
     const groups = new Map();
-    for (const each of told.numbers) { const name = each.path.split(".")[0]; groups.set(name, [...(groups.get(name) || []), each]); }
+    for (const each of latest.numbers) { const name = each.path.split(".")[0]; groups.set(name, [...(groups.get(name) || []), each]); }
     return groups;
   }
   place.addEventListener("submit", (event) => event.preventDefault());
-  return { show, move, change, form: () => told, case: () => current, mark: (found) => { threshold = found; if (ratio) ratio.tell(); } };
+  return { show, move, change, form: () => latest, case: () => current, mark: (found) => { threshold = found; if (ratio) ratio.tell(); } };
 }

@@ -51,7 +51,7 @@ function explorerGive(name, parts, say) {
   say(`${name} is saved`);
 }
 function explorerFilm(canvas, player, seconds, say, done) {  // the canvas as it plays, recorded by the browser
-  if (!canvas.captureStream || !window.MediaRecorder) { say("this browser records no canvas; flockana animate writes films"); return; }
+  if (!canvas.captureStream || !window.MediaRecorder) { say("this browser cannot record a film; use flockana animate"); return; }
   const recorder = new MediaRecorder(canvas.captureStream(30)), pieces = [];
   const { run } = player, first = run.t[0], span = run.t[run.t.length - 1] - first;
   recorder.ondataavailable = ({ data }) => pieces.push(data);

@@ -82,11 +82,11 @@ def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
         at = tree
         for name in branch:
             at = at.setdefault(name, {})
-        at[leaf] = _like(path, known[path], given)
+        at[leaf] = _convert(path, known[path], given)
     return tree
 
 
-def _like(path: str, old: Value, given: Any) -> Value:
+def _convert(path: str, old: Value, given: Any) -> Value:
     if isinstance(old, tuple):
         return tuple(ensure_vector(path, given, len(old)).tolist())
     if isinstance(old, bool):

@@ -31,7 +31,10 @@ HOST = "127.0.0.1"
 _TABS = 6
 _LENGTH = 32  # letters that a token has at least
 _TRIES = 3  # processes in a row that end before they say anything: then only a new question starts one
-_PATIENCE = 0.12, 1.0  # seconds that a process has to begin with what is new: if another is ready to, and if none is
+_PATIENCE = (
+    0.12,
+    1.0,
+)  # seconds within which a process must begin the newest question: with, and without, a spare process
 _QUESTION = 1_000_000  # bytes at most
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'; connect-src 'self'; img-src data:"
 
@@ -59,13 +62,13 @@ class Process:
             except (EOFError, OSError):
                 message = None
             try:
-                loop.call_soon_threadsafe(self._hand_on, message)
+                loop.call_soon_threadsafe(self._forward, message)
             except RuntimeError:  # the server is gone
                 return
 
-    def _hand_on(self, message: Any) -> None:
+    def _forward(self, message: Any) -> None:
         self.ready = True
-        self.deliver(message)  # to whoever has it now
+        self.deliver(message)  # to the tab that owns the process now
 
     def end(self) -> None:
         """End the process at once."""
@@ -77,7 +80,7 @@ class Process:
 class Server:
     """State shared by all tabs."""
 
-    token: str  # whoever does not know it is turned away
+    token: str  # requests without it are refused
     first: dict[str, Any]  # the case that a page begins with
     limit: float
     tabs: set[Any] = field(default_factory=set)
@@ -194,14 +197,14 @@ class _Tab(WebSocketHandler):
         self._ask()
         if self.analysing:
             for seconds, at_once in zip(_PATIENCE, (True, False), strict=True):
-                asyncio.get_running_loop().call_later(seconds, self._replace_unless_begun, number, at_once)
+                asyncio.get_running_loop().call_later(seconds, self._replace_if_unresponsive, number, at_once)
 
     def _ask(self) -> None:
         process = self.process or self._take()
         with suppress(OSError):  # it has ended; `deliver` hears of it
             process.pipe.send((self.number, self.asked))
 
-    def _replace_unless_begun(self, number: int, at_once: bool) -> None:
+    def _replace_if_unresponsive(self, number: int, at_once: bool) -> None:
         """Replace a process that ignores a newer question, once another is ready."""
         spare = self.server.spare
         if at_once and not (spare is not None and spare.ready):

@@ -81,7 +81,7 @@ def work(pipe: Connection, limit: float) -> None:
 
 def _read_to_the_end(worker: Worker) -> None:
     worker.read()
-    os._exit(0)  # the server has ended, and with it whoever asked
+    os._exit(0)  # the server has ended: nobody waits for the answer
 
 
 def _warm() -> None:

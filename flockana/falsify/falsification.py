@@ -88,12 +88,12 @@ class Falsification:
     @property
     def margin(self) -> float:
         """Margin of the claim on the worst run; NaN without one."""
-        return _number(None if self._worst is None else self._worst.margin)
+        return _format_number(None if self._worst is None else self._worst.margin)
 
     @property
     def error(self) -> float:
         """Numerical error of `margin`; NaN without one."""
-        return _number(None if self._worst is None else self._worst.error)
+        return _format_number(None if self._worst is None else self._worst.error)
 
     @property
     def status(self) -> str:
@@ -204,5 +204,5 @@ class Falsification:
         return self.counterexample().save(path)
 
 
-def _number(value: float | None) -> float:
+def _format_number(value: float | None) -> float:
     return float("nan") if value is None else float(value)

@@ -82,7 +82,7 @@ class AlphaInteraction(PairInteraction):
     unit: float = 1.0
 
     kernels = _ALPHA
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "kernels": ("sigma_norm", "bump", "phi", "phi_alpha", "phi_alpha_slope", "psi_alpha", "adjacency", "c_star")
     }
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}

@@ -53,7 +53,7 @@ class BetaInteraction:
     h: float = 0.9
     unit: float = 1.0
 
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"par": ("phi_beta", "psi_beta", "adjacency")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"par": ("phi_beta", "psi_beta", "adjacency")}
     units: ClassVar[Mapping[str, Powers]] = {"d": (1, 0), "r": (1, 0), "eps": (-2, 0), "unit": (1, 0)}
 
     def __post_init__(self) -> None:

@@ -89,7 +89,7 @@ class DeadZoneInteraction(PairInteraction):
     ramp: float = 0.25
 
     kernels = _DEAD_ZONE
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("action", "force", "psi", "energy_at")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("action", "force", "psi", "energy_at")}
     units: ClassVar[Mapping[str, Powers]] = dict.fromkeys(("r", "r_b", "delta", "r_d", "ramp"), (1, 0)) | {
         "k_r": (2, -2),
         "k_delta": (0, -2),

@@ -69,7 +69,7 @@ class FormulaInteraction(PairInteraction):
     parameters: tuple[tuple[str, float], ...] = ()
     powers: tuple[tuple[str, int, int], ...] = ()
 
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("force", "stress", "weight", "energy_at")}
 
     def __post_init__(self) -> None:
         if bool(self.potential) == bool(self.force_formula):

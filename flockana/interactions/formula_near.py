@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.kernels.tables import NODES, series_nodes, series_of
 
 if TYPE_CHECKING:
-    from flockana.symbolic.pair_formula import Cut
+    from flockana.symbolic.pair_formula import PiecewiseFormula
 
 TERMS = 12  # of the series
 _AGREED = 1e-8  # relative: two values of a limit
@@ -25,7 +25,7 @@ _CLOSE, _CLOSER = 1e-40, 1e-44  # of y at the range: where limits at 0 are read
 
 
 @dataclass(frozen=True)
-class Near:
+class NearZero:
     """Method for the weight near 0: ``plain``, ``series`` in y below a bound, or ``excluded`` at 0."""
 
     kind: Literal["plain", "series", "excluded"]
@@ -34,7 +34,7 @@ class Near:
     panels: FloatArray
 
 
-def near_zero(cut: Cut, end: float) -> Near:
+def near_zero(cut: PiecewiseFormula, end: float) -> NearZero:
     """Return how to evaluate the first piece near 0, from its values in high precision."""
     piece, none = cut.pieces[0], np.zeros(0)
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
@@ -43,21 +43,21 @@ def near_zero(cut: Cut, end: float) -> Near:
     shares = (float(weight(end * share)) for share in (0.05, 0.25, 0.5))
     scale = max((abs(w) for w in (first, *shares) if isfinite(w)), default=0.0)
     if not (isfinite(first) and isfinite(second)) or abs(first - second) > _AGREED * max(scale, abs(first)):
-        return Near("excluded", 0.0, none, closed)
+        return NearZero("excluded", 0.0, none, closed)
     if not _cancels(cut, piece, end, scale):
-        return Near("plain", 0.0, none, closed)
+        return NearZero("plain", 0.0, none, closed)
     bends = end * abs(float(slope(end * _CLOSER)) - float(slope(end * _CLOSE)))
     if not bends <= _AGREED * scale:
-        return Near("plain", 0.0, none, closed)  # w has a limit and its slope has none: the formula, from a tiny s on
+        return NearZero("plain", 0.0, none, closed)  # w has a limit, its slope has none: the formula from a tiny s on
     for k in _QUARTERS:
         bound = min(end, cut.marks[1] if cut.marks[1] < cut.end else end) * 0.25**k
         coefficients, error = _series(weight, bound)
         if error <= _EXACT * scale:
-            return Near("series", bound, coefficients, _energy_panel(cut, bound))
+            return NearZero("series", bound, coefficients, _energy_panel(cut, bound))
     raise ArgumentError("the formula has no series at s = 0 that converges: expected one that is smooth there")
 
 
-def _cancels(cut: Cut, piece: Any, end: float, scale: float) -> bool:
+def _cancels(cut: PiecewiseFormula, piece: Any, end: float, scale: float) -> bool:
     """Return whether floating point loses digits of the formula near 0, or has no value there."""
     import sympy as sp
 
@@ -103,7 +103,7 @@ def _series(function: Any, bound: float) -> tuple[FloatArray, float]:
     return powers, error if isfinite(error) else inf
 
 
-def _energy_panel(cut: Cut, bound: float) -> FloatArray:
+def _energy_panel(cut: PiecewiseFormula, bound: float) -> FloatArray:
     """Return the potential on [0, bound] as a Chebyshev panel; empty where the force was given."""
     from numpy.polynomial import chebyshev
 

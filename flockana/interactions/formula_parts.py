@@ -13,11 +13,11 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import PairFacts
-from flockana.interactions.formula_near import TERMS, Near, near_zero
+from flockana.interactions.formula_near import TERMS, NearZero, near_zero
 from flockana.kernels.tables import integral_panels, series_nodes, series_of
 
 if TYPE_CHECKING:
-    from flockana.symbolic.pair_formula import Cut
+    from flockana.symbolic.pair_formula import PiecewiseFormula
     from flockana.symbolic.slopes import SlopeBound
 
 _KEPT = 64  # formulas
@@ -34,7 +34,7 @@ Texts = tuple[str, str, str, str, str | None]
 class FormulaParts:
     """Formula with its numbers, ready to be compiled (see `FormulaInteraction`)."""
 
-    cut: Cut
+    cut: PiecewiseFormula
     texts: Texts
     par: FloatArray
     panels: FloatArray
@@ -86,8 +86,8 @@ def formula_parts(
     numbers = {sp.Symbol(name, positive=True): value for name, value in own.items()}
     numbers |= {pf.EPS if name == "eps" else sp.Symbol(name, real=True): value for name, value in parameters}
     numbers.setdefault(pf.EPS, eps)
-    cut = pf.Cut(formula, numbers, own["r_z"] if eps else r)
-    view = _View(cut, eps, r)
+    cut = pf.PiecewiseFormula(formula, numbers, own["r_z"] if eps else r)
+    view = _PreciseForce(cut, eps, r)
     near = near_zero(cut, view.y(r))
     view.look(d, unbounded=near.kind == "excluded")
     jumps = view.jumps()
@@ -120,10 +120,10 @@ def _norm(x: float, eps: float) -> float:
     return x * x / (np.sqrt(1.0 + eps * x * x) + 1.0) if eps > 0.0 else x
 
 
-class _View:
+class _PreciseForce:
     """Force of a formula as a function of the Euclidean distance, in high precision."""
 
-    def __init__(self, cut: Cut, eps: float, r: float) -> None:
+    def __init__(self, cut: PiecewiseFormula, eps: float, r: float) -> None:
         self.cut, self.eps, self.r = cut, eps, r
         self._forces = [cut.function(piece.weight) for piece in cut.pieces]
         self._weights = [cut.function(piece.adjacency) for piece in cut.pieces]
@@ -187,7 +187,7 @@ class _View:
         return _SMALL * self.strength
 
 
-def _panels(cut: Cut, view: _View, d: float) -> FloatArray:
+def _panels(cut: PiecewiseFormula, view: _PreciseForce, d: float) -> FloatArray:
     """Return Chebyshev panels of ψ from its derivative, with ψ = 0 at the desired distance."""
     inner = view.y(d) if view.eps else d
     rows, edges = [cut.function(piece.force) for piece in cut.pieces], sorted({*cut.marks, inner})
@@ -217,7 +217,7 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
     return [edge for half in halves for edge in _resolved(values, *half, scale, depth + 1)]
 
 
-def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
+def _far(cut: PiecewiseFormula, view: _PreciseForce, panels: FloatArray, *, forces: bool) -> float:
     """Return ψ at the range."""
     if forces:
         return float(panels[-1, 2:].sum())  # of powers of 1
@@ -226,7 +226,7 @@ def _far(cut: Cut, view: _View, panels: FloatArray, *, forces: bool) -> float:
     return far if isfinite(far) else inf
 
 
-def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
+def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:
     """Return the source of pair, slope, potential, adjacency slope and norm, and their constants."""
     from flockana.symbolic import pair_formula as pf
     from flockana.symbolic.printing import Constants, function_text
@@ -237,7 +237,7 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
     taken = Constants([pf.SQUARE, pf.Z, pf.ROOT], first)
 
     def each(name: str) -> list[Any]:
-        return [taken.taken_out(getattr(piece, name)) for piece in pieces]
+        return [taken.extract_constants(getattr(piece, name)) for piece in pieces]
 
     rows = [[each("weight"), each("adjacency")], [each("slope")], [each("adjacency_slope")]]
     if not forces:
@@ -247,7 +247,7 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
     of_square = [*norm, "y = z"] if in_norm else [*floor, "y = s2"]
     marks = [f"m{k} = par[{head + k}]" for k in range(len(cut.marks) - 2)]
 
-    def text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
+    def source_text(arguments: str, wanted: list[list[Any]], after: str, before: list[str] = of_square) -> str:
         used = {symbol for row in wanted for value in row for symbol in value.free_symbols}
         names = (f"c{k}" for k in range(first, first + len(taken.values)))
         constants = [f"{name} = par[{name[1:]}]" for name in names if any(str(s) == name for s in used)]
@@ -260,16 +260,16 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
         slope = slope.replace("UNIT", inner)
         energy = "(on_panels(y, panels) if y < par[3] else v0)"
     potential = (
-        text("s2, par, panels", rows[3], f"par[1] if s2 >= par[0] else {energy}")
+        source_text("s2, par, panels", rows[3], f"par[1] if s2 >= par[0] else {energy}")
         if not forces
         else _integrated(in_norm)
     )
     pair = ("z, root, par", rows[0], f"{weight}, v1", ["y = z"]) if in_norm else ("s2, par", rows[0], f"{weight}, v1")
     texts = (
-        text(*pair),
-        text("s2, par", rows[1], slope),
+        source_text(*pair),
+        source_text("s2, par", rows[1], slope),
         potential,
-        text("s2, par", rows[2], "v0"),
+        source_text("s2, par", rows[2], "v0"),
         function_text("NAME", "s2, par", norm, [], "z, root") if in_norm else None,
     )
     return texts, taken.values
@@ -278,10 +278,10 @@ def _texts(cut: Cut, near: Near, *, forces: bool) -> tuple[Texts, list[Any]]:
 def _horner(otherwise: str, order: int) -> str:
     """Return the source of the series of the weight near 0, or of its derivative."""
     terms = [f"{float(k)}*par[{4 + k}]" if order else f"par[{4 + k}]" for k in range(order, TERMS)]
-    text = terms[-1]
+    source_text = terms[-1]
     for term in reversed(terms[:-1]):
-        text = f"{term} + (y/par[3])*({text})"
-    return f"(({text}){'*UNIT' if order else ''} if y < par[3] else {otherwise})"
+        source_text = f"{term} + (y/par[3])*({source_text})"
+    return f"(({source_text}){'*UNIT' if order else ''} if y < par[3] else {otherwise})"
 
 
 def _integrated(in_norm: bool) -> str:

@@ -23,7 +23,7 @@ class Weight(ABC):
 
     kernels: ClassVar[WeightKernels]
     proof: ClassVar[str] = ""  # that it is nowhere negative
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__",)}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"kernels": ("__call__",)}
 
     @property
     @abstractmethod

@@ -16,8 +16,8 @@ from flockana.kernels.sums import put
 class Advanced(NamedTuple):
     """Result of a call of `advance`."""
 
-    steps: Any  # number of steps that stand
-    status: Any  # why there are no more
+    steps: Any  # number of accepted steps
+    status: Any  # status of the last step, which says why the block ends
     h: Any  # length of the next step, or of the one that failed
     pairs: Any  # list of the integrator
     near: Any  # list of the checks

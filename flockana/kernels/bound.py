@@ -26,7 +26,7 @@ _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re
 
 @cache
 def bound(template: str, **bindings: Any) -> ModuleType:
-    """Return a template, bound: the same module for the same bindings.
+    """Return the module of a template with its names bound; the same module for the same bindings.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def bound(template: str, **bindings: Any) -> ModuleType:
 
 
 def made(text: str, name: str, **functions: Kernel) -> ModuleType:
-    """Return a module of some text, with functions in it by their names."""
+    """Return a module with a source text, in which the given functions are known by their names."""
     named = {own: known for own, known in functions.items() if is_modules_own(known)}
     sources = sorted({_source(known) for known in named.values()})
     imports = (f"from {known.__module__} import {known.__name__} as {own}" for own, known in sorted(named.items()))

@@ -12,8 +12,8 @@ from flockana.kernels.grid import sort_into_grid
 
 IndexArray = npt.NDArray[np.int64]
 
-_FEW = 64  # agents that are looked through one by one
-_CROWDED = 4  # as many blocks of adjacent cells at least, or most agents are near each other
+_FEW = 64  # flocks up to this size are searched agent by agent
+_CROWDED = 4  # least number of blocks of adjacent cells; with fewer, most agents are near each other
 _WIDER = 64  # times that cells are made twice as wide, where the box is sparse
 _SLACK = 1.0 + 1e-9  # for who is near by the rounding of a root
 
@@ -73,7 +73,7 @@ def gather(i, q, reach, cells, near):
 
 @njit(cache=True)
 def _sort(near, count):
-    """Shell's sort: by insertion alone where they are few, as they are in rows that are sorted each."""
+    """Sort `count` indices in place by Shell's method; few ones by insertion, as their rows are sorted already."""
     gap = 1
     while count > _FEW and gap < count // 9:
         gap = 3 * gap + 1

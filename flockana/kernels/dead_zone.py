@@ -33,7 +33,7 @@ def attraction(s, par):
 
 @register_jitable
 def zone_of(s, par):
-    """Which zone a pair at distance s is in; the dead zone is closed, the range open."""
+    """Return the zone of a pair at distance s; the dead zone is closed, the range open."""
     if s >= par[R]:
         return OUT
     if s < par[D_1]:

@@ -41,7 +41,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
     r, k_1, square = par[R], par[K_1], _square_of_range(par[R])
     held = (par[0], par[1], par[2], 0.0, par[4], par[5], par[6], par[7], par[8])  # without k₁, in registers
     for step in range(1, wanted[-1] + 1 if wanted.size else 1):
-        if _out_of(x, then, drift, (step - since) * dt, 0.25 * skin * skin, squares):
+        if _moved_beyond(x, then, drift, (step - since) * dt, 0.25 * skin * skin, squares):
             skin = 1e-3 * r + _AHEAD * dt * _spread(v, drift)
             kept = _listed(x, par, skin, near, degree, first, second, inside, ends)
             put(x, then)
@@ -143,7 +143,7 @@ def _crossed(s2, square, kept, near, degree, first, second, inside):
 
 
 @register_jitable
-def _out_of(x, then, drift, passed, square, squares):
+def _moved_beyond(x, then, drift, passed, square, squares):
     """Whether an agent has moved, relative to the flock's drift, by more than the root of `square`, or by NaN.
 
     Where `square` is infinite a list would hold for ever, and pairs at distances that overflow are on none: new lists.

@@ -84,7 +84,7 @@ def guard_of(kinds: tuple[Kernel, ...]) -> Any:
 
 @cache
 def signatures() -> LawFunctions:
-    """Return numba's signatures of the two functions."""
+    """Return numba's signatures of a law's force and energy."""
     numba = load_numba()
     float64, int64 = numba.float64, numba.int64
     matrix, vector, indices = float64[:, ::1], float64[::1], numba.uint32[::1]

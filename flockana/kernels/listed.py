@@ -17,8 +17,8 @@ class Listed(NamedTuple):
     second: Any
     count: Any  # how many there are
     order: Any  # (n,), uint64: every agent's own number
-    near: Any  # (2, BLOCK), any term's to write to
-    room: Any  # (3, BLOCK), too
+    near: Any  # (2, BLOCK), work space of each term in turn
+    room: Any  # (3, BLOCK), the same
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

@@ -15,7 +15,7 @@ from flockana.kernels.sums import finite, put
 
 
 class Block(NamedTuple):
-    """Some steps: where they begin and end, one row each."""
+    """Several steps: the states between which they lead, one row each."""
 
     t: Any  # times
     y: Any  # vectors

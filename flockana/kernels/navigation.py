@@ -51,7 +51,7 @@ def _place(t, co, si, path, k):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _follow(t, x, v, u, frame, numbers, order, target):
-    """`navigate` to the path that the numbers are of; `target` is room for it, three rows of m numbers or more."""
+    """`navigate` to the path that the numbers describe; `target` is room for it, three rows of m numbers or more."""
     m, omega, gains = x.shape[1], numbers[_OMEGA], np.int64(numbers[_GAINS])
     path, c = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
     co, si = cos(omega * t), sin(omega * t)
@@ -64,7 +64,7 @@ def _follow(t, x, v, u, frame, numbers, order, target):
 
 @njit(cache=True, error_model="numpy")
 def follow(t, x, v, u, numbers):
-    """`navigate` to the path that the numbers are of, seen from where it is at rest and in the agents' own order."""
+    """`navigate` to the path that the numbers describe, seen from where it is at rest and in the agents' own order."""
     (n, m), gains = x.shape, numbers[_GAINS]
     order = np.arange(n if gains > 1.0 else 0).astype(np.uint64)
     return _follow(t, x, v, u, np.zeros((2, m)), numbers, order, np.empty((3, m)))

@@ -1,7 +1,7 @@
 """Distances of points and straight ways from the boundary of a polygon, and whether they meet it.
 
 Distances are computed in the order in which GEOS does it, so they are those of shapely; which side a point is on, and
-whether a way crosses an edge, is told by signs that are sure, and else UNSURE. Edges are rows (x0, y0, x1, y1).
+whether a way crosses an edge, is decided by signs that are certain, else UNSURE. Edges are rows (x0, y0, x1, y1).
 """
 
 from __future__ import annotations

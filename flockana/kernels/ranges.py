@@ -54,8 +54,8 @@ def _slopes(c):
 
 
 @njit(cache=True)
-def _follow(stack, widths, band, wiggle, was_out):
-    """(was out of range, what is known of entries) along stack[0], known to a band, and its slope to a wiggle."""
+def _follow(stack, widths, band, slope_band, was_out):
+    """(was out of range, what is known of entries) along stack[0], known to `band`, its slope to `slope_band`."""
     known = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:
@@ -68,12 +68,12 @@ def _follow(stack, widths, band, wiggle, was_out):
             if was_out:
                 return was_out, ENTERS
             top -= 1
-        elif slopes[0] * 10.0 > wiggle * width:  # it rises: from within the range, if it was
+        elif slopes[0] * 10.0 > slope_band * width:  # it rises: from within the range, if it was
             if was_out and c[0] < -band:
                 return was_out, ENTERS
             was_out = was_out or c[10] > band
             top -= 1
-        elif slopes[1] * 10.0 < -wiggle * width and (c[0] > band or was_out) and c[10] < -band:
+        elif slopes[1] * 10.0 < -slope_band * width and (c[0] > band or was_out) and c[10] < -band:
             return True, ENTERS
         elif width < 2.0**-_DEPTH or (least >= -band and most <= band):
             was_out = was_out or c[0] > band or c[10] > band
@@ -113,8 +113,8 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
             _squared(points, i, j, r, stack[0])
             least = _ROUNDING * np.abs(stack[0]).max()
             band = (4.0 * r + slack) * slack + least
-            wiggle = _WIGGLE * ((4.0 * r + slack) * off + least) + 4.0 * ((r + slack) * speed * h + way * place)
-            was_out[k], known = _follow(stack, widths, band, wiggle, was_out[k])
+            slope_band = _WIGGLE * ((4.0 * r + slack) * off + least) + 4.0 * ((r + slack) * speed * h + way * place)
+            was_out[k], known = _follow(stack, widths, band, slope_band, was_out[k])
             if known == ENTERS:
                 return i, j
             if known == UNSURE:

@@ -49,9 +49,9 @@ class System(NamedTuple):
     force: Any  # `flockana.kernels.laws.LawFunctions`
     energy: Any
     law: Any  # what they read
-    seen_from: Any  # start, origin and drift of the frame that vectors are seen from
+    seen_from: Any  # start, origin and drift of the frame of the vectors
     moving: Any  # whether the energy is that in the moving frame
-    reach: Any  # within which all pairs are needed, and the skin of a list
+    reach: Any  # distance within which all pairs are needed, and the skin of a list
     listed: Any  # `flockana.kernels.verlet.listed_anew`
     order: Any  # (n,), uint64: every agent's own number
     frame: Any  # room (`flockana.kernels.listed.Listed`)
@@ -97,7 +97,7 @@ def rate_of(t, y, f, system, pairs):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _kept_up(y, system, pairs):
-    """The list itself while it holds every pair within reach, or else a new one."""
+    """Return the list while it holds every pair within reach, else a new one."""
     (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
     q = y[: n * m].reshape(n, m)
     return system.listed(q, reach + skin, pairs) if reach > 0.0 and not covers(pairs, q, reach) else pairs

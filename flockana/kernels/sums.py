@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.jit import njit, register_jitable
 
-_SAMPLE = 256  # agents whose slope is told from noise well enough
+_SAMPLE = 256  # agents that suffice to estimate the slope
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

@@ -129,7 +129,7 @@ def _weight(table, i, j):
 
 
 @njit(cache=True)
-def _trembling(settings, step, i, j, behaviour):
+def _noise_factor(settings, step, i, j, behaviour):
     """Return the noise factor of a weight in this step."""
     if settings.weight_noise == 0.0:
         return 1.0
@@ -138,7 +138,7 @@ def _trembling(settings, step, i, j, behaviour):
 
 @njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
 def _neighbours(i, near, flock, step, rules, out):
-    """Cohesion, alignment and separation of agent i; nobody but those in `near` is within its zones.
+    """Cohesion, alignment and separation of agent i; only agents in `near` can be within its zones.
 
     Returns the least distance of those who attract it, infinite without any.
     """
@@ -158,7 +158,7 @@ def _neighbours(i, near, flock, step, rules, out):
         if d <= c:
             w = _weight(zones.separation, i, j) * (d - c)
             if chance:
-                w *= _trembling(settings, step, i, j, SEPARATION)
+                w *= _noise_factor(settings, step, i, j, SEPARATION)
             for k in range(m):
                 out[SEPARATION, k] += w * ((q[j, k] - q[i, k]) / d)
         if d <= r:
@@ -167,8 +167,8 @@ def _neighbours(i, near, flock, step, rules, out):
             nearest = d
         w_c, w_a = _weight(zones.cohesion, i, j), _weight(zones.alignment, i, j)
         if chance:
-            w_c *= _trembling(settings, step, i, j, COHESION)
-            w_a *= _trembling(settings, step, i, j, ALIGNMENT)
+            w_c *= _noise_factor(settings, step, i, j, COHESION)
+            w_a *= _noise_factor(settings, step, i, j, ALIGNMENT)
         total_c += w_c
         total_a += w_a
         if not bearing:
@@ -202,7 +202,7 @@ def _aliens(i, flock, step, rules, out):
             d2 += (alien[e, k] - q[i, k]) ** 2
         d = sqrt(d2)
         if 0.0 < d <= zones.s[i] and not (annulus == 1 and d <= zones.a[i]):
-            w = zones.alien[i, e] * _trembling(settings, step, i, e, STRATEGIC)
+            w = zones.alien[i, e] * _noise_factor(settings, step, i, e, STRATEGIC)
             for k in range(m):
                 out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
 
@@ -244,8 +244,8 @@ def behave(i, near, flock, step, rules, out):
     depth = altitude(speed, zones.r[i], c, zones.a[i], settings, choices)
     rest = depth if choices.obstacle_force == 1 else c  # where the repulsion ends
     obstacle_terms(q[i], heading[i], moving, depth, settings.base * c, rest, world, choices, out[OBSTACLE])
-    w_o = zones.obstacle[i] * _trembling(settings, step, i, 0, OBSTACLE)
-    w_s = zones.speed[i] * _trembling(settings, step, i, 0, SPEED)
+    w_o = zones.obstacle[i] * _noise_factor(settings, step, i, 0, OBSTACLE)
+    w_s = zones.speed[i] * _noise_factor(settings, step, i, 0, SPEED)
     own2 = 0.0
     for k in range(m):
         out[OBSTACLE, k] *= w_o
@@ -294,7 +294,7 @@ def _move(i, q, p, u, step, settings, literal):
 
 
 @njit(cache=True)
-def _hunt(alien, q, dt, world):
+def _move_aliens(alien, q, dt, world):
     """Move every alien towards the nearest agent that it detects, within its territory."""
     m = q.shape[1]
     for e in range(alien.shape[0]):
@@ -340,7 +340,7 @@ def _take_step(flock, u, step, cells, near, rules, out, total):
     if not in_turn:
         for i in range(n):
             _move(i, q, p, u, step, settings, literal)
-    _hunt(alien, q, settings.dt, world)
+    _move_aliens(alien, q, settings.dt, world)
 
 
 @njit(cache=True)

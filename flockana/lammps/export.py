@@ -43,7 +43,7 @@ from flockana.measures.metrics import min_distance
 CONSENSUS = ("missing", "nearest")
 _STEP = 0.02  # by default, in the law's own time
 _MOST_POINTS = 10**7
-# how each file of an export begins, by which one from before is known and may be replaced
+# first line of each file, which identifies an earlier export that may be replaced
 _FIRST_LINE = re.compile(rb"(# )?\d+ agents of \w+, t = \S+ to \S+\s*|# UNITS: lj CONTRIBUTOR: flockana\s*")
 _LONGEST_LINE = 1000  # bytes; ours are shorter
 
@@ -115,8 +115,8 @@ def export_lammps(
     >>> import tempfile
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     told = export_lammps(Algorithm1(), [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0]] * 2, (0.0, 1.0), folder)
-    >>> [path.name for path in told.files], told.force_error < 1e-4, len(told.missing)
+    ...     result = export_lammps(Algorithm1(), [[0.0, 0.0], [8.0, 0.0]], [[0.0, 0.0]] * 2, (0.0, 1.0), folder)
+    >>> [path.name for path in result.files], result.force_error < 1e-4, len(result.missing)
     (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
     """
     flock = law.scenario() if hasattr(law, "scenario") else law
@@ -134,15 +134,15 @@ def export_lammps(
     start, end = ensure_time_span(t_span)
     clock = _clock(law, start, end, dt, samples)
     table = pair_table(term, points, first)
-    told = translated(law, q0.shape[1], table, nearest=consensus == "nearest")
+    result = translated(law, q0.shape[1], table, nearest=consensus == "nearest")
     title = f"{len(q0)} agents of {type(law).__name__}, t = {start:g} to {end:g}"
     texts = {
-        SCRIPT: script_text(title, q0.shape[1], table, clock, told),
+        SCRIPT: script_text(title, q0.shape[1], table, clock, result),
         DATA: data_text(q0, p0, term.pair.range, title),
         TABLE: table.text(),
-        README: readme_text(title, table, clock, told),
+        README: readme_text(title, table, clock, result),
     }
-    return _recorded(folder, _written(folder, texts), table, clock, told)
+    return _recorded(folder, _write_files(folder, texts), table, clock, result)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
@@ -210,7 +210,7 @@ def _ensure_own(paths: Iterable[Path]) -> None:
             )
 
 
-def _written(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
+def _write_files(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -221,7 +221,9 @@ def _written(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
     return tuple(folder / name for name in texts)
 
 
-def _recorded(folder: Path, files: tuple[Path, ...], table: PairTable, clock: Clock, told: Translation) -> LammpsExport:
-    exact, near, missing = (tuple(each) for each in (told.exact, told.near, told.missing))
+def _recorded(
+    folder: Path, files: tuple[Path, ...], table: PairTable, clock: Clock, result: Translation
+) -> LammpsExport:
+    exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
     errors = table.force_error, table.energy_error
     return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)

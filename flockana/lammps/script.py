@@ -43,23 +43,25 @@ class Translation:
 
 def translated(law: Law, m: int, table: PairTable, *, nearest: bool) -> Translation:
     """Translate each term of a law; `nearest` replaces an untranslatable consensus by damping."""
-    told = Translation()
+    result = Translation()
     for term in law.terms:
         if isinstance(term, PairTerm):
-            told.exact.append(f"pair forces: a table, off by at most {table.force_error:.2g}")
+            result.exact.append(f"pair forces: a table, off by at most {table.force_error:.2g}")
             if table.jumps:
-                told.near.append(f"jumps of the force at {', '.join(f'{x:g}' for x in table.jumps)}: over one interval")
-            _translate_consensus(term, m, told, nearest=nearest)
+                result.near.append(
+                    f"jumps of the force at {', '.join(f'{x:g}' for x in table.jumps)}: over one interval"
+                )
+            _translate_consensus(term, m, result, nearest=nearest)
         elif isinstance(term, Navigation):
             commands = pull_commands(term)
             if commands is None:
-                told.missing.append("the pull to the γ-agent: gains for each agent, or a path that has no formula")
+                result.missing.append("the pull to the γ-agent: gains for each agent, or a path that has no formula")
             else:
-                told.fixes += commands
-                told.exact.append("pull to the γ-agent: fix addforce and fix viscous")
+                result.fixes += commands
+                result.exact.append("pull to the γ-agent: fix addforce and fix viscous")
         elif not _is_empty(term):
-            told.missing.append(f"{type(term).__name__}: no style of LAMMPS is this force")
-    return told
+            result.missing.append(f"{type(term).__name__}: no style of LAMMPS is this force")
+    return result
 
 
 def _is_empty(term: object) -> bool:
@@ -68,20 +70,20 @@ def _is_empty(term: object) -> bool:
     return own is not None and not own.obstacles
 
 
-def _translate_consensus(term: PairTerm, m: int, told: Translation, *, nearest: bool) -> None:
+def _translate_consensus(term: PairTerm, m: int, result: Translation, *, nearest: bool) -> None:
     """Translate velocity consensus to dpd/ext/tstat at temperature 0."""
     if term.damping == 0.0:
         return
     exponent, off = nearest_weight(term, m)
     weight = f"dpd/ext/tstat at temperature 0 with weight (1 - r/{term.pair.range:g})^{2.0 * exponent:.4g}"
     if off == 0.0:
-        told.consensus = term.damping, 0.0
-        told.exact.append("velocity consensus: dpd/ext/tstat at temperature 0, whose weight is 1 as the law's is")
+        result.consensus = term.damping, 0.0
+        result.exact.append("velocity consensus: dpd/ext/tstat at temperature 0, whose weight is 1 as the law's is")
     elif nearest:
-        told.consensus = term.damping, exponent
-        told.near.append(f"velocity consensus: {weight}, off the law's adjacency by up to {off:.2g}")
+        result.consensus = term.damping, exponent
+        result.near.append(f"velocity consensus: {weight}, off the law's adjacency by up to {off:.2g}")
     else:
-        told.missing.append(
+        result.missing.append(
             f"velocity consensus: no style has this adjacency; the nearest is {weight}, off by up to {off:.2g} "
             "(consensus nearest)"
         )
@@ -130,28 +132,28 @@ def _row(values: list[float]) -> str:
     return " ".join(map(repr, values))
 
 
-def script_text(title: str, m: int, table: PairTable, clock: Clock, told: Translation) -> str:
+def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Translation) -> str:
     """Return the input script, in units lj with masses of 1."""
     points, reach = len(table.r), float(table.r[-1])
     columns = " ".join([*AXES[:m], *(f"v{x}" for x in AXES[:m]), *(f"f{x}" for x in AXES[:m])])
     boundary = ("s f p", "s s p", "s s s")[m - 1]
     lines = [
         f"# {title}",
-        *(f"# exact: {text}" for text in told.exact),
-        *(f"# nearly: {text}" for text in told.near),
-        *(f"# MISSING: {text}" for text in told.missing),
+        *(f"# exact: {text}" for text in result.exact),
+        *(f"# nearly: {text}" for text in result.near),
+        *(f"# MISSING: {text}" for text in result.missing),
         "units lj",
         f"dimension {3 if m == 3 else 2}",
         f"boundary {boundary}",
         "atom_style atomic",
         f"read_data {DATA}",
-        *_pair_commands(points, reach, told),
+        *_pair_commands(points, reach, result),
         f"neighbor {_SKIN * reach!r} bin",
         "neigh_modify every 1 delay 0 check yes",
         f"timestep {clock.dt!r}",
         f"variable t equal {clock.start!r}+step*{clock.dt!r}",
         "fix move all nve",
-        *told.fixes,
+        *result.fixes,
         *([] if m == 3 else ["fix plane all enforce2d"]),
         f"dump flock all custom {clock.every} {DUMP} id type {columns}",
         "dump_modify flock sort id format float %.17g time yes",
@@ -161,11 +163,11 @@ def script_text(title: str, m: int, table: PairTable, clock: Clock, told: Transl
     return "\n".join(lines) + "\n"
 
 
-def _pair_commands(points: int, reach: float, told: Translation) -> list[str]:
+def _pair_commands(points: int, reach: float, result: Translation) -> list[str]:
     table = f"{TABLE} {KEYWORD} {reach!r}"
-    if told.consensus is None:
+    if result.consensus is None:
         return [f"pair_style table linear {points}", f"pair_coeff 1 1 {table}"]
-    gain, s = told.consensus
+    gain, s = result.consensus
     return [
         "comm_modify vel yes",
         f"pair_style hybrid/overlay table linear {points} dpd/ext/tstat 0.0 0.0 {reach!r} 1",
@@ -180,16 +182,16 @@ first order in the timestep where this library's methods are of fourth or higher
 """
 
 
-def readme_text(title: str, table: PairTable, clock: Clock, told: Translation) -> str:
+def readme_text(title: str, table: PairTable, clock: Clock, result: Translation) -> str:
     """Return the README of the folder: contents, what LAMMPS computes, how to read the run."""
-    sections = [("Exact", told.exact), ("Nearly", told.near), ("Missing", told.missing)]
+    sections = [("Exact", result.exact), ("Nearly", result.near), ("Missing", result.missing)]
     listed = "".join(f"{head}:\n" + "".join(f"  - {text}\n" for text in texts) for head, texts in sections if texts)
-    order = "" if told.consensus is None else _FIRST_ORDER
+    order = "" if result.consensus is None else _FIRST_ORDER
     stop = "" if table.r[0] < 1e-3 * table.r[-1] else " LAMMPS stops where two agents come nearer than that."
     return f"""{title}
 
 Run `lmp -in {SCRIPT}` in this folder, or `mpirun -np 8 lmp -in {SCRIPT}`; it writes {DUMP}.
-{"Needs the package DPD-BASIC." if told.consensus else "Needs no package beyond the basic ones."}
+{"Needs the package DPD-BASIC." if result.consensus else "Needs no package beyond the basic ones."}
 
 {SCRIPT}    input script, units lj, all masses 1: lengths and times are those of the law
 {DATA}  positions and velocities at the start

@@ -95,7 +95,7 @@ class Elimination:
         largest = float(np.abs(front).max(initial=0.0))
         if self._least is None and largest > _GROWN * self._largest:
             growth = largest / self._largest
-            raise SolverError(f"elimination grew entries {growth:.3g} times: signs of pivots no longer tell")
+            raise SolverError(f"elimination grew entries {growth:.3g} times: the signs of its pivots cannot be trusted")
         t, signs = self._pivots(front[:own, :own], largest)
         x = t @ front[:own, own:]
         left = front[own:, own:] - x.T @ (x if signs is None else signs[:, None] * x)
@@ -117,7 +117,7 @@ class Elimination:
         if self._least is not None:
             return (vectors / np.sqrt(np.maximum(np.abs(sizes), self._least))).T, None
         if np.abs(sizes).min() <= _ZERO * largest:
-            raise SolverError("the sparse elimination met a pivot that is zero to rounding: it has no sign")
+            raise SolverError("the sparse elimination met a pivot that is zero to rounding: its sign is undetermined")
         return (vectors / np.sqrt(np.abs(sizes))).T, np.sign(sizes)
 
 

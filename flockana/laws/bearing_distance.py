@@ -154,7 +154,7 @@ class ZoneFlocking(DiscreteLaw):
     }
 
     references = ("jond-2025",)
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {"iterate": ("step",)}
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {"iterate": ("step",)}
     extra_units: ClassVar[Mapping[str, Powers]] = {"estimate": (1, -1), "reach": (1, 0), "alien": (1, 0)}
     steps_at_once = 256  # a step of ten agents takes microseconds
 
@@ -231,9 +231,9 @@ class ZoneFlocking(DiscreteLaw):
         heading = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
         memory = {"heading": heading, "estimate": np.array(p)}
         radii = self.radii.arrays(len(q))[2]
-        return memory | self._kept(radii, np.array(0.0), self.world.alien_starts)
+        return memory | self._needed_memory(radii, np.array(0.0), self.world.alien_starts)
 
-    def _kept(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
+    def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
         """Return the memory without parts that are not needed."""
         needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
@@ -262,7 +262,7 @@ class ZoneFlocking(DiscreteLaw):
         qs, ps, us, *own = compiled.run(flock, first, self._rules(*q.shape), steps)
         headings, estimates, reach, aliens = own
         numbers = np.arange(first + 1.0, first + steps + 0.5)
-        return qs, ps, us, {"heading": headings, "estimate": estimates} | self._kept(reach, numbers, aliens)
+        return qs, ps, us, {"heading": headings, "estimate": estimates} | self._needed_memory(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
         """Return the six accelerations at one instant by name, each (n, m), before the bound (9).

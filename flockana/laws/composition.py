@@ -293,7 +293,7 @@ def compose(
         "c2_gamma": (navigation, match),
     }
     own = {name: _of_informed(gain, name, informed, agents) for name, (part, gain) in given.items() if part is not None}
-    unit = _bend(bounded, pair)
+    unit = _bounding_length(bounded, pair)
     thrust, brake = _along(drag, speed)
     plain = net is None and pair is not None and not (feedforward or thrust or brake)
     if plain and navigation is None and not obstacles:
@@ -321,7 +321,7 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
     if informed is None or not name.endswith("gamma"):
         return gain
     if agents is None:
-        raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., the number of all")
+        raise ArgumentError(f"informed = {informed!r} without agents: give agents=..., their total number")
     n, known = ensure_count("agents", agents), []
     for i in informed:
         if isinstance(i, bool) or not isinstance(i, int | np.integer) or not 0 <= i < n:
@@ -331,13 +331,13 @@ def _of_informed(gain: Any, name: str, informed: Iterable[int] | None, agents: i
     return tuple(common if i in known else 0.0 for i in range(n))
 
 
-def _bend(bounded: bool | float, pair: PairInteraction | None) -> float | None:
+def _bounding_length(bounded: bool | float, pair: PairInteraction | None) -> float | None:
     """ℓ of a bounded pull, None for the linear one."""
     if bounded is False:
         return None
     if bounded is True:
         if pair is None:
-            raise ArgumentError("bounded = True without a pair: give the length that the pull is counted in")
+            raise ArgumentError("bounded = True without a pair: give the length at which the pull saturates")
         return pair.bend_length
     return ensure_positive("bounded", bounded)
 

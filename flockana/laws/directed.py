@@ -25,7 +25,7 @@ from flockana.kernels.neighbours import pair_list
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
-from flockana.laws.wrapped import Around
+from flockana.laws.wrapped import WrappingLaw
 from flockana.measures.perception import Edges
 
 _ALL_ROUND = 2.0 * pi
@@ -34,7 +34,7 @@ _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are coun
 
 
 @dataclass(frozen=True)
-class DirectedNet(Around):
+class DirectedNet(WrappingLaw):
     """Law of Olfati-Saber whose agents see others within ranges of their own, and in a cone ahead of them.
 
     u_i = Σ w_ij (c1α φ_α n_ij + c2α a_ij (p_j − p_i)) over the j that i sees, in which the bump ends at agent i's own

@@ -234,8 +234,8 @@ def _pushes(name: str, value: Any, least: int) -> Any:
     if array.ndim not in (least, least + 1) or not array.size or not np.isfinite(array).all():
         shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"
         raise ArgumentError(f"{name} = {format_value(value)}: expected finite components, {shape}")
-    return _nested(array)
+    return _as_tuples(array)
 
 
-def _nested(array: FloatArray) -> Any:
-    return tuple(array.tolist()) if array.ndim == 1 else tuple(map(_nested, array))
+def _as_tuples(array: FloatArray) -> Any:
+    return tuple(array.tolist()) if array.ndim == 1 else tuple(map(_as_tuples, array))

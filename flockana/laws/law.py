@@ -72,7 +72,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
     """
 
     references: ClassVar[tuple[str, ...]] = ()
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # public methods by the one that integrators ask for
 
     if TYPE_CHECKING:
         pair: PairInteraction | None
@@ -118,7 +118,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         return False
 
     @property
-    def splits(self) -> bool:
+    def centre_decouples(self) -> bool:
         """Whether shape and centre of mass are known to decouple: forces cancel, but for one linear pull on all."""
         return False
 
@@ -200,7 +200,7 @@ class Law(LawOfMotion):
     `energy_rate` are the validated public face of the same functions.
     """
 
-    derives: ClassVar[Mapping[str, tuple[str, ...]]] = {
+    derived_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "flow": ("acceleration", "energy_rate"),
         "hamiltonian": ("energy",),
     }
@@ -251,7 +251,7 @@ class Law(LawOfMotion):
         t, q, p = self._checked(t, q, p)
         u = self.checked_flow(t, q, p)[0]
         if not np.isfinite(u).all():
-            self.check_start(q, p)  # tells who is where the law has no input
+            self.check_start(q, p)  # names the agents at which the law has no input
         return u
 
     def energy(self, t: float, q: Any, p: Any) -> float:

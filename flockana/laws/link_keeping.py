@@ -25,7 +25,16 @@ class LinkKeeping(SumOfTerms):
     """u_i = −Σ_j ∇_i ψ(‖q_j − q_i‖) + c Σ_j (p_j − p_i) over links {i, j}, with ψ(s) = k s²/(r − s).
 
     The tension is that of Ji and Egerstedt (2007), the second-order law that of Zavlanos, Jadbabaie and Pappas (2007).
-    Both let links arise, with hysteresis; here the net is that of the start and does not change. H = Σ ψ + ½ Σ‖p_i‖².
+    Both let links arise, with hysteresis; here the net is given and does not change. H = Σ ψ + ½ Σ‖p_i‖².
+
+    Parameters
+    ----------
+    links : tuple of (int, int)
+        Pairs of agents that are linked at all times.
+    r : float
+        Length that no link reaches.
+    k, c : float
+        Strength of the tension, and gain of the velocity differences.
 
     Examples
     --------
@@ -115,6 +124,12 @@ class LinkKeeping(SumOfTerms):
         return lengths
 
     def longest(self, energy: float) -> float:
-        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H."""
+        """Return the length s < r at which one link holds all the energy: k s²/(r − s) = H.
+
+        Parameters
+        ----------
+        energy : float
+            H, the energy of the flock.
+        """
         root = sqrt(energy * energy + 4.0 * self.k * energy * self.r)
         return 2.0 * energy * self.r / (energy + root) if energy > 0.0 else 0.0

@@ -118,8 +118,8 @@ class Stepped(Scheme):
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
         past = np.empty((0, 4, *q.shape))
         if self.past_steps:
-            told = next((one for one in self._late if one.history_t is not None), self._late[0])
-            before, speeds, push = told._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
+            with_history = next((one for one in self._late if one.history_t is not None), self._late[0])
+            before, speeds, push = with_history._past(self.dt * np.arange(1.0 - self.past_steps, 1.0), q, p)
             past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
@@ -149,7 +149,7 @@ class Stepped(Scheme):
         for k in range(int(wanted[-1])):
             now.number, now.begins, at = first + k, True, t + k * self.dt
             if past and self.past_steps:
-                now.past = _Recall(past, at, self.dt)
+                now.past = _PastStates(past, at, self.dt)
             q, p, u, departs = advance(now, at, q, p, kicking, past)
             if self.past_steps:
                 past.append((q, p, departs, departs))
@@ -187,7 +187,7 @@ class Stepped(Scheme):
     def _ask(self, now: Step, t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         return input_of(self.law, now, View(t, q, p))
 
-    def _departs(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
+    def _begin_step(self, now: Step, t: float, q: FloatArray, p: FloatArray, past: _Past) -> FloatArray:
         """Return the input at the step's beginning, and store it in the past."""
         u = self._ask(now, t, q, p)
         now.begins = False
@@ -199,14 +199,14 @@ class Stepped(Scheme):
     def _euler(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        u, h = self._departs(now, t, q, p, past), self.dt
+        u, h = self._begin_step(now, t, q, p, past), self.dt
         after = p + h * u
         return q + (0.5 * h) * (p + after), _kicked(after, now, kicking), u, u
 
     def _heun(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        first, h = self._departs(now, t, q, p, past), self.dt
+        first, h = self._begin_step(now, t, q, p, past), self.dt
         guess = _kicked(p + h * first, now, kicking)
         second = self._ask(now, t + h, q + h * p, guess)
         u = 0.5 * (first + second)
@@ -215,7 +215,7 @@ class Stepped(Scheme):
     def _runge_kutta(
         self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        k1, h = self._departs(now, t, q, p, past), self.dt
+        k1, h = self._begin_step(now, t, q, p, past), self.dt
         k2 = self._ask(now, t + h / 2, q + h / 2 * p, p + h / 2 * k1)
         k3 = self._ask(now, t + h / 2, q + h / 2 * (p + h / 2 * k1), p + h / 2 * k2)
         k4 = self._ask(now, t + h, q + h * (p + h / 2 * k2), p + h * k3)
@@ -231,7 +231,7 @@ def _kicked(p: FloatArray, now: Step, kicking: list[Wrapper]) -> FloatArray:
     return p
 
 
-class _Recall:
+class _PastStates:
     """State at an earlier time: steps that were made, and between two a Hermite cubic."""
 
     def __init__(self, past: _Past, t: float, h: float) -> None:

@@ -40,8 +40,8 @@ class SumOfTerms(Law):
         return all(term.conservative for term in self.terms)
 
     @property
-    def splits(self) -> bool:  # noqa: D102
-        return all(term.splits for term in self.terms)
+    def centre_decouples(self) -> bool:  # noqa: D102
+        return all(term.centre_decouples for term in self.terms)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102
         for term in self.terms:

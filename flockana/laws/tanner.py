@@ -64,7 +64,7 @@ class FixedNetFlocking(Law):
         return Scales(self.potential.d, length_scale_time(self.potential))
 
     @property
-    def splits(self) -> bool:  # noqa: D102
+    def centre_decouples(self) -> bool:  # noqa: D102
         return True
 
     @cached_property
@@ -140,7 +140,7 @@ class ProximityFlocking(SwitchedLaw):
         return Scales(self.potential.d, length_scale_time(self.potential))
 
     @property
-    def splits(self) -> bool:  # noqa: D102
+    def centre_decouples(self) -> bool:  # noqa: D102
         return True
 
     @property
@@ -171,7 +171,7 @@ class ProximityFlocking(SwitchedLaw):
             Where each pair is held.
         """
         u = np.zeros(q.shape)
-        return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)
+        return u, net_forces(self.potential, self.k2, q, p, *_pairs_within(pieces, len(q)), u)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         return self.piece_flow(self.pieces(q), t, q, p)
@@ -228,7 +228,7 @@ class ProximityFlocking(SwitchedLaw):
         return float(np.sum(self.potential.energy(s * s))) + 0.5 * float(np.sum(v * v))
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:  # noqa: D102
-        return net_derivatives(self.potential, self.k2, q, *_held(self.pieces(q), len(q)))
+        return net_derivatives(self.potential, self.k2, q, *_pairs_within(self.pieces(q), len(q)))
 
 
 def _ensure_potential(potential: Any) -> None:
@@ -255,7 +255,7 @@ def _edges(given: Any) -> tuple[tuple[int, int], ...]:
     return tuple(sorted(found))
 
 
-def _held(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def _pairs_within(pieces: Pieces, n: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Return the index pairs (i, j) assigned to the piece within R."""
     i, j = np.triu_indices(n, 1)
     near = pieces == _NEAR

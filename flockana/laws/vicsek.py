@@ -111,8 +111,8 @@ class HeadingAveraging(DiscreteLaw):
         worst = int(np.argmax(off))
         if off[worst] > _SPEED:
             raise ArgumentError(
-                f"agent {worst} has the speed {np.linalg.norm(p[worst]):g}: expected speed = {self.speed:g} of all; "
-                "make velocities with law.velocities(headings)"
+                f"agent {worst} has the speed {np.linalg.norm(p[worst]):g}: expected speed = {self.speed:g} for all "
+                "agents; make velocities with law.velocities(headings)"
             )
 
     def velocities(self, headings: Any) -> FloatArray:

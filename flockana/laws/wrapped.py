@@ -117,7 +117,7 @@ def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, 
     return numbers[first % _BLOCK :][:count]
 
 
-class Around(Law):
+class WrappingLaw(Law):
     """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
 
     law: Law
@@ -161,7 +161,7 @@ class Around(Law):
         self.law.check_start(q, p)
 
 
-class Wrapper(Around):
+class Wrapper(WrappingLaw):
     """Law with one imperfection of the control loop added; it wraps any law, another wrapper too.
 
     A subclass is a frozen dataclass with the field `law` and `input`, which asks the law that it wraps. `stepped` says

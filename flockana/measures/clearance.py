@@ -26,7 +26,7 @@ from flockana.measures.nets import link_lengths, links
 RELATIVE_TOL = 1e-9  # of the halving, relative to the extent of the motion
 ROUNDING = 2.0**-50  # of the coordinates
 _DEPTH = 40  # halvings: below any resolved motion
-_MOST = 100_000  # parts open at once: beyond it the bound stays as weak as it is
+_MOST = 100_000  # parts open at once; beyond it the bound is not tightened further
 _CHUNK = 50_000  # agent-intervals handled at once
 
 
@@ -58,7 +58,7 @@ def clearance(
     are too sparse to resolve the motion.
     """
     n, m = q.shape[1:]
-    least_of = [_Least(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
+    least_of = [_Minimum(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
     tol = max(RELATIVE_TOL * extent, ROUNDING * float(np.abs(q).max()))
     for first in range(0, len(t) - 1 if obstacles else 0, rows):
@@ -96,7 +96,7 @@ def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
     return distance
 
 
-class _Bound(NamedTuple):
+class _CurveMinimum(NamedTuple):
     """Minimum over curves: a lower bound, the least value found, its parameter and curve."""
 
     lower: float
@@ -105,7 +105,7 @@ class _Bound(NamedTuple):
     curve: int
 
 
-class _Least:
+class _Minimum:
     """Running minimum of the clearance from one obstacle, starting with the samples."""
 
     def __init__(self, t: FloatArray, at_samples: FloatArray) -> None:
@@ -113,7 +113,7 @@ class _Least:
         self.at_samples, self.time = at_samples, float(t[k])
         self.lower = self.reached = float(at_samples[k, self.agent])
 
-    def update(self, bound: _Bound, t: FloatArray, interval: Any, agent: Any) -> None:
+    def update(self, bound: _CurveMinimum, t: FloatArray, interval: Any, agent: Any) -> None:
         """Update the minimum with some agents' intervals."""
         self.lower = min(self.lower, bound.lower)
         if bound.value < self.reached:
@@ -121,7 +121,7 @@ class _Least:
             self.reached, self.time = bound.value, float(t[k] + bound.parameter * (t[k + 1] - t[k]))
 
 
-def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _Bound:
+def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _CurveMinimum:
     """Bound the clearance along curves by halving; the bound is `best` if nothing lower is possible."""
     proven, value, where, which = best, inf, 0.0, -1
     source, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
@@ -144,7 +144,7 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
         curves, allowance = np.concatenate([left[open_], right[open_]]), np.tile(allowance[open_], 2)
         start = np.concatenate([start[open_], start[open_] + 0.5 * width])
         source, width = np.tile(source[open_], 2), 0.5 * width
-    return _Bound(proven, value, where, which)
+    return _CurveMinimum(proven, value, where, which)
 
 
 def bounds_over_hull(

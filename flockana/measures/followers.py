@@ -9,7 +9,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.measures.measure import Measure
 
-FOLLOWS = 1e-2  # of the law's own speed: who differs from the leader's velocity by no more follows it
+FOLLOWS = 1e-2  # of the law's own speed: an agent this near to the leader's velocity follows it
 
 
 def _has_leader(law: Any) -> bool:

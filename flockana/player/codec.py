@@ -43,7 +43,7 @@ def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
     entries, bodies = [], []
     for name, packed in arrays.items():
         values = np.asarray(packed.values, dtype=np.float64)
-        whole, origin = _whole(name, values, packed.step)
+        whole, origin = _quantise(name, values, packed.step)
         entries.append({"name": name, "shape": values.shape, "step": packed.step, "origin": origin})
         bodies.append(_bytes(whole.reshape(len(values), int(np.prod(values.shape[1:])))))
     text = json.dumps(dict(header) | {"arrays": entries}, ensure_ascii=False, allow_nan=False).encode("utf-8")
@@ -65,13 +65,13 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
             start += 4 * size
             whole = np.ascontiguousarray(planes.T).view("<u4").reshape(size // max(rows, 1), rows).T
             whole = np.cumsum(whole, axis=0, dtype=np.uint32)
-            arrays[entry["name"]] = _numbers(whole, entry).reshape(entry["shape"])
+            arrays[entry["name"]] = _dequantise(whole, entry).reshape(entry["shape"])
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
         raise ArgumentError(f"{len(data)} bytes: expected those of a run for the player ({error})") from None
     return header, arrays
 
 
-def _whole(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
+def _quantise(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
     """Return an array as 32-bit integers, and the origin that was subtracted."""
     with np.errstate(over="ignore"):
         single = values.astype("<f4")
@@ -91,7 +91,7 @@ def _bytes(whole: Any) -> bytes:
     return np.ascontiguousarray(change.T).view(np.uint8).reshape(-1, 4).T.tobytes()
 
 
-def _numbers(whole: Any, entry: Mapping[str, Any]) -> FloatArray:
+def _dequantise(whole: Any, entry: Mapping[str, Any]) -> FloatArray:
     if entry["step"] == 0.0:
         return np.ascontiguousarray(whole).view("<f4").astype(np.float64)
     values: FloatArray = entry["origin"] + entry["step"] * whole.astype(np.float64)

@@ -178,7 +178,7 @@ def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
             it = run.measure(name)
             found.append((name, it.label, bool(it.logarithmic), run.metric(name)))
     found.append(("effort", "control effort: greatest ‖u‖", False, lengths(run.u).max(axis=1)))
-    return [each for each in found if np.isfinite(each[-1]).all()]  # a number that is none has no place in a strip
+    return [each for each in found if np.isfinite(each[-1]).all()]  # a strip draws finite numbers only
 
 
 def _finite(value: Any) -> float | None:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _DPI = 100
 _STILL: dict[Any, Any] = {"figure.constrained_layout.use": False}
-_WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: of the film, and between what its height lies
+_WIDTH, _LEAST, _MOST = 8.0, 3.2, 7.0  # inches: width, and least and greatest height of the film
 _FRAMES = 20_000  # a longer film is a slip of the pen
 _SUFFIXES = ".gif", ".mp4"
 
@@ -81,7 +81,7 @@ def animation(
     frames = frame_count(seconds, fps)
     film, view = equal_times(trajectory, frames), film_view(trajectory)
     times = np.linspace(trajectory.t[0], trajectory.t[-1], frames)  # of a map, some frames may show the same step
-    # outside the style, whose layout engine would fit each frame anew and make the view tremble
+    # outside the style, whose layout engine would fit each frame anew and make the view jitter
     figure = Figure(figsize=film_size(view), dpi=_DPI)
     FigureCanvasAgg(figure)
     with style():
@@ -94,7 +94,7 @@ def animation(
         with style():
             ax.clear()
             snapshot(film, float(times[k]), ax=ax, velocities=velocities, bar=False, ranges=ranges)
-        _hold(ax, view)
+        _fix_view(ax, view)
         return []
 
     return FuncAnimation(figure, draw, frames=frames, init_func=lambda: [], interval=1000.0 / fps, repeat=False)
@@ -214,7 +214,7 @@ def film_size(view: FloatArray) -> tuple[float, float]:
     return _WIDTH, round(50.0 * min(max(height, _LEAST), _MOST)) / 50.0
 
 
-def _hold(ax: Any, view: FloatArray) -> None:
+def _fix_view(ax: Any, view: FloatArray) -> None:
     """Fix the view of the axes in every frame."""
     low, high = view
     if low.size == 3:

@@ -39,7 +39,7 @@ def sampled_basin(sampled: SampledBasin, *, level: float = 0.95, ax: Axes | None
     ax.set_ylim(-0.05, 1.1)
     ax.set_xlim(left=0.0)
     ax.set_xlabel("distance from the orbit, over all coordinates, in d")
-    ax.set_ylabel("share that returns")
+    ax.set_ylabel("share of starts that return")
     write_title(ax, f"{type(basin.law).__name__}, n = {len(basin.rest)}: certified, and sampled")
     ax.legend(loc="lower left", **LEGEND)
     return ax

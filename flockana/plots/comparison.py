@@ -38,7 +38,7 @@ _COLUMNS = 5
 _LOOKS = tuple(
     zip((BLUE, VERMILLION, GREEN, PURPLE, INK), ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1))), strict=True)
 )
-_MARKS = (None, "o", "s", "^")  # one for each time that the looks come round again
+_MARKS = (None, "o", "s", "^")  # a marker for each repetition of the colours and dashes
 _FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
 

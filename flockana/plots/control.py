@@ -119,7 +119,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     ax.plot(sweep.values, sweep.abscissa, color=VERMILLION, linestyle="-", linewidth=2.0, label="the slowest")
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
     if sweep.neutral:
-        ax.plot([], [], linestyle="none", label=f"({sweep.neutral} neutral set apart)")
+        ax.plot([], [], linestyle="none", label=f"({sweep.neutral} neutral not shown)")
     ax.set_xlim(sweep.values[0], sweep.values[-1])
     return finish(ax, _gain_label(sweep.name), "Re s (1/time)")
 

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 _MARKS = "osD^v<>"
 _DODGE = 0.012  # of the axes' width, between curves that share their abscissae
-_MOST = 7  # curves that can be told apart
+_MOST = 7  # curves that can be distinguished
 _LINE = 105  # characters that fit side by side above the axes
-# colour, hatch: told apart in grey by their lightness and, where that is close, by the hatch
+# colour, hatch: distinguished in grey by their lightness and, where that is close, by the hatch
 _PHASES = {
     "flocking": (GREEN, ""),
     "fragmentation": (ORANGE, "//"),

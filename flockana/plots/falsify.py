@@ -68,16 +68,16 @@ def search_history(
     axes = ensure_axes(ax)
     run = np.arange(1, values.size + 1)
     known = np.isfinite(values)
-    axes.plot(run[known], values[known], "o", color=MUTED, markersize=2.5, label="a run")
-    axes.step(run, least, where="post", color=BLUE, linestyle="-", label="least so far")
-    axes.axhline(0.0, color=INK, linewidth=0.9, linestyle=":", label="fails below")
+    axes.plot(run[known], values[known], "o", color=MUTED, markersize=2.5, label="one run")
+    axes.step(run, least, where="post", color=BLUE, linestyle="-", label="smallest margin so far")
+    axes.axhline(0.0, color=INK, linewidth=0.9, linestyle=":", label="refuted below 0")
     hits = np.asarray(found, dtype=np.int64)
     if hits.size:
         look = {"markersize": 9, "markerfacecolor": "none", "markeredgewidth": 1.5, "linestyle": "none"}
         axes.plot(run[hits], values[hits], "s", color=VERMILLION, label="refuted", **look)
     if not known.all():
         foot = axes.get_xaxis_transform()
-        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="nothing claimed")
+        axes.plot(run[~known], np.full((~known).sum(), 0.02), "|", color=MUTED, transform=foot, label="no margin")
     _scale(axes, values[known])
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(0.5, values.size + 0.5)

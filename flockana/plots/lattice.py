@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 _MOST = 12
 _SKY, _YELLOW = "#56B4E9", "#F0E442"  # the rest of Okabe and Ito's colours
-# marker and colour of an agent with k neighbours: from 3 to 6 a polygon with k corners; told apart in grey too
+# marker and colour of an agent with k neighbours: from 3 to 6 a polygon with k corners; distinguishable in grey
 _LOOKS: tuple[tuple[Any, str], ...] = (
     ("X", INK),
     ("o", MUTED),
@@ -170,7 +170,7 @@ def collapse_brackets(brackets: Mapping[int, Sequence[float]], *, ax: Axes | Non
 
 @check_kinds
 def barrier(
-    together: Mapping[int, float], ground: Mapping[int, float], c_star: float, *, ax: Axes | None = None
+    together: Mapping[int, float], lowest: Mapping[int, float], c_star: float, *, ax: Axes | None = None
 ) -> Axes:
     """Draw the least energies with and without two coincident agents, and their difference, against n in units of c*.
 
@@ -178,16 +178,16 @@ def barrier(
 
     Parameters
     ----------
-    together, ground : mapping of int to float
+    together, lowest : mapping of int to float
         Least energies, by number of agents.
     c_star : float
         The printed bound, ψ_α(0).
     """
     axes = ensure_axes(ax)
     sizes = sorted(together)
-    upper, lower = (np.array([energy[n] for n in sizes]) / c_star for energy in (together, ground))
-    axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V where two meet")
-    axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V")
+    upper, lower = (np.array([energy[n] for n in sizes]) / c_star for energy in (together, lowest))
+    axes.plot(sizes, upper, marker="x", color=VERMILLION, linestyle="--", label="least V with two agents coincident")
+    axes.plot(sizes, lower, marker="o", color=BLUE, linestyle="-", label="least V of all states")
     axes.plot(sizes, upper - lower, marker="s", color=GREEN, linestyle="-.", label="barrier")
     axes.axhline(1.0, color=INK, linewidth=0.9, linestyle=":", label="c*")
     axes.set_ylim(bottom=0.0)

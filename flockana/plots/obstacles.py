@@ -65,21 +65,23 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
     if solid.dimension == 3:
         turn, tilt = np.linspace(0.0, 2.0 * np.pi, _MESH[1]), np.linspace(0.0, np.pi, _MESH[0])[:, None]
         ball = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt) + 0.0 * turn], axis=2)
-        traced, inside = _trace(solid, centre + _OUTSIDE * radius * ball.reshape(-1, 3))
+        traced, inside = _nearest_points(solid, centre + _OUTSIDE * radius * ball.reshape(-1, 3))
         traced[inside] = np.nan  # of an unbounded solid only its surface shows
         ax.plot_wireframe(*traced.T.reshape(3, *_MESH), color=MUTED, linewidth=0.4, rstride=2, cstride=3)
         return
     if solid.dimension == 1:
-        ends, _ = _trace(solid, centre + _OUTSIDE * radius * np.array([[-1.0], [1.0]]))
+        ends, _ = _nearest_points(solid, centre + _OUTSIDE * radius * np.array([[-1.0], [1.0]]))
         corners = np.array([[x, y] for x, y in zip(ends[[0, 1, 1, 0], 0], (-0.3, -0.3, 0.3, 0.3), strict=True)])
     else:
         angle = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
-        corners, _ = _trace(solid, centre + _OUTSIDE * radius * np.column_stack([np.cos(angle), np.sin(angle)]))
+        corners, _ = _nearest_points(
+            solid, centre + _OUTSIDE * radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        )
     patch = Polygon(corners, closed=True, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1)
     (ax.add_patch if bounded else ax.add_artist)(patch)  # an artist does not widen the view
 
 
-def _trace(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
+def _nearest_points(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
     """Return the closest points of the solid, and which of the given points are inside it."""
     foot = solid.beta_agents(around, np.zeros_like(around))
     inside = foot.clearance <= 0.0

@@ -63,9 +63,9 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax.plot([r, x[-1]], [0.0, 0.0], color=BLUE, linestyle="-")
     ax.plot([r], [values[-1]], "o", color=BLUE, markerfacecolor="white", markersize=5)
     ax.plot([r], [0.0], "o", color=BLUE, markersize=5)
-    _frame(ax, interaction, "energy, in its value at 0")
+    _frame(ax, interaction, "energy over its value at 0")
     ax.set_xlim(x[0], x[-1])
-    ax.set_xlabel("place of one agent, seen from the other (length)")
+    ax.set_xlabel("position of one agent relative to the other (length)")
     place_legend(ax)
     return ax
 

@@ -40,8 +40,8 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
         raise ArgumentError(f"q of shape {points.shape}, rules of shape {parts.total.shape}: expected (n, 2) of both")
     axes = ensure_axes(ax)
     signs = (parts.stress > 0.0, parts.stress < 0.0, parts.stress == 0.0)
-    looks = ((BLUE, "-", "F⁺, pulls"), (VERMILLION, "--", "F⁻, pushes"), (FAINT, ":", "F⁰"))
-    for chosen, (colour, dash, name) in zip(signs, looks, strict=True):
+    styles = ((BLUE, "-", "F⁺, pulls"), (VERMILLION, "--", "F⁻, pushes"), (FAINT, ":", "F⁰"))
+    for chosen, (colour, dash, name) in zip(signs, styles, strict=True):
         if chosen.any():
             lines = points[parts.links[chosen]]
             axes.add_collection(LineCollection(lines, colors=colour, linestyles=dash, linewidths=0.8, label=name))

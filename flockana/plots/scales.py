@@ -89,13 +89,13 @@ class PlainScale(Artist):
         low, high = self.ax.bbox.intervalx if self.name == "x" else self.ax.bbox.intervaly
         seen = (at >= low - _OUTSIDE) & (at <= high + _OUTSIDE)
         length, width, pad = (
-            float(look.get(key, self._look(f"{which}.{rc}")))
+            float(look.get(key, self._tick_style(f"{which}.{rc}")))
             for key, rc in (("length", "size"), ("width", "width"), ("pad", "pad"))
         )
         shown = tuple(text for text, inside in zip(numbers, seen.tolist(), strict=True) if inside)
         return Ticks(at[seen], shown, length * pixel, width, pad * pixel, bool(look["gridOn"]))
 
-    def _look(self, key: str) -> Any:
+    def _tick_style(self, key: str) -> Any:
         """Return the style's settings of the ticks of this scale."""
         look: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
         return look[f"{self.name}tick.{key}"]
@@ -139,7 +139,7 @@ class PlainScale(Artist):
         return float(self.scale.labelpad) * self._pixel
 
     def _font(self) -> FontProperties:
-        size = self.scale.get_tick_params().get("labelsize", self._look("labelsize"))
+        size = self.scale.get_tick_params().get("labelsize", self._tick_style("labelsize"))
         return FontProperties(size=size)
 
     def _sizes(self, renderer: Any) -> Any:
@@ -189,7 +189,7 @@ class PlainScale(Artist):
             self._stroke(renderer, ticks.at, ends, rc["grid.color"], rc["grid.linewidth"])
         if ticks.length > 0.0:
             ends = (foot, foot + outward * ticks.length)
-            self._stroke(renderer, ticks.at, ends, self._look("color"), ticks.width)
+            self._stroke(renderer, ticks.at, ends, self._tick_style("color"), ticks.width)
 
     def _stroke(self, renderer: Any, at: FloatArray, ends: tuple[float, float], colour: str, width: float) -> None:
         """Draw parallel lines across the axis at the given places, between two ends."""
@@ -217,7 +217,7 @@ class PlainScale(Artist):
             else:
                 x = box.x0 - away - width if self.side == "left" else box.x1 + away
                 y = at - 0.5 * (height - descent)
-            self._write(renderer, x, y, text, self._font(), self._look("color"))
+            self._write(renderer, x, y, text, self._font(), self._tick_style("color"))
 
     def _draw_power(self, renderer: Any, depth: float) -> None:
         text = self._power()
@@ -228,7 +228,7 @@ class PlainScale(Artist):
             x, y = box.x1 - width, box.y0 - depth - _POWER_PAD * self._pixel - (height - descent)
         else:
             x, y = box.x0 if self.side == "left" else box.x1, box.y1 + _POWER_PAD * self._pixel + descent
-        self._write(renderer, x, y, text, self._font(), self._look("color"))
+        self._write(renderer, x, y, text, self._font(), self._tick_style("color"))
 
     def _draw_label(self, renderer: Any, depth: float) -> None:
         label, box = self.scale.label, self.ax.bbox

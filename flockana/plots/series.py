@@ -134,7 +134,15 @@ def distances(trajectory: Trajectory, ax: Any) -> str | None:
     ax.plot(t, least, color=BLUE, linestyle="-", linewidth=2.4, alpha=0.6, label="at the samples")
     if len(t) > 1 and not isinstance(trajectory.law, DiscreteLaw):
         bound = trajectory.closest_approach().lower_by_interval
-        ax.stairs(bound, t, baseline=None, color=VERMILLION, linestyle="--", linewidth=1.0, label="lower bound between")
+        ax.stairs(
+            bound,
+            t,
+            baseline=None,
+            color=VERMILLION,
+            linestyle="--",
+            linewidth=1.0,
+            label="lower bound between samples",
+        )
     levels(ax, zip(trajectory.law.lattice or (), "dr", (GREEN, PURPLE), (":", "-."), strict=False))
     ax.set_ylim(bottom=0.0)
     return None
@@ -147,7 +155,7 @@ def pair_distances(trajectory: Trajectory, ax: Any) -> str | None:
         return "one agent has no distances"
     least, low, middle, high, largest = pair_distance_profile(trajectory.q).T
     ax.fill_between(trajectory.t, least, largest, color=BLUE, alpha=0.15, linewidth=0.0, label="all pairs")
-    ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of them")
+    ax.fill_between(trajectory.t, low, high, color=BLUE, alpha=0.3, linewidth=0.0, label="half of the pairs")
     curves(ax, trajectory.t, ((middle, "median", BLUE, "-"), (least, "least (D)", INK, "-")))
     ax.set_ylim(bottom=0.0)
     return None

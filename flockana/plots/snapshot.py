@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 _ARROW = 0.07  # longest arrow as a share of the axes' width
 _MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3
-_AT_REST = 1e-4  # share of the law's own speed below which a run is drawn without arrows: rounding has none to show
+_AT_REST = 1e-4  # share of the law's own speed below which a run is drawn without arrows: velocities are rounding
 _ROUNDING = 1e-9  # share of a run's duration by which a time that was computed may miss its ends
 _COINCIDE = 1e-4  # share of the size of the flock below which agents are drawn as one
 

@@ -124,7 +124,9 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
     """
     points, moves = ensure_points("q", q), np.asarray(shape)
     if moves.shape != points.shape or moves.dtype.kind not in "iufc":
-        raise ArgumentError(f"shape is {moves.shape} of {moves.dtype}: expected numbers {points.shape}, as q has")
+        raise ArgumentError(
+            f"shape is {moves.shape} of {moves.dtype}: expected real numbers of shape {points.shape}, the shape of q"
+        )
     links = ensure_links(links, len(points))
     m = points.shape[1]
     axes = ensure_axes(ax, m=m)

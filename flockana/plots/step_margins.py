@@ -16,7 +16,7 @@ from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_HEIGHT, _HATCH = 0.6, "///"  # of a bar; of one that is unstable, to be told in grey
+_HEIGHT, _HATCH = 0.6, "///"  # height of a bar; hatch of an unstable one, visible in grey
 
 
 @check_kinds

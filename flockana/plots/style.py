@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from flockana.dynamics.trajectory import Trajectory
 
-# Okabe and Ito's colours: told apart with every common kind of colour vision, and here always paired with a dash
+# Okabe and Ito's colours, distinguishable with every common colour vision; always paired with a dash
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7"
 INK, MUTED, FAINT = "#222222", "#6b6b6b", "#d9d9d9"
 
@@ -91,7 +91,7 @@ def style() -> Iterator[None]:
                 yield
             finally:
                 interactive = mpl.is_interactive()
-    finally:  # a notebook's backend, if the first figure loads it here, turns this on for good
+    finally:  # a notebook's backend, if it is loaded here first, would leave this on
         mpl.interactive(interactive)
 
 
@@ -189,15 +189,15 @@ def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]],
     return decorated
 
 
-def curves(ax: Any, t: FloatArray, looks: Iterable[tuple[FloatArray, str, str, str]], *, width: float = 1.4) -> None:
+def curves(ax: Any, t: FloatArray, styles: Iterable[tuple[FloatArray, str, str, str]], *, width: float = 1.4) -> None:
     """Draw a line for each (values, label, colour, dash)."""
-    for values, label, colour, dash in looks:
+    for values, label, colour, dash in styles:
         ax.plot(t, values, color=colour, linestyle=dash, linewidth=width, label=label)
 
 
-def levels(ax: Any, looks: Iterable[tuple[float, str, str, str]]) -> None:
+def levels(ax: Any, styles: Iterable[tuple[float, str, str, str]]) -> None:
     """Draw a horizontal line for each (value, label, colour, dash)."""
-    for value, label, colour, dash in looks:
+    for value, label, colour, dash in styles:
         ax.axhline(value, color=colour, linestyle=dash, linewidth=1.1, label=label)
 
 

@@ -210,19 +210,19 @@ def zone_safety(trajectory: Trajectory, ax: Any) -> str | None:
     return None
 
 
-@over_time("agents in the zone, mean")
+@over_time("mean number of agents in the zone")
 def zone_populations(trajectory: Trajectory, ax: Any) -> None:
     """Draw the mean numbers of agents in an agent's zones of repulsion, conflict and attraction."""
-    looks = (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":"))
-    _measured(ax, trajectory, [(f"in_{zone}", zone, colour, dash) for zone, colour, dash in looks])
+    styles = (("repulsion", VERMILLION, "--"), ("conflict", PURPLE, "-."), ("attraction", GREEN, ":"))
+    _measured(ax, trajectory, [(f"in_{zone}", zone, colour, dash) for zone, colour, dash in styles])
     ax.set_ylim(bottom=0.0)
 
 
-def _measured(ax: Any, trajectory: Trajectory, looks: Iterable[tuple[str, str, str, str]]) -> bool:
+def _measured(ax: Any, trajectory: Trajectory, styles: Iterable[tuple[str, str, str, str]]) -> bool:
     """Draw the run's measures among (name, label, colour, dash); return whether there is one."""
     _law(trajectory)
     metrics = trajectory.metrics()
-    found = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in looks if name in metrics]
+    found = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in styles if name in metrics]
     curves(ax, trajectory.t, found, width=1.1)
     return bool(found)
 

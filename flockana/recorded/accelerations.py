@@ -81,6 +81,6 @@ def _of_splines(rec: Recording) -> Accelerations:
     fit = motions(rec)
     whole = fit.carried.all(axis=1) & ~np.isnan(fit.q).any(axis=(1, 2))
     if not whole.any():
-        raise ArgumentError("at no time all agents are known: fill gaps, or leave agents out by select(agents=...)")
+        raise ArgumentError("no sample has all agents: fill gaps, or leave agents out by select(agents=...)")
     t, q, p = rec.t[whole], fit.q[whole], fit.p[whole]
     return Accelerations("splines", t, fit.u[whole], fit.u_sd[whole], (t, q, p), None)

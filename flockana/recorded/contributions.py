@@ -39,29 +39,29 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
-    parts = []
-    for name in _used(law):
+    parts, rest = [], remainder(law)
+    for name in _used_gains(law):
         symbol, text = SYMBOLS[name]
         own = getattr(gains, name)
         if isinstance(own, tuple):
-            single = replace(law, gains=_only(name, own))
-            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single)))
+            single = replace(law, gains=_single_gain(name, own))
+            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single, rest)))
         else:
-            single = replace(law, gains=_only(name, 1.0))
-            parts.append(Contribution(name, symbol, text, float(own), _acts(single)))
+            single = replace(law, gains=_single_gain(name, 1.0))
+            parts.append(Contribution(name, symbol, text, float(own), _acts(single, rest)))
     return tuple(parts)
 
 
 def remainder(law: Any) -> Part | None:
-    """Return the acceleration of a law with all gains 0, such as drag; None if it is 0."""
+    """Return the acceleration of a law with all gains 0, such as drag or a feedforward; None if it is 0."""
     if not isinstance(getattr(law, "gains", None), Gains) or not any(
-        getattr(law, name, 0.0) for name in ("thrust", "brake", "told")
+        getattr(law, name, 0.0) for name in ("thrust", "brake", "feedforward")
     ):
         return None
-    return _acts(replace(law, gains=_only("", 0.0)))
+    return _acts(replace(law, gains=_single_gain("", 0.0)))
 
 
-def _used(law: Any) -> list[str]:
+def _used_gains(law: Any) -> list[str]:
     """Gains that a law uses."""
     used = []
     if law.pair is not None:
@@ -75,14 +75,14 @@ def _used(law: Any) -> list[str]:
     return used
 
 
-def _only(name: str, value: Any) -> Gains:
+def _single_gain(name: str, value: Any) -> Gains:
     return Gains(**{each: value if each == name else 0.0 for each in SYMBOLS})
 
 
-def _acts(law: Any) -> Part:
+def _acts(law: Any, rest: Part | None = None) -> Part:
     def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         u: FloatArray = law.flow(t, q, p)[0]
-        return u
+        return u if rest is None else u - rest(t, q, p)
 
     return acts
 

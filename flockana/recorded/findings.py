@@ -12,9 +12,9 @@ from flockana.recorded.accelerations import Accelerations
 from flockana.recorded.contributions import contributions, remainder
 from flockana.recorded.variants import variants
 
-_OTHER = 0.01  # relative difference of a gain that is told
+_OTHER = 0.01  # relative difference from which on a gain is reported
 _SIGMAS = 4.0  # standard errors, likewise
-_CLEAR = 0.3  # of the residual's squares: a form that leaves no more than this is told
+_CLEAR = 0.3  # of the residual's squares: a form that leaves no more is reported
 _WORTH = 1e-4  # of all squares that a form must explain beyond the law's own
 _FITS = 0.99  # share explained by which a law fits
 _EXACT = 1e-12  # share of the squares below which nothing more is sought

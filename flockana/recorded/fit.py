@@ -12,14 +12,14 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.recorded.parameters import Free
+from flockana.recorded.parameters import FreeParameters
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.shooting import Matched, matched, usual_window, windows
+from flockana.recorded.shooting import MatchResult, matched, usual_window, windows
 from flockana.recorded.steps import predicted
 
 _LEVEL = 0.95
-_UNKNOWN = 0.5  # relative standard error beyond which the data do not tell a parameter
-_TIED = 0.99  # correlation of two parameters beyond which the data tell one combination only
+_UNKNOWN = 0.5  # relative standard error beyond which a parameter is not identifiable
+_TIED = 0.99  # correlation of two parameters beyond which only one combination is identifiable
 _FAR = 1e6  # residual of a law that cannot be
 _SHORT = 0.25  # of the usual windows: these a search begins with
 _NO_WORSE = 5.0  # standard deviations of the residuals' variance, within which two fits are as good
@@ -56,7 +56,7 @@ class Fit:
     correlation: FloatArray
     misfit: float
     freedom: int
-    untold: tuple[str, ...]
+    unidentifiable: tuple[str, ...]
     message: str = ""
 
     @property
@@ -71,7 +71,7 @@ class Fit:
         lines = [f"{type(self.law).__name__} fitted; residual {self.misfit:.3g} times the accuracy"]
         for name, (low, high) in self.intervals.items():
             lines.append(f"  {name} = {self.values[name]:.5g}, between {low:.5g} and {high:.5g} (95 %)")
-        return "\n".join([*lines, *(f"  {text}" for text in self.untold)])
+        return "\n".join([*lines, *(f"  {text}" for text in self.unidentifiable)])
 
 
 def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: float | None = None) -> Fit:
@@ -114,14 +114,14 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
         raise ArgumentError(f"{type(law).__name__} is a map: expected a continuous law, such as the one that it steps")
     own.check_dimension(rec.m)
     own.check_agents(rec.n)
-    parameters = Free.of(law, free)
+    parameters = FreeParameters.of(law, free)
     noisy = rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0))
     if noisy:
         return _matched(rec, parameters, window)
     return _stepped(rec, parameters)
 
 
-def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
+def _matched(rec: Recording, parameters: FreeParameters, window: float | None) -> Fit:
     """Return the fit of solutions to windows of noisy positions."""
     if len(rec.t) < 4:
         raise ArgumentError(f"{len(rec.t)} samples: expected 4 or more of noisy positions")
@@ -133,10 +133,10 @@ def _matched(rec: Recording, parameters: Free, window: float | None) -> Fit:
     stated = rec.sd is not None and not rec.estimated
     covariance = found.covariance * (max(variance, 1.0) if stated else variance)
     misfit = sqrt(variance) if stated else np.nan
-    return _result(parameters, found.values, covariance, found.told, misfit, found.freedom, found.message)
+    return _result(parameters, found.values, covariance, found.identifiable, misfit, found.freedom, found.message)
 
 
-def _lengthened(rec: Recording, parameters: Free) -> Matched:
+def _lengthened(rec: Recording, parameters: FreeParameters) -> MatchResult:
     """Return the solutions matched to the usual windows, from the parameters that short windows give.
 
     Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
@@ -152,7 +152,7 @@ def _lengthened(rec: Recording, parameters: Free) -> Matched:
     return longer if as_good else found
 
 
-def _stepped(rec: Recording, parameters: Free) -> Fit:
+def _stepped(rec: Recording, parameters: FreeParameters) -> Fit:
     """Return the fit of each sample predicted from the one before; standard errors from the spread over agents."""
     from scipy.optimize import least_squares
 
@@ -191,19 +191,25 @@ def _stepped(rec: Recording, parameters: Free) -> Fit:
 
 
 def _result(
-    parameters: Free, values: FloatArray, covariance: FloatArray, told: Any, misfit: float, freedom: int, message: str
+    parameters: FreeParameters,
+    values: FloatArray,
+    covariance: FloatArray,
+    identifiable: Any,
+    misfit: float,
+    freedom: int,
+    message: str,
 ) -> Fit:
     names, errors = parameters.names, np.sqrt(np.maximum(np.diag(covariance), 0.0))
     scale = np.where(errors > 0.0, errors, 1.0)
-    errors = np.where(told, errors, inf)
+    errors = np.where(identifiable, errors, inf)
     correlation = covariance / np.outer(scale, scale)
-    untold = [
+    unidentifiable = [
         f"the data do not tell {name}: {value:.3g} ± {2.0 * error:.2g}"
         for name, value, error in zip(names, values, errors, strict=True)
         if error > _UNKNOWN * abs(value)
     ]
     pairs = np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
-    untold += [
+    unidentifiable += [
         f"the data tell {names[i]} and {names[j]} only together: correlation {correlation[i, j]:.4f}" for i, j in pairs
     ]
     return Fit(
@@ -213,6 +219,6 @@ def _result(
         correlation,
         misfit,
         freedom,
-        tuple(untold),
+        tuple(unidentifiable),
         message,
     )

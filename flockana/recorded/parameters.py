@@ -14,7 +14,7 @@ from flockana.recorded.contributions import SYMBOLS, contributions
 
 
 @dataclass(frozen=True)
-class Free:
+class FreeParameters:
     """Parameters of a law that a fit may change, by dotted path such as ``gains.c1_alpha``."""
 
     law: Any
@@ -22,7 +22,7 @@ class Free:
     paths: tuple[tuple[str, ...], ...]
 
     @classmethod
-    def of(cls, law: Any, names: Sequence[str] | None) -> Free:
+    def of(cls, law: Any, names: Sequence[str] | None) -> FreeParameters:
         """Return the named parameters, by default the law's gains; raise on an unknown or fixed name."""
         if names is None:
             names = [part.name for part in contributions(law) if part.name in SYMBOLS]

@@ -101,14 +101,14 @@ def _contents(
     suffix = path.suffix.lower()
     if suffix in _ARRAYS:
         by_name, arrays = columns if isinstance(columns, Mapping) else None, _ARRAYS[suffix](path)
-        return _stated(arrays) | named_arrays(arrays, str(path), columns=by_name, dt=dt)
+        return _read_metadata(arrays) | named_arrays(arrays, str(path), columns=by_name, dt=dt)
     if suffix in _DUMPS or _starts_with_item(path):
         return _dumped(path, dt, m)
     names = None if columns is None or isinstance(columns, Mapping) else list(columns)
     return table_arrays(read_text(path, names), columns=columns, dt=dt, clock=clock)
 
 
-def _stated(arrays: Mapping[str, Any]) -> dict[str, Any]:
+def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:
     """Return names, source and accuracy from the file that `Recording.save` wrote beside the samples."""
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}

@@ -124,9 +124,9 @@ class Recording(ResultCache):
         for name in _ERRORS:
             object.__setattr__(self, name, ensure_error(name, getattr(self, name), self.q.shape[:2]))
         if self.p_bound is not None and self.sd is not None:
-            raise ArgumentError("sd and p_bound are given: expected p_sd, as one kind of accuracy holds of a recording")
+            raise ArgumentError("sd and p_bound are given: expected p_sd, as a recording has one kind of accuracy")
         if self.p_sd is not None and self.bound is not None:
-            raise ArgumentError("bound and p_sd are given: expected p_bound, as one kind of accuracy holds of both")
+            raise ArgumentError("bound and p_sd are given: expected p_bound, as a recording has one kind of accuracy")
 
     def __repr__(self) -> str:
         gaps = f", {self.gaps} gaps" if self.gaps else ""

@@ -11,7 +11,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.recorded.recording import Recording
 from flockana.recorded.steps import predicted, rk4
 
-_EXACT = 1e-9  # of the largest step, to which a scheme must lead from sample to sample
+_EXACT = 1e-9  # of the largest step: how exactly a scheme must reproduce the next sample
 _EVEN = 1e-6  # of the interval, by which intervals may differ
 _BETTER = 0.02  # of the error of the law's flow, which a scheme's must be below
 

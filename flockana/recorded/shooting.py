@@ -32,17 +32,17 @@ _COARSE, _FINE = 0.4, 0.1  # of the law's time, over which slopes are carried by
 _CLOSE = 0.3  # gain that coarse slopes promise, from which on they are fine
 _NEAR = 1.0  # gain of steps by the same slopes, within which these still give the covariance
 _LEAST = 1e-6  # of its first value, below which no positive parameter goes
-_FELT = 1e-6  # squared deviations that a parameter moves the residuals by, if it is doubled, for it to be told
+_FELT = 1e-6  # least change of the squared residuals by doubling a parameter that makes it identifiable
 _DAMPED = 1e8  # damping beyond which nothing is left to try
 _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; else they are computed anew
 
 
-class Matched(NamedTuple):
+class MatchResult(NamedTuple):
     """Result of matching: parameters, covariance for unit noise, starts, residuals, their number, and outcome."""
 
     values: FloatArray
     covariance: FloatArray
-    told: npt.NDArray[np.bool_]  # parameters that the residuals feel
+    identifiable: npt.NDArray[np.bool_]  # parameters that the residuals feel
     starts: list[FloatArray]
     residuals: list[FloatArray]
     freedom: int
@@ -82,7 +82,7 @@ class Window:
         off = np.nan_to_num(self.q - self.solution(law, start, finer)[0])
         return (self.root * off.reshape(self.root.shape)).ravel()
 
-    def slopes(self, law: Any, nearby: Sequence[_Nearby], start: FloatArray, finer: int, block: float) -> FloatArray:
+    def slopes(self, law: Any, nearby: Sequence[_Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
         """Return the slopes of the law's solution over deviations in start and parameters, (K n m, 2 n m + P)."""
         q, p = self.solution(law, start, finer)
         size, (count, width) = start.size // 2, self.root.shape
@@ -95,15 +95,15 @@ class Window:
             b = min(a + step, count - 1)
             t, middle = 0.5 * float(self.t[a] + self.t[b]), (a + b) // 2
             state = [0.5 * (x[middle] + x[a + b - middle]) for x in (q, p)]
-            rate = _Rate.at(law, nearby, t, *state)
+            rate = _Linearised.at(law, nearby, t, *state)
             for k in range(a, b):
-                now = rate.carried(now, float(self.t[k + 1] - self.t[k]))
+                now = rate.propagate(now, float(self.t[k + 1] - self.t[k]))
                 found[k + 1] = now[:size]
         found *= self.root[:, :, None]
         return found.reshape(count * width, -1)
 
 
-class _Nearby(NamedTuple):
+class _Neighbour(NamedTuple):
     """Laws with a parameter increased and decreased, and the difference between the two values."""
 
     more: Any
@@ -112,7 +112,7 @@ class _Nearby(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Rate:
+class _Linearised:
     """A law's linearisation: ∂u/∂q, ∂u/∂p, and ∂u by parameters."""
 
     by_q: FloatArray
@@ -120,13 +120,13 @@ class _Rate:
     forced: FloatArray
 
     @classmethod
-    def at(cls, law: Any, nearby: Sequence[_Nearby], t: float, q: FloatArray, p: FloatArray) -> _Rate:
+    def at(cls, law: Any, nearby: Sequence[_Neighbour], t: float, q: FloatArray, p: FloatArray) -> _Linearised:
         forced = np.zeros((q.size, 2 * q.size + len(nearby)))
         for k, (more, less, by) in enumerate(nearby):
             forced[:, 2 * q.size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
         return cls(*_derivatives(law, t, q, p), forced)
 
-    def carried(self, slope: FloatArray, h: float) -> FloatArray:
+    def propagate(self, slope: FloatArray, h: float) -> FloatArray:
         """Return slopes after a step, to its third order."""
         size = len(self.by_q)
 
@@ -174,7 +174,7 @@ def windows(rec: Recording, duration: float) -> list[Window]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Normal:
+class _NormalEquations:
     """Normal equations of starts and parameters: slopes of each window, and the starts eliminated."""
 
     slopes: list[FloatArray]
@@ -184,7 +184,7 @@ class _Normal:
     damping: float
 
     @classmethod
-    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> _Normal:
+    def of(cls, slopes: list[FloatArray], count: int, damping: float) -> _NormalEquations:
         reduced, corners, across = np.zeros((count, count)), [], []
         for each in slopes:
             whole = each.T @ each
@@ -225,13 +225,13 @@ def _inverse(matrix: FloatArray) -> FloatArray:
     return found
 
 
-def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> Matched:
+def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first: FloatArray) -> MatchResult:
     """Return the parameters, and starts of windows, for which solutions of a law fit the samples best.
 
     Slopes are kept as long as steps gain what these promise: most rounds cost solutions alone.
     """
     theta, starts, damping = first.copy(), [part.start for part in parts], 0.0
-    finer, block, since, message = _fine_enough(parts, with_values(theta)), _COARSE, 0.0, ""
+    finer, block, since, message = _refinement(parts, with_values(theta)), _COARSE, 0.0, ""
     now = _residuals(parts, with_values, theta, starts, finer)
     if now is None:
         raise ArgumentError("the law cannot be integrated from the recorded starts: expected other first parameters")
@@ -266,11 +266,11 @@ def matched(parts: list[Window], with_values: Callable[[FloatArray], Any], first
         message = message or f"no end after {_ROUNDS} rounds"
         normal = _normal(parts, with_values, theta, starts, finer, _FINE)
     freedom = max(size - sum(x.size for x in starts) - len(theta), 1)
-    told = np.diag(normal.reduced) * theta**2 > _FELT
-    return Matched(theta, normal.covariance, told, starts, now, freedom, message)
+    identifiable = np.diag(normal.reduced) * theta**2 > _FELT
+    return MatchResult(theta, normal.covariance, identifiable, starts, now, freedom, message)
 
 
-def _fine_enough(parts: list[Window], law: Any) -> int:
+def _refinement(parts: list[Window], law: Any) -> int:
     """Return how much finer steps must be for their error to be negligible against the standard errors."""
     finer, coarse = 1, [part.residual(law, part.start, 1) for part in parts]
     while finer < _FINEST:
@@ -295,10 +295,10 @@ def _residuals(
 
 def _normal(
     parts: list[Window], with_values: Any, theta: FloatArray, starts: list[FloatArray], *by: Any, damping: float = 0.0
-) -> _Normal:
-    law, nearby = with_values(theta), _nearby_laws(with_values, theta)
+) -> _NormalEquations:
+    law, nearby = with_values(theta), _neighbouring_laws(with_values, theta)
     slopes = [part.slopes(law, nearby, start, *by) for part, start in zip(parts, starts, strict=True)]
-    return _Normal.of(slopes, len(theta), damping)
+    return _NormalEquations.of(slopes, len(theta), damping)
 
 
 def _squares(found: list[FloatArray]) -> float:
@@ -330,12 +330,12 @@ def _differences(function: Callable[[FloatArray], FloatArray], x: FloatArray) ->
     return np.stack(columns, axis=1)
 
 
-def _nearby_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[_Nearby]:
+def _neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatArray) -> list[_Neighbour]:
     """Return for each parameter the laws with it increased and decreased, and the difference."""
     found = []
     for k, value in enumerate(values.tolist()):
         more, less = values.copy(), values.copy()
         by = _NUDGE * (abs(value) or 1.0)
         more[k], less[k] = value + by, value - by if value != 0.0 else 0.0
-        found.append(_Nearby(with_values(more), with_values(less), float(more[k] - less[k])))
+        found.append(_Neighbour(with_values(more), with_values(less), float(more[k] - less[k])))
     return found

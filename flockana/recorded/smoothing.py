@@ -93,7 +93,7 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
     seen: npt.NDArray[np.bool_] = ~np.isnan(y)
     alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk))  # then all have the same covariances
     wide = 1 if alike else series
-    state, cov = np.zeros((series, 3)), np.broadcast_to(np.diag(_spread(y, sd)), (wide, 3, 3))
+    state, cov = np.zeros((series, 3)), np.broadcast_to(np.diag(_initial_variance(y, sd)), (wide, 3, 3))
     means, covs = np.empty((count, series, 3)), np.empty((count, wide, 3, 3))
     before, cov_before = np.empty_like(means), np.empty_like(covs)
     likelihood, use, variance = np.zeros((count, series)), seen[:, :wide], sd[:, :wide] ** 2
@@ -122,7 +122,7 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
     return _Filtered(means, np.broadcast_to(deviations, means.shape).copy(), likelihood)
 
 
-def _spread(y: FloatArray, sd: FloatArray) -> FloatArray:
+def _initial_variance(y: FloatArray, sd: FloatArray) -> FloatArray:
     """Variances of position, velocity and acceleration before the first sample: what the samples show at most."""
     sizes = [np.abs(np.diff(y, k, axis=0)) if len(y) > k else y for k in range(3)]
     largest = np.array([float(np.nanmax(x)) if np.isfinite(x).any() else 1.0 for x in sizes])

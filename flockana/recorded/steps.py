@@ -13,7 +13,7 @@ from flockana.laws.discrete import DiscreteLaw
 
 SHARE = 0.05  # of the law's time, which a step of the integration is at most
 _MOST = 2000  # steps between two samples
-_WHOLE = 1e-6  # of a step by which an interval between samples may miss a whole number of them
+_WHOLE = 1e-6  # of a step: how far an interval between samples may be from a whole number of steps
 
 
 def substeps(law: Any, interval: float, share: float = SHARE) -> int:

@@ -34,7 +34,7 @@ class Motions:
     q_sd: FloatArray  # q_sd, p_sd, u_sd: of each coordinate
     p_sd: FloatArray
     u_sd: FloatArray
-    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the data still tell the acceleration
+    carried: npt.NDArray[np.bool_]  # samples that were seen, and gaps in which the acceleration is still determined
     noise: float  # standard deviation of a coordinate, stated or estimated
 
 
@@ -63,8 +63,8 @@ def _motions(rec: Recording) -> Motions:
     for x in (q, p, u, q_sd, p_sd, u_sd):
         x[~within] = np.nan
     usual = np.sqrt(np.nanmean(np.where(rec.present, lengths(u) ** 2, np.nan), axis=0) / m)
-    told = within & (np.nan_to_num(u_sd, nan=np.inf) <= _TOLD * usual)
-    return Motions(q, p, u, q_sd, p_sd, u_sd, _whole_gaps(rec, told), fit.noise)
+    known = within & (np.nan_to_num(u_sd, nan=np.inf) <= _TOLD * usual)
+    return Motions(q, p, u, q_sd, p_sd, u_sd, _whole_gaps(rec, known), fit.noise)
 
 
 def with_velocities(rec: Recording) -> Recording:
@@ -113,11 +113,11 @@ def _gaps(rec: Recording) -> Iterator[tuple[int, int, int]]:
             yield i, int(seen[k]), int(seen[k + 1])
 
 
-def _whole_gaps(rec: Recording, told: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return a mask of samples that were seen or lie in a gap that `told` covers wholly, shape (T, n)."""
+def _whole_gaps(rec: Recording, known: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return a mask of samples that were seen or lie in a gap that `known` covers wholly, shape (T, n)."""
     carried = rec.present.copy()
     for i, a, b in _gaps(rec):
-        carried[a + 1 : b, i] = told[a + 1 : b, i].all()
+        carried[a + 1 : b, i] = known[a + 1 : b, i].all()
     return carried
 
 

@@ -69,10 +69,10 @@ def report_folder(name: str | None) -> Path:
     >>> report_folder(None).name
     'report'
     """
-    return FOLDER if name is None or not _on_all(FOLDER) else FOLDER / name
+    return FOLDER if name is None or not _covers_catalogue(FOLDER) else FOLDER / name
 
 
-def _on_all(folder: Path) -> bool:
+def _covers_catalogue(folder: Path) -> bool:
     """Return whether a folder holds a report on the whole catalogue, or one that cannot be read."""
     there = _facts(folder)
     return there is not None and there.get("of") is None
@@ -109,7 +109,7 @@ def write_report(
     None for the whole catalogue.
     """
     folder = ensure_directory(directory)
-    if of is not None and _on_all(folder):
+    if of is not None and _covers_catalogue(folder):
         folder = ensure_directory(folder / of)
     if not complete and (_facts(folder) or {}).get("complete"):
         folder = ensure_directory(folder / UNFINISHED)
@@ -206,7 +206,7 @@ def _html(
             coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
             front=front_findings(pages) if run["of"] is None else (),
             counts=[(status, counts[status]) for status in _STATUSES],
-            surprises=_surprises(pages),
+            surprises=_unexpected(pages),
             sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
             rigours=sorted({f.verdict.rigour for f in findings}),
             player_style=Markup(style()),
@@ -228,13 +228,13 @@ def _checked(pages: list[Page]) -> dict[str, str]:
     return found
 
 
-def _surprises(pages: list[Page]) -> list[tuple[str, str]]:
+def _unexpected(pages: list[Page]) -> list[tuple[str, str]]:
     """Return (anchor in the page, text) of each difference from the expected statuses."""
     found = []
     for each in pages:
         subject = each.name if isinstance(each, ScenarioPage) else "fixed"
-        if isinstance(each, ScenarioPage) and each.trouble:
-            found.append((scenario_id(each.name), each.trouble))
+        if isinstance(each, ScenarioPage) and each.early_end:
+            found.append((scenario_id(each.name), each.early_end))
         for finding in each.findings:
             found += [(verdict_id(subject, finding.verdict.theorem), text) for text in finding.surprises]
     return found

@@ -14,7 +14,7 @@ from rich.text import Text
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.pages import Finding, Page, ScenarioPage
 from flockana.report.statistics import StatisticsSection
-from flockana.report.tables import WholeTable, column, headed_table
+from flockana.report.tables import FoldingTable, column, headed_table
 from flockana.report.text import MARKS, show
 from flockana.theorems import Verdict
 from flockana.theorems.errata import SORTS, errata, erratum_of
@@ -96,7 +96,7 @@ def details(verdict: Verdict) -> Group:
     pair = erratum_of(verdict.theorem)
     lines = [*([] if pair is None else [str(pair)]), verdict.summary]
     columns = Column(max_width=26, overflow="fold"), Column(no_wrap=True), Column(ratio=1, overflow="fold")
-    table = WholeTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
+    table = FoldingTable(*columns, box=None, show_header=False, pad_edge=False, padding=(0, 1))
     for h in verdict.hypotheses:
         table.add_row(Text(f"given: {h.name}", style="bright_black"), h.status, Text(h.detail))
     whose = verdict.author
@@ -104,7 +104,7 @@ def details(verdict: Verdict) -> Group:
         if c.by != whose:
             table.add_row(Text(f"{BYLINES[whose := c.by]}:", style="bright_black"))
         margin = "" if c.margin is None else f" (margin {show(c.margin)}, error {show(c.error)})"
-        table.add_row(Text(name), _status(c.status), Text(c.account + margin))
+        table.add_row(Text(name), _status(c.status), Text(c.explanation + margin))
     return Group(title, *(Padding(Text(line), (0, 0, 0, 2)) for line in lines), Padding(table, (0, 0, 1, 2)))
 
 

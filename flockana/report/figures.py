@@ -36,11 +36,11 @@ def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Pi
     drawn = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
     owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
     draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
-    return (*((_captures(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
+    return (*((_source_instants(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
 
 
-def _captures(run: Trajectory, instants: Sequence[float]) -> Picture:
-    shown = f"As many instants as the source shows, {len(instants)}"
+def _source_instants(run: Trajectory, instants: Sequence[float]) -> Picture:
+    shown = f"The {len(instants)} instants that the source shows"
     return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
 
 

@@ -26,12 +26,12 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     longest = max((stop - start for start, stop in windows), default=0)
     return (
         Picture(
-            "Start, middle of the time until headings agree or the run ends, and end. Links join agents in or on each "
+            "Start, middle and end of the time until headings agree or the run ends. Links join agents in or on each "
             "other's circle.",
             stills(trajectory, times),
         ),
         Picture(
-            "Headings, of which no one leaves the span of those before. C = 1 where the net is connected: the nets "
+            "Headings: none leaves the range of the earlier ones. C = 1 where the net is connected: the nets "
             f"are jointly connected over each of {len(windows)} contiguous windows, the longest of {longest} steps.",
             panels(
                 [

@@ -48,7 +48,7 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
         text = StringIO()
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(text, metadata={"Date": None})
-    return _page_s_own(text.getvalue())
+    return _adapt_svg(text.getvalue())
 
 
 def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
@@ -76,7 +76,7 @@ def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: floa
     return canvas
 
 
-def _page_s_own(text: str) -> str:
+def _adapt_svg(text: str) -> str:
     """Adapt matplotlib's SVG to the page: no prologue, unique ids, named colours, fewer digits."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<style.*?</style>", "", text, flags=re.DOTALL)

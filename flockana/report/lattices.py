@@ -85,8 +85,8 @@ def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
         return None
 
     text = (
-        "Algorithm 2 on hexagonal patches (E11): up to the lower mark all agents stay apart, from the upper on some "
-        "coincide for good. The larger the flock, the smaller the ratio of the gains that it bears."
+        "Algorithm 2 on hexagonal patches (E11): up to the lower mark of the ratio of gains all agents stay apart, "
+        "from the upper mark on some coincide permanently. Both fall with the number of agents."
     )
     return Picture(text, svg(lambda figure: plots().collapse_brackets(brackets, ax=figure.subplots()), (6.5, 3.4)))
 
@@ -96,12 +96,13 @@ def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
     witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
     if computed is None or witness is None:
         return None
-    together, ground = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
+    together, lowest = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
 
     text = (
-        "The barrier against collisions (E4), found numerically: V < c* excludes them, but the least V of all rises "
-        "with n until no state is left below c*; the barrier, V where two agents meet less the least V, stays near c*."
+        "The barrier against collisions (E4), found numerically. V < c* excludes collisions, but the least V of all "
+        "states rises with n until none is below c*. The barrier is the least V with two agents coincident minus the "
+        "least V of all states; it stays near c*."
     )
     return Picture(
-        text, svg(lambda figure: plots().barrier(together, ground, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
+        text, svg(lambda figure: plots().barrier(together, lowest, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
     )

@@ -39,14 +39,14 @@ def place_axes(figure: Any, renderer: Any, scales: Scales) -> None:
     if not places:
         return
     size = np.asarray(figure.get_size_inches(), dtype=np.float64)
-    _put(places, np.tile(_AROUND, (len(places), 1)), size)
+    _set_positions(places, np.tile(_AROUND, (len(places), 1)), size)
     around = np.zeros((len(places), len(_AROUND)))
     for _ in range(_ROUNDS):
         measured = np.array([_around(place.ax, renderer, scales) for place in places])
         if (measured <= around + 0.5 * _PAD).all():
             return
         around = np.maximum(around, measured)  # never less: fewer numbers make room for more
-        _put(places, around, size)
+        _set_positions(places, around, size)
 
 
 def _place(ax: Any) -> _Place:
@@ -102,7 +102,7 @@ def _titles(ax: Any) -> list[Text]:
     return [text for text in texts if text.get_text()]
 
 
-def _put(places: list[_Place], around: FloatArray, size: FloatArray) -> None:
+def _set_positions(places: list[_Place], around: FloatArray, size: FloatArray) -> None:
     """Set positions: along each direction the largest margins at each line of the grid, the rest to the axes."""
     both = list(zip(places, around.tolist(), strict=True))
     across = _intervals([(p.columns, left, right) for p, (left, right, *_) in both], places[0].widths, size[0])

@@ -14,8 +14,8 @@ LAWS = (MinimalFlocking, DiscreteMinimalFlocking)
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw the figures of any flock, and distances, speeds and alignment as in Fig. 10."""
     caption = (
-        "As in Fig. 10: distances of all pairs (greatest, median and least), which are said to come to rest; speeds "
-        "of the agents; C = 1 where all move one way."
+        "As in Fig. 10: distances of all pairs (greatest, median and least), which the paper says become constant; "
+        "speeds of the agents; C = 1 where all move one way."
     )
     apart = Chart("distances of pairs (length)", trajectory.t, profile_curves(trajectory))
     charts = [apart, speeds(trajectory), measured(trajectory, "coordination")]

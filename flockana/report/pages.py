@@ -14,7 +14,7 @@ from flockana.player.page import text_of
 from flockana.player.scene import scene
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
@@ -81,7 +81,7 @@ class ScenarioPage:
     facts: tuple[tuple[str, str], ...]  # how it was run, by name
     findings: tuple[Finding, ...]
     pictures: tuple[Picture, ...] = ()  # its figures; empty if none were drawn
-    trouble: str = ""  # why the run ended early; empty if it did not
+    early_end: str = ""  # why the run ended early; empty if it did not
     references: tuple[str, ...] = ()  # keys of the bibliography
     play: str = ""  # the run for the player, as text (`flockana.player`); empty if there are no figures
 
@@ -89,7 +89,7 @@ class ScenarioPage:
     def surprises(self) -> tuple[str, ...]:
         """Return a line for each difference from the expected, including a run that ended early."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
-        return (self.trouble, *surprises) if self.trouble else surprises
+        return (self.early_end, *surprises) if self.early_end else surprises
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
     if isinstance(result, FixedResult):
         return FixedPage(_finding(result.verdict, result.theorem, result.theorem.expected))
     scenario, run = result.scenario, result.trajectory
-    trouble = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
+    early_end = "" if run.status == "complete" else f"the run of {scenario.name} {run.status}: {run.message}"
     return ScenarioPage(
         scenario.name,
         scenario.title,
@@ -130,7 +130,7 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         _facts(scenario, run),
         tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
         _pictures(scenario, run) if figures else (),
-        trouble,
+        early_end,
         tuple(scenario.references),
         _play(scenario, run, result.verdicts) if figures else "",
     )

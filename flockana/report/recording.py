@@ -58,7 +58,7 @@ def recording_page(
             (name, f"{fitted.values[name]:.5g}", f"{a:.5g} to {b:.5g}") for name, (a, b) in fitted.intervals.items()
         ]
         parts.append("<h2>Fit</h2>" + html_table(rows, ("parameter", "value", "95 % interval")))
-        parts += [f"<p>{escape(text)}</p>" for text in fitted.untold]
+        parts += [f"<p>{escape(text)}</p>" for text in fitted.unidentifiable]
     for verdict in verdicts:
         rows_: list[tuple[str, str, str]] = [(f"given: {h.name}", h.status, h.detail) for h in verdict.hypotheses]
         rows_ += [(c.name, c.status, c.detail) for c in verdict.claims]

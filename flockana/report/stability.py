@@ -26,8 +26,8 @@ from flockana.stability.translational import CentreOfMass
 from flockana.theorems import Verdict
 
 _LONGER = (
-    "At n = 30 a longer search than this report's (module flockana.stability.design) gave 1.740 alike and 2.061 per "
-    "agent with the rotation counted, 18 % faster, and 2.236 and 2.247 with it apart, 0.5 %"
+    "At n = 30 a longer search than this report's (module flockana.stability.design) gave rates of 1.740 with common "
+    "gains and 2.061 with gains per agent, 18 % faster, if the rotation counts, and 2.236 and 2.247, 0.5 %, if not"
 )
 
 
@@ -147,9 +147,9 @@ def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture
     for kind, flock in flocks:
         zero = ", ".join(mode.name for mode in flock.zero_modes)
         text = (
-            f"Poles and slowest modes of the shape of a hexagon of 19 under {kind}. Set apart: {zero}. Spectral "
-            f"abscissa {flock.spectral_abscissa:.4f}, of the shape {-flock.structural_decay_rate:.4f}, per time unit. "
-            "Arrows: displacements at one instant; orange: the path of an agent in the undamped mode."
+            f"Poles and slowest modes of the shape of a hexagon of 19 under {kind}. Zero modes, not counted: {zero}. "
+            f"Spectral abscissa {flock.spectral_abscissa:.4f}, of the shape {-flock.structural_decay_rate:.4f}, per "
+            "time unit. Arrows: displacements at one instant; orange: the path of an agent in the undamped mode."
         )
         pictures.append(Picture(text, svg(lambda figure, f=flock: _poles_and_modes(figure, f), (13.0, 3.9))))  # type: ignore[misc]
     return tuple(pictures)

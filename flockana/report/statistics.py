@@ -14,7 +14,7 @@ from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.work import COMPLETE, Record
 from flockana.report.surveys import Survey, SurveyResult
 from flockana.scenarios import Scenario, scenario
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 from flockana.theorems import theorem
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Entry:
+class ScenarioShares:
     """Shares of one scenario's claims over all seeds."""
 
     scenario: str
@@ -79,7 +79,7 @@ class StatisticsSection:
     """Shares over many seeds of the scenarios that were surveyed."""
 
     level: float  # confidence of every interval by itself
-    entries: tuple[Entry, ...]  # by scenario
+    entries: tuple[ScenarioShares, ...]  # by scenario
     picture: Picture | None = None  # all shares
 
     def to_dict(self) -> dict[str, Any]:
@@ -102,12 +102,12 @@ def gather(
     return StatisticsSection(level, tuple(entries), _picture(entries, level) if figures else None)
 
 
-def entry_of(name: str, records: Sequence[Record], level: float) -> Entry:
+def entry_of(name: str, records: Sequence[Record], level: float) -> ScenarioShares:
     """Return the shares of one scenario, from records of runs with the same options."""
     options = dict(records[0].job.options)
     item = scenario(name, records[0].job.seed, **options)
     labels = dict.fromkeys(label for record in records for label in record.claims)
-    return Entry(
+    return ScenarioShares(
         name,
         item.title,
         item.settings,
@@ -139,7 +139,7 @@ def _text(item: Scenario, name: str, claim: str) -> str:
     return next((report.text for report in item.reports if report.name == claim), claim)
 
 
-def _picture(entries: Sequence[Entry], level: float) -> Picture | None:
+def _picture(entries: Sequence[ScenarioShares], level: float) -> Picture | None:
     from flockana.plots.ensemble import draw_bars
     from flockana.report.figures import Picture
     from flockana.report.image import svg
@@ -156,7 +156,7 @@ def _picture(entries: Sequence[Entry], level: float) -> Picture | None:
         draw_bars(figure.subplots(), [*rows], shares, [row.verified.runs for row in rows.values()], level)
 
     text = (
-        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; what is "
-        "missing to 100 % is vacuous or inconclusive. The tables below say what each claim is."
+        "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; the "
+        "rest is vacuous or inconclusive. The tables below say what each claim is."
     )
     return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * len(rows))))

@@ -23,13 +23,13 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     """Return the samples nearest to some times, side by side on one scale, as HTML."""
     samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
     around = world(run.law.continuous or run.law, run, samples)
-    places = [_flat(run.q[k]) for k in samples]
-    others = [_flat(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
+    places = [_project(run.q[k]) for k in samples]
+    others = [_project(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
     balls = [
-        _flat(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
+        _project(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
     ]
     wires = around.outlines + outlines(around.solids)
-    lines = [_flat(line) for line in wires]
+    lines = [_project(line) for line in wires]
     every = np.concatenate([*places, *others, *balls, *lines])
     low, span = every.min(axis=0), float(np.ptp(every, axis=0).max()) or 1.0
     scale = 0.92 * _SIZE / span
@@ -50,13 +50,13 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
         )
         for kind, marks in (("star", around.stars), ("cross", around.crosses)):
             if marks is not None and marks[j].size:
-                inner += "".join(_mark(kind, *at) for at in put(_flat(marks[j])).tolist())
+                inner += "".join(_mark(kind, *at) for at in put(_project(marks[j])).tolist())
         image = f'<svg viewBox="0 0 {_SIZE:g} {height:.0f}" role="img" aria-label="The flock at {label}">{inner}</svg>'
         drawn.append(f'<div class="still"><p class="axis">{label}</p>{image}</div>')
     return f'<div class="panels">{"".join(drawn)}</div>'
 
 
-def _flat(points: FloatArray) -> FloatArray:
+def _project(points: FloatArray) -> FloatArray:
     """Project points for drawing: on a line to one height, in space from the player's first view."""
     if points.shape[1] == 1:
         return np.column_stack([points, np.zeros(len(points))])
@@ -86,7 +86,7 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
         return ""
     if not 0 < len(pairs) <= _MOST:
         return ""
-    ends, text = put(_flat(q)), ""
+    ends, text = put(_project(q)), ""
     for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
         a, b = (ends[pairs[kinds == kind, c]] for c in (0, 1))
         path = "".join(
@@ -100,7 +100,7 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
     text = ""
     for solid in solids:
         if isinstance(solid, Sphere):
-            x, y = put(_flat(np.array([solid.centre])))[0]
+            x, y = put(_project(np.array([solid.centre])))[0]
             text += f'<circle class="solid" cx="{x:.0f}" cy="{y:.0f}" r="{scale * solid.radius:.1f}"/>'
         elif isinstance(solid, Wall) and solid.dimension == 2:
             x, y = put(np.array([solid.par[:2]]))[0]
@@ -111,7 +111,7 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
             text += f'<polygon class="solid" points="{_points(corners)}"/>'
     for line in wires:
         kind = "solid" if len(line) != 4 and line.shape[1] == 2 else "box"
-        text += f'<polygon class="{kind}" points="{_points(put(_flat(line)).tolist())}"/>'
+        text += f'<polygon class="{kind}" points="{_points(put(_project(line)).tolist())}"/>'
     return text
 
 
@@ -128,7 +128,7 @@ def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
         axes = 0.6 * float((high - low).max()) * np.array([u / np.linalg.norm(u), np.cross(a, u) / np.linalg.norm(u)])
         for k in np.linspace(-1.0, 1.0, 5):
             for ends in (((k, -1.0), (k, 1.0)), ((-1.0, k), (1.0, k))):
-                (x0, y0), (x1, y1) = put(_flat(foot + np.array(ends) @ axes)).tolist()
+                (x0, y0), (x1, y1) = put(_project(foot + np.array(ends) @ axes)).tolist()
                 path += f"M{x0:.0f} {y0:.0f}L{x1:.0f} {y1:.0f}"
     return f'<path class="box" d="{path}"/>'
 

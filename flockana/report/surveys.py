@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flockana.base.errors import ArgumentError
 from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.scenarios import scenario, scenarios
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 
 _AT_ONCE = 10  # runs in one survey: about a second at most, so that all processes end together
 
@@ -53,7 +53,7 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
         return ()
     elif name not in scenarios() or not scenario(name, seed).reports:
         raise ArgumentError(
-            f"--seeds {count}: {name} is no scenario with a source that reports something; leave it out"
+            f"--seeds {count}: expected a scenario whose source reports an outcome, got {name}; leave --seeds out"
         )
     else:
         wanted = {name: count}

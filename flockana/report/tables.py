@@ -14,19 +14,19 @@ from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
 
-_LEAST = 16  # letters in a line of a column that wraps: in fewer nobody reads a sentence
+_LEAST = 16  # letters in a line of a column that wraps; fewer are not readable
 _WIDE = 10_000  # no table is wider
 _PIECE = re.compile(r"[^\s\-/]*[-/]|[^\s\-/]+")  # a word may be broken after a hyphen, and nowhere else
 
 
-class WholeTable(Table):
+class FoldingTable(Table):
     """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
 
     Rich itself would cut numbers and names, or leave whole columns out.
 
     Examples
     --------
-    >>> table = WholeTable(column("claim"), column("margin", right=True), box=None)
+    >>> table = FoldingTable(column("claim"), column("margin", right=True), box=None)
     >>> table.add_row("iv-printed", "1.411e+04")
     >>> Console(width=12).print(table)
     iv-printed
@@ -56,7 +56,7 @@ class WholeTable(Table):
         for row, old in zip(rows, self.rows, strict=True):
             cells = [_broken(cell, rooms[k]) if k in rooms else cell for k, cell in enumerate(row)]
             broken.add_row(*cells, style=old.style, end_section=old.end_section)
-        yield from super(WholeTable, broken).__rich_console__(console, options)
+        yield from super(FoldingTable, broken).__rich_console__(console, options)
 
     def _blocks(self, heads: list[Text], rows: list[list[Text]]) -> Iterable[RenderableType]:
         """Yield each row as a block: its name, with its values below."""
@@ -90,14 +90,14 @@ def _indent(text: Text) -> int:
     return len(text.plain) - len(text.plain.lstrip(" "))
 
 
-def _hang(text: Text) -> int:
+def _hanging_indent(text: Text) -> int:
     """Return the indentation of a text's further lines."""
     return _indent(text) + 2 if _indent(text) else 0
 
 
 def _longest_piece(text: Text) -> int:
     """Return the width of the longest part of a word between hyphens."""
-    return max((len(piece) + _hang(text) for piece in _PIECE.findall(text.plain)), default=0)
+    return max((len(piece) + _hanging_indent(text) for piece in _PIECE.findall(text.plain)), default=0)
 
 
 def _broken(text: Text, room: int) -> Text:
@@ -110,9 +110,9 @@ def _broken(text: Text, room: int) -> Text:
         for piece in _PIECE.finditer(text.plain, word.start(), word.end()):
             if piece.end() - begin + indent > room and piece.start() > begin:
                 ends.append(piece.start())
-                begin, indent = piece.start(), _hang(text)
+                begin, indent = piece.start(), _hanging_indent(text)
     lines = text.divide(ends)
-    return Text("\n" + " " * _hang(text)).join(lines) if ends else text
+    return Text("\n" + " " * _hanging_indent(text)).join(lines) if ends else text
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:
@@ -123,7 +123,7 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
     >>> headed_table(column("mode"), column("frequency", right=True)).columns[1].justify
     'right'
     """
-    return WholeTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
+    return FoldingTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
@@ -141,7 +141,7 @@ def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
     2
     """
     columns = Column(no_wrap=True, style="bright_black"), Column(overflow="fold")
-    table = WholeTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
+    table = FoldingTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
     for name, value in facts:
         table.add_row(name, Text(value))
     return table

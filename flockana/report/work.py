@@ -41,7 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems by themselves.
+    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems without a run.
 
     Examples
     --------
@@ -114,14 +114,14 @@ def check_all(
         return
     lost: list[str] = []
     with worker_pool(jobs=min(jobs, len(tasks))) as workers:
-        for done in map_in_batches(_begun_apart(tasks), _check_batch, workers, watch=watch):
+        for done in map_in_batches(_execution_order(tasks), _check_batch, workers, watch=watch):
             yield from (result for _, result in done if result is not None)
             lost += [task.name for task, result in done if result is None]
     if lost:
         raise SolverError(f"{', '.join(lost)}: the worker process ended; if memory is short, try --jobs 1")
 
 
-def _begun_apart(tasks: Sequence[Work]) -> list[Work]:
+def _execution_order(tasks: Sequence[Work]) -> list[Work]:
     """Return tasks in the order of execution: one flow first, then maps, then the others.
 
     Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,

@@ -36,19 +36,23 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
                     Chart("distances of pairs (length)", run.t, profile_curves(run), levels=radii),
                     speeds(run, [(float(law.desired_speed), "desired"), (float(law.v_max), "bound")]),
                     effort(run, [(float(law.u_max), "bound")]),
-                    Chart("agents in the zone, mean", run.t, zones),
+                    Chart("mean number of agents in the zone", run.t, zones),
                 ]
             ),
         ),
         Picture(
             "C = 1 where all move one way; R is the largest distance from the centre of mass; components of the net "
-            "within a, above 1 where the flock splits; and how near obstacles (between the steps too), walls and "
-            "aliens come.",
+            "within a, above 1 where the flock splits; and least distances from obstacles (between steps too), "
+            "walls and aliens.",
             panels(
                 [
                     *(measured(run, name) for name in ("coordination", "cohesion_radius") if has_metric(run, name)),
                     Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),)),
-                    *([Chart("distance to dangers (length)", run.t, dangers, levels=[(0.0, "")])] if dangers else []),
+                    *(
+                        [Chart("distance to obstacle, wall, alien (length)", run.t, dangers, levels=[(0.0, "")])]
+                        if dangers
+                        else []
+                    ),
                 ]
             ),
         ),

@@ -46,7 +46,7 @@ def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int
     def build(seed: int = 0) -> Scenario:
         return Scenario(
             name,
-            f"Two agents that part at {speed:g}, of π/4 at which they would part for ever",
+            f"Two agents that separate at {speed:g}; the critical speed is π/4",
             "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
             f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed.",
             CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True),

@@ -43,7 +43,7 @@ def _as_built(seed: int = 0) -> Scenario:
     )
 
 
-def _wind(seed: int = 0) -> Scenario:
+def _swinging_push(seed: int = 0) -> Scenario:
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(seed)
     q = find_equilibrium(law, hexagonal_spiral(3, 7.0)).q
@@ -62,4 +62,4 @@ def _wind(seed: int = 0) -> Scenario:
     )
 
 
-SCENARIOS: dict[str, Callable[[int], Scenario]] = {"as-built": _as_built, "wind": _wind}
+SCENARIOS: dict[str, Callable[[int], Scenario]] = {"as-built": _as_built, "wind": _swinging_push}

@@ -158,7 +158,7 @@ OPEN = (
 )
 _CLOSED = (
     Report("fragments", "the alien breaks the flock up for a while", _fragments),
-    Report("reunites", "the flock finds together again", _reunites),
+    Report("reunites", "the flock reunites", _reunites),
     Report("range", "distances reach up to 10 m when the flock is cohesive", _range),
     DISTANCES,
     KEEPS_SPEED,
@@ -275,7 +275,7 @@ _ENTRIES: dict[str, tuple[str, str, ZoneFlocking, _Start, float, tuple[Report, .
         _BARRED,
     ),
 }
-# what holds at every seed (all of 400); of the rest the report of the catalogue tells shares of seeds
+# what holds at every seed (all of 400); for the others the report gives shares of seeds
 _EXPECTED: dict[str, dict[str, Status]] = {
     "zone-51-printed": refuted("source", "source:distances", "source:coordination", "source:radius", "source:speed")
     | verified("source:bounds"),

@@ -19,7 +19,7 @@ def _chain(seed: int = 0) -> Scenario:
     p = np.array([[-1.5, 0.4], [0.0, -0.6], [0.2, 0.5], [0.1, -0.5], [-0.3, 0.6], [1.5, -0.4]])
     return Scenario(
         "links-kept",
-        "A chain of six that is thrown apart and holds",
+        "A chain of six agents, thrown apart, that stays connected",
         "Ours: six agents 0.6 apart in a chain of links of range r = 1, the outer ones flung outwards at 1.5, k = c = "
         "1. The start is fixed.",
         LinkKeeping(tuple((i, i + 1) for i in range(5))),
@@ -38,7 +38,7 @@ def _pairs(seed: int = 0) -> Scenario:
     p = np.array([[0.3, -1.0], [-0.3, -1.0], [0.3, 1.0], [-0.3, 1.0]])
     return Scenario(
         "links-parted",
-        "Two linked pairs that nothing joins: they part",
+        "Two linked pairs without a link between them: they separate",
         "Ours: two pairs of linked agents within r = 1 of each other, but not linked, that leave each other at 2; k = "
         "c = 1. The start is fixed.",
         LinkKeeping(((0, 1), (2, 3))),

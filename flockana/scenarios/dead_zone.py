@@ -118,10 +118,10 @@ def _rounding(run: Trajectory, length: float) -> float:
 
 
 _REPORTS = (
-    Report("consensus", "speeds converge to the same", _consensus),
+    Report("consensus", "speeds converge to the same value", _consensus),
     Report("together", "the agents swarm together", _together),
     Report("safe", "agents hold safe distances all the time", _safe),
-    Report("lattice", "the agents get an α-lattice", _lattice),
+    Report("lattice", "the agents form an α-lattice", _lattice),
 )
 
 
@@ -142,14 +142,14 @@ def _scenario(
 ) -> Scenario:
     generator = np.random.default_rng(seed)
     box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
-    told = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
+    notes = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
         "" if flow else " The eight instants shown are ours."
     )
     options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
     return Scenario(
         name,
         title,
-        told,
+        notes,
         law if flow else SemiImplicitEuler(law, DT),
         generator.uniform(0.0, box, (n, 2)),
         generator.uniform(-1.0, 1.0, (n, 2)),
@@ -166,7 +166,7 @@ def _scenario(
 
 
 # what holds from every start, and what holds at every seed of these settings; cohesion, the lattice and how parts of a
-# wide start end differ from seed to seed: shares of seeds tell of them
+# wide start end differ from seed to seed; the report gives shares of seeds
 _ALWAYS = verified("dead-zone-1-printed:collision", "dead-zone-1-corrected:rate", "dead-zone-1-corrected:distance")
 _CONTRACTS = refuted("dead-zone-1-printed", "dead-zone-1-printed:energy")
 
@@ -207,7 +207,7 @@ def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
     expected = dict(_ALWAYS)
     if (n, box) == (50, 40.0):
         names = "dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus"
-        expected |= _CONTRACTS | inconclusive(*names) | verified("source:together")  # contacts chatter for ever
+        expected |= _CONTRACTS | inconclusive(*names) | verified("source:together")  # contacts keep chattering
     title = "Dead zone with the printed jumps: contacts chatter"
     source = _PRINTED + " Here the jumps are as printed."
     many: dict[str, Any] = {"seeds": 200, "settings": "printed settings: force jumps"}

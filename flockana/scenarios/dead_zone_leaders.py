@@ -27,9 +27,9 @@ def _law(run: Trajectory) -> LedDeadZoneFlocking:
 def _slip(run: Trajectory) -> FloatArray:
     """Return each agent's velocity error to its leader, relative to half the leaders' velocity difference."""
     law = _law(run)
-    told = law.ties.led(float(run.t[-1]))[1]
+    leader_velocity = law.ties.led(float(run.t[-1]))[1]
     parting = 0.5 * float(np.linalg.norm(law.leaders[1].rate(0.0) - law.leaders[0].rate(0.0)))
-    slip: FloatArray = np.linalg.norm(run.p[-1] - told, axis=1) / parting
+    slip: FloatArray = np.linalg.norm(run.p[-1] - leader_velocity, axis=1) / parting
     return slip
 
 
@@ -110,7 +110,7 @@ def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
     where = "in one box" if shift == 0.0 else f"in boxes of side {_BOX:g}, {gap:g} apart"
     return Scenario(
         "dead-zone-leaders",
-        "Dead zone, two leaders: a third of the agents pinned, and the others go with whom they are near",
+        "Dead zone, two leaders: a third of the agents pinned, the others follow nearby agents",
         "Li, Yuan and Liu, sections IV and VI, in words only: agents with different leaders do not match, and to pin a "
         "fraction is enough where the leaders' acceleration is known. Equation (9) has neither; the three terms are "
         f"ours, and so are: {_N} agents, every other one with the second leader, {where}, {_PINNED} pinned with c1 = 2 "

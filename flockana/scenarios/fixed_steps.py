@@ -47,8 +47,8 @@ def _stepped(name: str, dt: float, *, settles: bool) -> Callable[[int], Scenario
             name,
             f"{_N} agents of Algorithm 2 by steps of {dt:g}, as printed",
             "Olfati-Saber 2006 prints a step of 0.01 to 0.03 s and no scheme. Here q + p dt + ½ u dt², p + u dt, all "
-            f"agents at once, dt = {dt:g}; parameters, start and γ-agent of Fig. 10 with n = {_N}; the gains, on which "
-            "the largest stable step hangs, are ours. Other runs of the paper are those of the flow.",
+            f"agents at once, dt = {dt:g}; parameters, start and γ-agent of Fig. 10 with n = {_N}; the gains, on "
+            "which the largest stable step depends, are ours. The other scenarios of the paper integrate the flow.",
             law,
             *random_start(seed, _N, 2),
             (0.0, dt * np.ceil(_END / dt)),

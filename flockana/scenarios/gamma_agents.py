@@ -28,7 +28,7 @@ _REFERENCES = ("olfati-saber-2006", "flockana")
 _DRIFT = 4.0  # by which the copies of the two halves differ from the true velocity, across the way
 
 
-def _tells_the_truth(run: Trajectory, tolerances: Tolerances) -> Claim:
+def _velocity_is_true(run: Trajectory, tolerances: Tolerances) -> Claim:
     found = consistent(run)
     margin = 0.5 if found.status == "met" else -0.5
     off = -float(found.margin or 0.0)
@@ -108,7 +108,7 @@ def _system(seed: int = 0) -> Scenario:
         (0.0, 30.0),
         seed,
         verified("energy", "os-3:i", "source"),
-        (Report("consistent", "p_r is the true velocity of q_r", _tells_the_truth),),
+        (Report("consistent", "p_r is the true velocity of q_r", _velocity_is_true),),
         references=_REFERENCES,
     )
 

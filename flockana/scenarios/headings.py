@@ -104,7 +104,7 @@ SCENARIOS = {
     ),
     "headings-part": _build(
         "headings-part",
-        "Two groups part: never linked together, two headings for ever",
+        "Two groups separate: never linked together, two headings permanently",
         2.0,
         100,
         _PARTED,

@@ -27,13 +27,13 @@ _REFERENCES = ("su-2009", "olfati-saber-2006")
 _LEADER = LinearTarget((6.0, 0.0), (1.0, 0.5))
 _CIRCLE = CircleTarget((0.0, 0.0), radius=20.0, frequency=0.05)
 _CONSENSUS = Gains().c2_alpha
-_APART = 60.0  # of a group that nobody joins
+_APART = 60.0  # distance of a group that nobody joins
 _BOX, _SPEED = 100.0, 1.0  # of the survey's start
 
 
-def _near_lattice(seed: int, n: int, shake: float) -> tuple[FloatArray, FloatArray]:
+def _near_lattice(seed: int, n: int, noise: float) -> tuple[FloatArray, FloatArray]:
     generator = np.random.default_rng(seed)
-    q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-shake, shake, (n, 2))
+    q = hexagonal_spiral(n, AlphaInteraction().d) + generator.uniform(-noise, noise, (n, 2))
     return q, generator.uniform(-0.3, 0.3, (n, 2))
 
 
@@ -64,7 +64,7 @@ def _few(seed: int = 0) -> Scenario:
         | verified("su-informed:pairs", "su-informed:one-instant", "su-informed:no-collision", "energy:balance")
         | vacuous("energy:rate")
         | verified("source"),
-        (Report("others", "who is never linked to an informed agent goes its own way", _others_drift),),
+        (Report("others", "an agent that is never linked to an informed agent goes its own way", _others_drift),),
         {
             "t_eval": np.linspace(0.0, 90.0, 241),
             "rtol": 1e-11,
@@ -73,7 +73,7 @@ def _few(seed: int = 0) -> Scenario:
     )
 
 
-def _through(seed: int = 0) -> Scenario:
+def _one_informed(seed: int = 0) -> Scenario:
     """Return erratum E13 with one informed agent, in the frame of a leader that moves with the flock."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
@@ -175,10 +175,10 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
     law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=who, agents=n)
     return Scenario(
         "informed-survey",
-        f"{informed} of {n} agents, strewn over a square, know the leader: how many follow?",
-        f"Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and more a larger share. Ours: "
-        f"n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, 0) at (1, ½), 80 "
-        "time units; an option of the scenario says how many are informed.",
+        f"{informed} of {n} agents, spread over a square, know the leader: how many follow?",
+        "Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and that more of them lead a "
+        f"larger share. Ours: n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, "
+        "0) at (1, ½), 80 time units; an option of the scenario says how many are informed.",
         law,
         generator.uniform(-0.5 * _BOX, 0.5 * _BOX, (n, 2)),
         generator.uniform(-_SPEED, _SPEED, (n, 2)),
@@ -186,7 +186,7 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
         seed,
         verified("su-informed:energy", "su-informed:distance"),
         (
-            Report("informed-follow", "all informed agents take on the leader's velocity", _some_follow),
+            Report("informed-follow", "all informed agents adopt the leader's velocity", _some_follow),
             Report("most-follow", "more than half of all agents follow", _most_follow),
         ),
         {"t_eval": np.linspace(0.0, 80.0, 81)},
@@ -198,13 +198,15 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
-    "informed-through": _through,
-    "leader-told": _varying(
-        "leader-told",
-        "A leader that circles, and tells its acceleration: the centre of mass converges to it",
+    "informed-through": _one_informed,
+    "leader-known": _varying(
+        "leader-known",
+        "A circling leader whose acceleration all agents know: the centre of mass converges to it",
         feedforward=True,
     ),
-    "leader-untold": _varying(
-        "leader-untold", "A leader that circles, and tells nothing: Algorithm 2 lags behind", feedforward=False
+    "leader-unknown": _varying(
+        "leader-unknown",
+        "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind",
+        feedforward=False,
     ),
 }

@@ -75,7 +75,7 @@ def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
     )
     # perception changes, and never is a tree
     expected = vacuous("zone-1-printed", "zone-1-corrected") | verified("source:collision-free")
-    if printed:  # what holds at every seed (all of 260); of the rest the report of the catalogue tells shares
+    if printed:  # what holds at every seed (all of 260); for the others the report gives shares of seeds
         expected |= refuted("source", "source:aligned")
     else:
         expected |= verified("source:cohesive")

@@ -41,7 +41,7 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("fragments", components - 1.5, detail, computed=components, stated="more than 1")
 
 
-def _about(name: str, measured: float, stated: float, scatter: float, text: str) -> Claim:
+def _agreement(name: str, measured: float, stated: float, scatter: float, text: str) -> Claim:
     """Return a report of agreement with a published figure from a run with another random start."""
     margin = 0.05 + scatter - abs(measured - stated)
     return finding(name, margin, text, computed=measured, stated=f"about {stated:g}")
@@ -50,13 +50,13 @@ def _about(name: str, measured: float, stated: float, scatter: float, text: str)
 def _final_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
     rank, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
     text = f"rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
-    return _about("connectivity", rank, 0.4, _SCATTER[50.0], text)
+    return _agreement("connectivity", rank, 0.4, _SCATTER[50.0], text)
 
 
 def _final_rank_as_typeset(run: Trajectory, tolerances: Tolerances) -> Claim:
     rank = _rank(run, typeset=True)
     text = f"the code as typeset keeps a unit diagonal but for the last agent: rank(A)/n = {rank:.2f}, reported 0.4"
-    return _about("connectivity-as-typeset", rank, 0.4, _SCATTER[50.0], text)
+    return _agreement("connectivity-as-typeset", rank, 0.4, _SCATTER[50.0], text)
 
 
 def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -66,7 +66,7 @@ def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
     rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **same_accuracy(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
-    return _about("unit-gains", rank, 0.7, _SCATTER[1.0], text)
+    return _agreement("unit-gains", rank, 0.7, _SCATTER[1.0], text)
 
 
 def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
@@ -219,7 +219,7 @@ REPORTS = {
         Report("connectivity", "rank(A)/n ends at about 0.4", _final_rank),
         Report("connectivity-as-typeset", "rank(A)/n ends at about 0.4, by its code", _final_rank_as_typeset),
         Report("unit-gains", "with unit gains it ends at about 0.7", _unit_gains),
-        Report("top-speed", "some agents move at about 200, others hardly", _top_speed),
+        Report("top-speed", "some agents move at about 200, others hardly move", _top_speed),
     ),
     2: (
         Report("connected", "connectivity is 1 throughout", _connected_from("connected", -0.5, "never apart")),
@@ -240,7 +240,7 @@ REPORTS = {
         Report("circle", "the flock's circle is smaller than the γ-agent's", _smaller("circle")),
         Report("anticlockwise", "it turns counterclockwise", _anticlockwise),
         Report("spikes", "single agents reach four times the flock's velocity", _spikes),
-        Report("separated", "they do as they separate from the flock, and re-attach", _separated(25)),
+        Report("separated", "they reach it as they separate from the flock, and re-attach", _separated(25)),
     ),
 }
 STATIC = (Report("coincide", "ours: α coefficients above those of γ do not suffice, pairs coincide", _coincide),)

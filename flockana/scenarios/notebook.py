@@ -120,7 +120,7 @@ def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("relaxes", _RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
 
 
-def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
+def _follows_flow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the notebook's steps follow the flow of the same law to 1 % of d."""
     law, flow = (
         run.law.law,
@@ -149,7 +149,7 @@ def _departs(run: Trajectory, tolerances: Tolerances) -> Claim:
 _UNIT_DIRECTIONS = Report("unit-direction", "n_ij is a normalised direction", _unit_directions)
 _GOAL = Report("goal", "agents move toward the common goal", _goal)
 _RELAXES = Report("relaxes", "‖u_α‖ shrinks to about a hundredth", _pairs_relax)
-_FLOW = Report("flow", "the notebook's own steps follow the flow", _departs)
+_FLOW = Report("flow", "the notebook's own steps follow the flow", _follows_flow)
 _PUSHES = Report("push", "a tenfold push below 0.05 keeps agents apart", _push)
 _VELOCITY = Report("follows", "agents take on the γ-agent's velocity", _velocity_follows)
 

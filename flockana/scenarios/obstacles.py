@@ -15,9 +15,9 @@ from flockana.environment.target import Target
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import BetaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.expected import inconclusive, vacuous, verified
 from flockana.scenarios.findings import in_source_units
-from flockana.scenarios.given import SOURCE
 from flockana.scenarios.obstacle_claims import (
     constrained,
     gets_past,
@@ -196,9 +196,9 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             reports=(_RESTS, _TOUCHES),
         ),
         _entry(
-            "told-velocity-ahead",
+            "declared-velocity-ahead",
             "Theorem 6 with p_d ≠ 0: a flock ahead of the γ-agent is pulled back",
-            "Ours, on Olfati-Saber 2006, Theorem 6 as printed, q_r fixed at 0 and p_r = p_d = (5, 0) all the same.",
+            "Ours, on Olfati-Saber 2006, Theorem 6 as printed, with q_r fixed at 0 although p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],
             target=StaticTarget((0.0, 0.0), (5.0, 0.0)),
             centre=(80.0, 0.0),
@@ -210,7 +210,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             reports=(),
         ),
         _entry(
-            "told-velocity-behind",
+            "declared-velocity-behind",
             "Theorem 6 with p_d ≠ 0: a flock that comes from behind breaks condition (76)",
             "Ours, on Olfati-Saber 2006, Theorem 6 as printed, q_r fixed at (80, 0) and p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],

@@ -115,7 +115,7 @@ def _links_settle(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("links", margin, detail, computed=end, stated=f"Ẽ <= {tolerances.deviation:g}", error=ROUNDING)
 
 
-def _meets(run: Trajectory, tolerances: Tolerances) -> Claim:
+def _centre_converges(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the centre of mass converges to the γ-agent, in the law's scales."""
     target = [run.law.target.state(float(t)) for t in run.t]
     away, slip = (
@@ -314,7 +314,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         n=50,
         m=3,
         end=60.0,
-        reports=(Report("meets", "the group meets at the γ-agent", _meets), _CONNECTED, _LATTICE),
+        reports=(Report("meets", "the group meets at the γ-agent", _centre_converges), _CONNECTED, _LATTICE),
         shipped=_RESTS,
     ),
     "collapse": _collapse,

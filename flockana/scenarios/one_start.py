@@ -1,6 +1,6 @@
 """One common start under many laws, with the theorem on each law and the outcome.
 
-A further law is one more `Entry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
+A further law is one more `LawEntry` of `ENTRIES`: its name, how it is built for this start, the theorem that speaks of
 its runs, and what that promises in a few words.
 """
 
@@ -42,7 +42,7 @@ _STRENGTH, _CONSENSUS = 40.0, 1.0  # of Tanner's laws: forces of the size of k/d
 
 
 @dataclass(frozen=True)
-class Entry:
+class LawEntry:
     """Law for the common start, with a theorem about it."""
 
     name: str  # of the law, for people
@@ -56,7 +56,7 @@ class Entry:
 class Outcome:
     """Outcome of the start under one law."""
 
-    entry: Entry  # the law and its theorem
+    entry: LawEntry  # the law and its theorem
     run: Trajectory
     verdict: Verdict  # of the theorem on the run
 
@@ -106,64 +106,64 @@ def _informing(some: int, n: int) -> Gains:
     return replace(gains, c1_gamma=tuple(gains.c1_gamma * felt), c2_gamma=tuple(gains.c2_gamma * felt))
 
 
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
+ENTRIES: tuple[LawEntry, ...] = (
+    LawEntry(
         "Algorithm 1",
         lambda q, p: Algorithm1(),
         "os-1",
         "the energy falls; if the flock stays together, velocities agree, and no two agents collide below the barrier",
         "vacuous",
     ),
-    Entry(
+    LawEntry(
         "Algorithm 2",
         lambda q, p: Algorithm2(target=_follower(q, p)),
         "os-3",
         "the flock stays within a bounded distance of the γ-agent, velocities agree, few pairs can collide",
     ),
-    Entry(
+    LawEntry(
         "Few informed",
         lambda q, p: Algorithm2(gains=_informing(3, len(q)), target=_follower(q, p)),
         "su-informed",
-        "three of ten feel the γ-agent: they take on its velocity, and so do those who stay linked to them",
+        "three of ten feel the γ-agent: they adopt its velocity, and so do agents that stay linked to them",
     ),
-    Entry(
+    LawEntry(
         "Dead zone",
         lambda q, p: DeadZoneFlocking(),
         "dead-zone-1-corrected",
         "the saturated energy falls; velocities agree within each component; distances keep above an explicit bound",
     ),
-    Entry(
+    LawEntry(
         "Cucker and Smale",
         lambda q, p: CuckerSmale(RationalWeight(strength=0.5, decay=0.25, length=RANGE)),
         "cucker-smale",
-        "every agent heeds all, with a weight that falls slowly (β < ½): from any start a flock",
+        "every agent aligns with all others, with a weight that falls slowly (β < ½): a flock from any start",
     ),
-    Entry(
+    LawEntry(
         "Ha and Liu",
         lambda q, p: CuckerSmale(RationalWeight(strength=4.0, decay=1.0, length=RANGE), mean=True),
         "ha-liu",
         "the weight falls fast (β > ½): a flock if the spread of velocities is below an integral of it",
     ),
-    Entry(
+    LawEntry(
         "Tanner, fixed net",
         lambda q, p: FixedNetFlocking(_net(q), LogPotential(_STRENGTH, AlphaInteraction().d), k2=_CONSENSUS),
         "tanner-fixed",
-        "the links of the start pull for ever: velocities agree, no two that are linked collide",
+        "the links of the start pull at all times: velocities agree, and no two linked agents collide",
     ),
-    Entry(
+    LawEntry(
         "Tanner, switching",
         lambda q, p: ProximityFlocking(LogPotential(_STRENGTH, AlphaInteraction().d), r=RANGE, k2=_CONSENSUS),
         "tanner-switching",
-        "only agents within r pull: the same, if the net stays connected",
+        "only agents within r pull: the same holds if the net stays connected",
     ),
-    Entry(
+    LawEntry(
         "Links kept",
         lambda q, p: LinkKeeping(_net(q), r=RANGE),
         "links-kept",
         "a tension without bound at r: no link reaches it, so that a connected net stays connected; nothing keeps "
         "agents apart, and here they meet",
     ),
-    Entry(
+    LawEntry(
         "Averaged headings",
         lambda q, p: HeadingAveraging(range=RANGE, speed=_SPEED, dt=0.1),
         "jlm-headings",
@@ -183,7 +183,7 @@ def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outco
     return tuple(_outcome(known[name], q, p) for name in chosen)
 
 
-def _outcome(entry: Entry, q: FloatArray, p: FloatArray) -> Outcome:
+def _outcome(entry: LawEntry, q: FloatArray, p: FloatArray) -> Outcome:
     law = entry.law(q, p)
     if isinstance(law, DiscreteLaw):
         run = simulate(law, q, p, (0.0, UNTIL))

@@ -15,11 +15,11 @@ from flockana.dynamics.tolerance import options_in_units
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
+from flockana.scenarios.checks import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.enclosure import Enclosure
-from flockana.scenarios.given import SOURCE, ensure_judged, ensure_options, ensure_parts
 from flockana.scenarios.start import accepts_lazy
 from flockana.theorems import Claim, Tolerances, Verdict, verify
-from flockana.theorems.observed import Observed, as_known, by_both_runs
+from flockana.theorems.observed import Observed, by_both_runs, with_resolution
 from flockana.theorems.theorem import Status
 
 
@@ -140,7 +140,7 @@ class Scenario:
             return ()
         used = Tolerances() if tolerances is None else tolerances
         seen = Observed.of(trajectory)
-        known = as_known((), (report.judge(seen, used) for report in self.reports), seen)
+        known = with_resolution((), (report.judge(seen, used) for report in self.reports), seen)
         return (Verdict(SOURCE, *known, used, self.name),)
 
     def in_units(self, length: float, time: float) -> Scenario:

@@ -44,7 +44,7 @@ def is_lazy(start: Any) -> bool:
     return isinstance(start, _LazyArray)
 
 
-class _Field:
+class _LazyArrayField:
     """Dataclass field that reads as an array, computed on first access."""
 
     def __init__(self, name: str) -> None:
@@ -79,7 +79,7 @@ def accepts_lazy(*names: str) -> Callable[[type[T]], type[T]]:
 
     def prepared(cls: type[T]) -> type[T]:
         for name in names:
-            setattr(cls, name, _Field(name))
+            setattr(cls, name, _LazyArrayField(name))
         return cls
 
     return prepared

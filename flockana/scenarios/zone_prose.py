@@ -69,7 +69,7 @@ def _walled(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("contained", wall, text, computed=wall, stated="> 0")
 
 
-def _hazards(run: Trajectory, tolerances: Tolerances) -> Claim:
+def _distance_from_alien(run: Trajectory, tolerances: Tolerances) -> Claim:
     gaps = lengths(run.q[:, : len(_HAZARD)] - run.extra["alien"][:, :1]).min(axis=0)
     stated = _SEEN - _SPEED * _DRIVE / np.array(_HAZARD)
     off = float(np.abs(gaps - stated).max()) / _SEEN
@@ -77,7 +77,7 @@ def _hazards(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("hazards", _AS_FAR - off, text + "w^ga/w^ss has it", computed=gaps.tolist(), stated=stated.tolist())
 
 
-def _way(run: Trajectory, tolerances: Tolerances) -> Claim:
+def _right_of_way(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that after a head-on meeting both agents follow the one with the smaller weight for the other."""
     end = run.p[-1, len(_HAZARD) :, 0].reshape(-1, 2)
     forward = np.array([1.0 if first < second else -1.0 for first, second in _GIVES_WAY])
@@ -107,7 +107,7 @@ def _unpredictable(run: Trajectory, tolerances: Tolerances) -> Claim:
     return finding("unpredictable", moved - _MOVED, text, computed=moved, stated="less predictable motions")
 
 
-_TOGETHER = Report("together", "the flock is one in the end", _together)
+_TOGETHER = Report("together", "the flock is one component at the end", _together)
 _INFORMED_REPORTS = (KEEPS_SPEED, _TOGETHER, BOUNDS)
 _BOX_REPORTS = (
     Report("reunites", "in a box fragments eventually reunite", _reunites),
@@ -115,8 +115,10 @@ _BOX_REPORTS = (
     Report("contained", "the agents stay in the box", _walled),
 )
 _INDIVIDUAL = (
-    Report("hazards", "each agent keeps the distance from an alien that its own weight gives", _hazards),
-    Report("gives-way", "of two that meet the one that heeds the other more gives way", _way),
+    Report("hazards", "each agent keeps the distance from an alien that its own weight gives", _distance_from_alien),
+    Report(
+        "gives-way", "of two agents that meet, the one with the larger weight for the other gives way", _right_of_way
+    ),
 )
 _REPEATS = Report("repeats", "the same seed gives the same run", _repeats)
 _NOISY = (
@@ -191,13 +193,13 @@ def _entry(
 
 
 def _informed(seed: int = 0, informed: int = _INFORMED) -> Scenario:
-    told = ensure_count("informed", informed)
-    if told > N:
-        raise ArgumentError(f"informed = {told}: expected 1 to {N}, the number of agents")
-    weights = ZoneWeights(speed=tuple([5.0] * told + [0.0] * (N - told)))
+    count = ensure_count("informed", informed)
+    if count > N:
+        raise ArgumentError(f"informed = {count}: expected 1 to {N}, the number of agents")
+    weights = ZoneWeights(speed=tuple([5.0] * count + [0.0] * (N - count)))
     return _entry(
         "zone-51-informed",
-        f"{told} of {N} agents are informed of the desired speed",
+        f"{count} of {N} agents are informed of the desired speed",
         "section 2.1 says that neighbours adjust and a new global speed results; start and settings as zone-51, "
         "w^ga = 0 for those that are not informed, 60 s (J14).",
         ZoneFlocking(FREE, weights),
@@ -276,7 +278,7 @@ def _scaled(seed: int = 0, n: int = 500) -> Scenario:
 def _individual(seed: int = 0) -> Scenario:
     return _entry(
         "zone-individual",
-        "weights of one's own for each neighbour and each hazard",
+        "individual weights for each neighbour and each hazard",
         "the introduction names individual weights for neighbours and hazards. Ours: three agents with w^ss = 12, 15, "
         "20 that run at an alien at rest, and two pairs that meet head on with w^ls = 2 and 20; s = 6, w^ga = 10, "
         "v^d = 3, neither cohesion nor alignment. Nothing is random.",

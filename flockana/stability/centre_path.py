@@ -58,11 +58,11 @@ def motion(target: Target) -> Motion:
     >>> motion(CircleTarget((1.0, 2.0), 3.0, 0.5)).swing.tolist()
     [(3+0j), -3j]
     """
-    told = target.harmonic if isinstance(target, Target) else None
-    if told is None:
+    path = target.harmonic if isinstance(target, Target) else None
+    if path is None:
         raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
-    start, velocity, cosine, sine, own = told.terms
-    return Motion(start, velocity, told.factor * velocity + own, cosine - 1j * sine, told.omega, told.factor)
+    start, velocity, cosine, sine, own = path.terms
+    return Motion(start, velocity, path.factor * velocity + own, cosine - 1j * sine, path.omega, path.factor)
 
 
 def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArray]:
@@ -134,7 +134,7 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     return path
 
 
-def transient(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArray) -> FloatArray:
+def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
     """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
     since = since[:, None]
     decay, square = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
@@ -145,5 +145,5 @@ def transient(gains: Gains, since: FloatArray, left: FloatArray, swift: FloatArr
     short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
     series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
     slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
-    motion: FloatArray = left * level + (swift + decay * left) * slope
+    motion: FloatArray = left * level + (velocity + decay * left) * slope
     return motion

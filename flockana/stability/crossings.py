@@ -26,7 +26,7 @@ from flockana.stability.rounding import eigen
 ComplexArray = npt.NDArray[np.complex128]
 Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-CLOSE = 1e-6  # relative: the certified lower bound of a margin lies that close to the margin
+CLOSE = 1e-6  # relative distance of the certified lower bound from the margin
 MOST = 3000  # spectra: a search that needs more certifies nothing
 _ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes are taken
 _STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative
@@ -206,7 +206,7 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
     return np.where(nearest >= least, np.sqrt(square), ends)
 
 
-def _free(at: _Spectrum, angle: float) -> float:
+def _crossing_free(at: _Spectrum, angle: float) -> float:
     """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle.
 
     Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less than
@@ -253,7 +253,7 @@ def least_crossing(
         if middle > 0.0 and delays.min() < best.least:
             found, tried = _refined(four, middle, at, int(delays.argmin()), best.delay)
             best, left = min(best, found), left - tried
-        reach = _free(at, min(b * best.least, 2.0 * pi))
+        reach = _crossing_free(at, min(b * best.least, 2.0 * pi))
         if left <= 0 or middle + reach == middle:
             return best._replace(least=0.0)
         if a < middle - reach:

@@ -296,7 +296,7 @@ def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: Float
 
 def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
     """Remove the motion of the centre of mass."""
-    free = flock.law.splits and flock.second_order.split.exact
+    free = flock.law.centre_decouples and flock.second_order.split.exact
     return x - x.mean(axis=1, keepdims=True) if free else x
 
 

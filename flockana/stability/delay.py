@@ -137,7 +137,7 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
         m = np.shape(q)[1]
         itself = np.kron(np.eye(len(zero) // m), np.ones((m, m))) > 0.0  # each agent's own block
         prompt_k[itself], prompt_d[itself] = flock.stiffness[itself], flock.damping[itself]
-        # a flock that drifts sees its neighbours lag behind, and is slowed down unless nothing binds it that way
+        # delayed neighbours of a drifting flock appear behind, which slows it down unless no force acts along the drift
         held = np.linalg.matrix_rank(flock.drifting.T @ prompt_k @ flock.drifting, tol=NEUTRAL * np.abs(prompt_k).max())
         neutral -= int(held)
     elif law.target is not None:

@@ -167,7 +167,7 @@ def design_gains(
         return _specified(problem, asked, bounds or (0.1, 20.0))
     low, high = _bounds(bounds or (0.0, 5.0), ensure_nonnegative)
     n, rng = problem.agents, np.random.default_rng(seed)
-    alike = np.repeat(_alike(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
+    alike = np.repeat(_minimise2(lambda pair: problem.abscissa(np.repeat(pair, n)), low, high), n)
     trials = [alike]
     for k in range(ensure_count("starts", starts)):
         near = alike + 0.1 * (high - low) * rng.standard_normal(2 * n)
@@ -187,13 +187,15 @@ def _specified(problem: GainProblem, asked: Specifications, bounds: Any) -> Spec
         raise ArgumentError(f"asked = {asked!r}: expected Specifications(decay=..., ...)")
     law, q = problem.law, problem.q
     if law is None or q is None:
-        raise ArgumentError("problem.law = None: expected what gain_problem(...) gives, which knows law and places")
+        raise ArgumentError(
+            "problem.law = None: expected a problem from gain_problem(...), which has the law and the positions"
+        )
     low, high = np.log(_bounds(bounds, ensure_positive)).tolist()
 
     def found(logs: FloatArray) -> SpecifiedGains:
         return evaluated(law, q, asked, *np.exp(logs).tolist())
 
-    best = _alike(lambda logs: -min(found(logs).room.values()), low, high, count=6, tries=1, most=60, finest=2e-4)
+    best = _minimise2(lambda logs: -min(found(logs).room.values()), low, high, count=6, tries=1, most=60, finest=2e-4)
     return found(best)
 
 
@@ -207,7 +209,7 @@ def _bounds(bounds: Any, ensure: Callable[[str, Any], float]) -> tuple[float, fl
     return low, high
 
 
-def _alike(
+def _minimise2(
     worth: Callable[[FloatArray], float],
     low: float,
     high: float,

@@ -197,7 +197,7 @@ class Linearisation:
         if not self.semisimple:
             raise ArgumentError(
                 f"zero modes drift ({', '.join(self.drifting) or 'combined'}): there is no limit in this frame; "
-                "take the mean off dq and dp and look at `structural`"
+                "subtract the mean from dq and dp and look at `structural`"
             )
         zero = self._dense.invariant
         kept = zero.cokernel.T @ (self.damping @ dq.ravel() + dp.ravel())  # constant in time

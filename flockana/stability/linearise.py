@@ -190,12 +190,12 @@ def _finite_jacobian(law: Law, t: float, q: FloatArray, p: FloatArray) -> csr_ar
 def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> float:
     """Largest force and relative velocity, over the law's own scales."""
     force = law.flow(t, q, p)[0]
-    if law.splits:
+    if law.centre_decouples:
         force = moving_frame(force)
     length = _length(q) if law.scales is None else law.scales.length
     scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
-    return max(_over(strongest, scale), _over(fastest, sqrt(scale * length)))
+    return max(_ratio(strongest, scale), _ratio(fastest, sqrt(scale * length)))
 
 
 def _length(q: FloatArray) -> float:
@@ -203,7 +203,7 @@ def _length(q: FloatArray) -> float:
     return float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
 
 
-def _over(value: float, scale: float) -> float:
+def _ratio(value: float, scale: float) -> float:
     """Return value/scale; for scale 0, infinite unless the value is 0."""
     return value / scale if scale > 0.0 else (inf if value > 0.0 else 0.0)
 
@@ -213,7 +213,7 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
 
     Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
     """
-    if law.splits:
+    if law.centre_decouples:
         return
     size = q.size
     stiff, drag = (float(abs(matrix[size:, part]).max()) for part in (slice(0, size), slice(size, None)))

@@ -277,7 +277,7 @@ def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapL
     off = float(np.abs(np.angle(np.exp(1j * (heading - heading[0])))).max())
     if off > _PARALLEL:
         raise ArgumentError(
-            f"headings differ by up to {off:.3g} radians: expected one velocity of all agents, with which the net stays"
+            f"headings differ by up to {off:.3g} radians: expected equal velocities, with which the net does not change"
         )
     matrix: FloatArray = law.averaging_matrix(q, heading).toarray()
     n = len(q)

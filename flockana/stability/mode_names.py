@@ -67,16 +67,16 @@ def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArra
             names, basis = [*names, name], np.column_stack([basis, rest / np.linalg.norm(rest)])
     rigid, unit = rigid_motions(q), translations(*q.shape)
     for fields, kind in ((unit, "translation"), (rigid, "rotation")):  # along no axis, or about the γ-agent
-        left = _off(kernel, basis)
+        left = _complement(kernel, basis)
         u, sizes, _ = np.linalg.svd(left.T @ fields, full_matrices=False)
-        mixed = _off(left @ u[:, sizes > 1.0 - _NAMED], basis)
+        mixed = _complement(left @ u[:, sizes > 1.0 - _NAMED], basis)
         names, basis = [*names, *[kind] * mixed.shape[1]], np.column_stack([basis, mixed])
-    soft = _off(kernel, basis)
+    soft = _complement(kernel, basis)
     names += [f"soft {k}" for k in range(1, soft.shape[1] + 1)]
     return names, np.column_stack([basis, soft])
 
 
-def _off(kernel: FloatArray, named: FloatArray) -> FloatArray:
+def _complement(kernel: FloatArray, named: FloatArray) -> FloatArray:
     """Return an orthonormal basis of a kernel's complement to `named`."""
     if kernel.shape[1] == 0:
         return kernel

@@ -27,7 +27,7 @@ ZERO = 1e-8  # of the largest row sum: what K does to a motion that costs nothin
 _SPLIT = 1e-10  # relative: how much of the centre's motion may leak into the shape where the split is called exact
 _SYMMETRIC = 1e-10  # relative
 _PURE = 0.99  # cosine to a rotation or a uniform expansion from which on a mode is named for it
-_ROUNDINGS = 8.0  # of eps √N times the largest row sum, where rows are summed that cancel
+_ROUNDINGS = 8.0  # of eps √N times the largest row sum: rounding of sums that cancel
 
 
 @dataclass(frozen=True)
@@ -180,10 +180,10 @@ class SecondOrder:
         if self.symmetric:
             values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
             kernel = vectors[:, np.abs(values) <= self.zero * self.scale]
-            return self._set_apart(kernel, kernel)
+            return self._zero_subspace(kernel, kernel)
         left, sizes, right = np.linalg.svd(stiffness)
         flat = sizes <= self.zero * self.scale
-        return self._set_apart(right[flat].T, left[:, flat])
+        return self._zero_subspace(right[flat].T, left[:, flat])
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
@@ -198,8 +198,8 @@ class SecondOrder:
             _, sizes, rows = np.linalg.svd(matrix @ rigid, full_matrices=False)
             kernels.append(rigid @ rows[sizes <= self.zero * self.scale].T)
         if kernels[0].shape != kernels[1].shape:
-            raise SolverError("a rigid motion costs nothing but is no left eigenvector of K: use the dense modes")
-        return self._set_apart(*kernels)
+            raise SolverError("a rigid motion has no stiffness but is no left eigenvector of K: use the dense modes")
+        return self._zero_subspace(*kernels)
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -224,7 +224,7 @@ class SecondOrder:
         """
         left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
         left[:size] /= pace
-        apart, turn = left.shape[1], _turn(left)
+        apart, turn = left.shape[1], _orthogonal_factor(left)
         push = np.hstack([self.stiffness.toarray() / -pace, -self.damping.toarray()])
         whole = np.vstack([np.eye(size, 2 * size, size) * pace, push])
         # A maps what is orthogonal to `left` into itself
@@ -245,7 +245,7 @@ class SecondOrder:
         modes = [modes[k] for k in order]
         return tuple(mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1))
 
-    def _set_apart(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
+    def _zero_subspace(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
         """Return generalised eigenvectors at 0 and the centre's own motion."""
         k = kernel.shape[1]
         names, kernel = name_kernel(kernel, self.q)
@@ -310,7 +310,7 @@ class SecondOrder:
         return solution
 
 
-def _turn(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
+def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
     """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right.
 
     Q is never formed: a few reflections cost a few passes over what they act on.

@@ -31,7 +31,7 @@ from flockana.stability.linearise import linearise
 from flockana.stability.maps import stepped_equation
 
 SCHEMES = {"hold": 0.5, "euler": 0.0, "semi-implicit": 1.0, "taylor": 0.5, "msn": 1.5, "msn-in-place": 1.5}
-CLOSE = 1e-6  # relative: a certified bound lies that close to the margin
+CLOSE = 1e-6  # relative distance of the certified bound from the margin
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
 _TRIALS = 24  # steps at which a search looks
 _NEAR, _FAR = 0.02, 4.0  # times the first guess: where a search begins and ends
@@ -314,15 +314,15 @@ def _searched(
 
     before = (1.0 + CLOSE) * low
     if radius(before) > 1.0:  # the bound is the margin
-        return [_leaving(flow, low, factor, in_place=in_place)]
+        return [_critical_mode(flow, low, factor, in_place=in_place)]
     for h in np.geomspace(before, max(high, 2.0 * low), _TRIALS)[1:].tolist():
         if radius(h) > 1.0:
-            return [_leaving(flow, _halved(radius, before, h), factor, in_place=in_place)]
+            return [_critical_mode(flow, _bisect(radius, before, h), factor, in_place=in_place)]
         before = h
     return []
 
 
-def _halved(radius: Callable[[float], float], low: float, high: float) -> float:
+def _bisect(radius: Callable[[float], float], low: float, high: float) -> float:
     from scipy.optimize import brentq
 
     return float(brentq(lambda h: radius(h) - 1.0, low, high, xtol=1e-12 * high, rtol=1e-12))
@@ -334,7 +334,7 @@ def _stepped(flow: Linearisation, h: float, factor: float, *, in_place: bool) ->
     return parts[0].toarray(), parts[1].toarray()
 
 
-def _leaving(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> ModePeriod:
+def _critical_mode(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> ModePeriod:
     """Mode on the unit circle at a step."""
     k, d = _stepped(flow, h, factor, in_place=in_place)
     values, vectors = np.linalg.eig(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))

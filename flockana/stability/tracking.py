@@ -40,8 +40,8 @@ def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray
     basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), since])
     fit, _, _, sizes = np.linalg.lstsq(basis, x, rcond=None)
     residual = x - basis @ fit
-    told = t.size >= _SAMPLES and sizes[-1] > _APART * sizes[0]
-    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if told else inf
+    decays = t.size >= _SAMPLES and sizes[-1] > _APART * sizes[0]
+    error = float(np.sqrt(np.mean(np.sum(residual**2, axis=1)))) if decays else inf
     return fit[0] - 1j * fit[1], error
 
 

@@ -107,7 +107,7 @@ def smooth_on(region: Region, name: str, scale: float, slope: float, *, kinks: s
             middle = (left + right) / 2
             stack += [(middle, right, depth + 1), (left, middle, depth + 1)]
             continue
-        fact = _looked_at(of, region, (left + right) / 2, name, (scale, slope), kinks)
+        fact = _visible_faults(of, region, (left + right) / 2, name, (scale, slope), kinks)
         if fact.status == "unmet":
             return [fact]
         open_.append(fact)
@@ -128,7 +128,7 @@ def _ends(region: Region, left: fmpq, right: fmpq) -> tuple[float, float]:
     return region.place(_float(left)), region.place(_float(right))
 
 
-def _looked_at(
+def _visible_faults(
     of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str
 ) -> Fact:  # fmt: skip
     """Return faults visible in values and slopes beside a point: a jump, pole, kink or missing value."""
@@ -258,7 +258,7 @@ def least_on(region: Region, scale: float) -> Least:
     best, where, looked = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
 
-    def take(left: fmpq, right: fmpq) -> None:
+    def bound_part(left: fmpq, right: fmpq) -> None:
         nonlocal best, where
         low, high, at = _lowest(of, left, right)
         if high < best:
@@ -266,7 +266,7 @@ def least_on(region: Region, scale: float) -> Least:
         heapq.heappush(heap, (down(low) if low.is_finite() else -inf, next(number), left, right))
 
     with precision(_BITS, 3):
-        take(region.left, region.right)
+        bound_part(region.left, region.right)
         while looked < MOST // 2:
             looked += 1
             low, _, left, right = heap[0]
@@ -276,8 +276,8 @@ def least_on(region: Region, scale: float) -> Least:
                 break
             heapq.heappop(heap)
             middle = (left + right) / 2
-            take(left, middle)
-            take(middle, right)
+            bound_part(left, middle)
+            bound_part(middle, right)
         return Least(min(heap[0][0], down(best)), up(best), region.place(_float(where)))
 
 

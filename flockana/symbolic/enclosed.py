@@ -218,7 +218,7 @@ def _tanh(x: Any) -> Any:
     return value
 
 
-def _wave(x: arb) -> arb:
+def _cosine_range(x: arb) -> arb:
     """Return the range of the cosine, with the maxima and minima between the ends."""
     turns = x / arb.pi()
     if x.is_exact() or not turns.rad() < 0.25:
@@ -257,8 +257,8 @@ def _acosh(x: Any) -> Any:
 _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sp.exp: _exp,
     sp.log: lambda x: _positive(x).log(),
-    sp.sin: lambda x: _with_value(x.sin(), _wave(_value(x) - arb.pi() / 2)),
-    sp.cos: lambda x: _with_value(x.cos(), _wave(_value(x))),
+    sp.sin: lambda x: _with_value(x.sin(), _cosine_range(_value(x) - arb.pi() / 2)),
+    sp.cos: lambda x: _with_value(x.cos(), _cosine_range(_value(x))),
     sp.tan: _tan,
     sp.atan: lambda x: x.atan(),
     sp.asin: lambda x: _integrated(_value(_inside(x)).asin(), (1 - x * x).rsqrt(), x),

@@ -37,12 +37,12 @@ def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
     (-12, 0.984, 1.0)
     """
     try:
-        return _Near(variable, width).of(expression)
+        return _GermVisitor(variable, width).of(expression)
     except (_UnknownError, ValueError, ZeroDivisionError, OverflowError):
         return None
 
 
-class _Near:
+class _GermVisitor:
     """Visitor that computes germs of a formula from its leaves up."""
 
     def __init__(self, variable: sp.Symbol, width: fmpq) -> None:

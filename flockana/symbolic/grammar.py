@@ -25,7 +25,7 @@ LARGEST_POWER = 64
 NODES = 1000  # of the expression
 TOWER = 3  # exponentials, or powers of the distance, within each other
 DEGREE = 4096  # of powers of powers
-_BITS = 1024  # of a whole number or a fraction that powers give
+_BITS = 1024  # largest size, in bits, of a rational number that a power gives
 _MOST_EXPONENT = 600  # of e
 _GREATEST = 1e300
 _GROWING = ("exp", "sinh", "cosh")
@@ -233,7 +233,7 @@ class _Reader:
             found = Enclosed(value, sp.Dummy()).series(arb(0))
         if found is None or found[0].contains(0):
             raise ArgumentError(
-                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or too near to it to tell"
+                f"{self.where}: the divisor {_short(ast.unparse(node))} is 0, or not distinguishable from 0"
             )
 
     def _ensure_small_power(self, base: sp.Expr, power: sp.Expr) -> None:

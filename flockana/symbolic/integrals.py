@@ -18,7 +18,7 @@ _UNKNOWN = ((-inf, inf), (-inf, inf))
 Bounds = tuple[float, float]
 
 
-def integral_least(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
+def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tuple[Bounds, Bounds]:
     """Return bounds of an integral's least value and of its value at the left end; it is 0 at the anchor."""
     total, at_anchor, lows, highs = arb(0), None, [arb(0)], [arb(0)]
     with precision(_BITS, _TERMS):

@@ -29,7 +29,7 @@ PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
 def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
     """Return the derivative of a force, one column per variable, in terms of named functions of σ."""
     aware = {}
-    for function, slope in table.items():  # the same function, but it knows its derivative
+    for function, slope in table.items():  # the same function, with its derivative
         derivative = {"fdiff": lambda self, argindex=1, slope=slope: slope(self.args[0])}
         aware[function] = UndefinedFunction(f"{function.__name__}*", real=True, __dict__=derivative)
         force = force.replace(function, aware[function])

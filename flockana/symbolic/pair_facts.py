@@ -15,8 +15,8 @@ from flockana.base.facts import Fact, FactStatus, PairFacts, conjunction
 from flockana.symbolic.decide import Least, Region, down, is_zero, least_on, sign_on, smooth_on, up
 from flockana.symbolic.enclosed import Enclosed, interval, precision, rational
 from flockana.symbolic.germs import Germ, germ
-from flockana.symbolic.integrals import integral_least
-from flockana.symbolic.pair_formula import EPS, Cut, Z
+from flockana.symbolic.integrals import least_of_integral
+from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, Z
 
 _SMALL = 1e-9  # of the scale: a jump below it may be rounding of the parameters
 _NEAR = (0, 2, 4, 8, 16, 32, 64)  # halvings of the range: how far a germ at contact may reach
@@ -35,16 +35,16 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
     return exact
 
 
-def pair_facts(cut: Cut, eps: float, strength: float, tallest: float) -> PairFacts:
+def pair_facts(cut: PiecewiseFormula, eps: float, strength: float, tallest: float) -> PairFacts:
     """Return the facts proved of a formula with its numbers."""
-    return _Decided(cut, eps, strength, tallest).facts
+    return _NumericFormula(cut, eps, strength, tallest).facts
 
 
 @dataclass(frozen=True, eq=False)
-class _Decided:
+class _NumericFormula:
     """Formula with its numbers, on which facts are decided."""
 
-    cut: Cut
+    cut: PiecewiseFormula
     eps: float
     strength: float
     tallest: float
@@ -73,13 +73,13 @@ class _Decided:
     def _marks(self) -> list[sp.Expr]:
         """Symbols of 0, the cuts and the range."""
         in_norm = self._y == Z
-        return [sp.Integer(0), *self.cut.written[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
+        return [sp.Integer(0), *self.cut.exact_marks[1:-1], sp.Symbol("r_z" if in_norm else "r", positive=True)]
 
     def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
         return [self.cut.chosen(formula, 0.5 * (a + b)) for a, b in pairwise(self.cut.marks)]
 
     @cached_property
-    def _mains(self) -> list[sp.Expr]:
+    def _main_pieces(self) -> list[sp.Expr]:
         return self._chosen(self.cut.formula.main)
 
     @cached_property
@@ -114,7 +114,7 @@ class _Decided:
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
         for formulas, what, (scale, slope), kinks in (
-            (self._mains, name, scales, "" if forces else "the force"),
+            (self._main_pieces, name, scales, "" if forces else "the force"),
             (self._weights, "the adjacency", (self.tallest, self.tallest / self.cut.end), ""),
         ):
             for k, region in enumerate(self._regions(formulas, split=False)):
@@ -144,10 +144,10 @@ class _Decided:
     def _joints(self) -> Iterator[Fact]:
         """Yield jumps where pieces meet."""
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
-        slopes = self._mains if forces else [sp.diff(each, self._y) for each in self._mains]
+        slopes = self._main_pieces if forces else [sp.diff(each, self._y) for each in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
         if not forces:
-            rows.append((self._mains, "the potential", energy))
+            rows.append((self._main_pieces, "the potential", energy))
         for k, mark in enumerate(self._marks[1:-1]):
             place = self.place(self.cut.marks[k + 1])
             for row, name, scale in rows:
@@ -156,7 +156,7 @@ class _Decided:
 
     def _end(self) -> Iterator[Fact]:
         """Yield a fault if the force or the adjacency does not vanish at the range."""
-        main, place = self._mains[-1], self.place(self.cut.end)
+        main, place = self._main_pieces[-1], self.place(self.cut.end)
         force = main if self.cut.formula.forces else sp.diff(main, self._y)
         for what, name, scale in ((force, "force", self.strength), (self._weights[-1], "adjacency", self.tallest)):
             text = f"the {name} does not vanish at the range, s = {place:g}"
@@ -234,10 +234,10 @@ class _Decided:
         """Return bounds of the least potential and of the potential at contact."""
         scale = self.strength * self.cut.end
         if self.cut.formula.forces:
-            regions = list(self._regions(self._mains))
+            regions = list(self._regions(self._main_pieces))
             length = self._point(sp.Symbol("d_z" if self._y == Z else "d", positive=True), 0)
-            return integral_least(regions, length, scale)
-        found, contact, regions = [], (-inf, inf), list(self._regions(self._mains))
+            return least_of_integral(regions, length, scale)
+        found, contact, regions = [], (-inf, inf), list(self._regions(self._main_pieces))
         for region in regions:
             left = region.left
             if left == 0:

@@ -126,13 +126,13 @@ def _ensure_derived(derivative: sp.Expr, most: int) -> None:
 
 
 @dataclass(frozen=True)
-class Cut:
+class PiecewiseFormula:
     """Pair formula with numbers for its parameters, divided where its pieces meet.
 
     Examples
     --------
     >>> formula = read_pair("Piecewise((s**2, s < k), (0, True))", "", "0", ["k"])
-    >>> Cut(formula, {sp.Symbol("k", real=True): 2.0}, 5.0).marks
+    >>> PiecewiseFormula(formula, {sp.Symbol("k", real=True): 2.0}, 5.0).marks
     (0.0, 2.0, 5.0)
     """
 
@@ -146,7 +146,7 @@ class Cut:
         return (0.0, *self._meetings, self.end)
 
     @cached_property
-    def written(self) -> tuple[sp.Expr, ...]:
+    def exact_marks(self) -> tuple[sp.Expr, ...]:
         """The marks as expressions in the parameters; the end as a number."""
         return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
 

@@ -20,7 +20,7 @@ class Constants:
     --------
     >>> x, k = sp.symbols("x k")
     >>> constants = Constants([x], 2)
-    >>> constants.taken_out(sp.sqrt(k) * x + 1), constants.values
+    >>> constants.extract_constants(sp.sqrt(k) * x + 1), constants.values
     (c2*x + 1, [sqrt(k)])
     """
 
@@ -33,21 +33,21 @@ class Constants:
         """Return the values of the constants, in the order of their places."""
         return list(self.places)
 
-    def taken_out(self, expression: sp.Expr) -> sp.Expr:
+    def extract_constants(self, expression: sp.Expr) -> sp.Expr:
         """Return an expression with symbols for its constants."""
         if not expression.free_symbols & self.variables:
-            return self._named(expression)
+            return self._symbol_for(expression)
         if isinstance(expression, sp.Add | sp.Mul):
             fixed = [each for each in expression.args if not each.free_symbols & self.variables]
-            moving = [self.taken_out(each) for each in expression.args if each.free_symbols & self.variables]
-            return expression.func(self._named(expression.func(*fixed)), *moving)
+            moving = [self.extract_constants(each) for each in expression.args if each.free_symbols & self.variables]
+            return expression.func(self._symbol_for(expression.func(*fixed)), *moving)
         if isinstance(expression, sp.Piecewise):
-            return expression.func(*((self.taken_out(value), where) for value, where in expression.args))
+            return expression.func(*((self.extract_constants(value), where) for value, where in expression.args))
         if not expression.args:
             return expression
-        return expression.func(*(self.taken_out(each) for each in expression.args))
+        return expression.func(*(self.extract_constants(each) for each in expression.args))
 
-    def _named(self, constant: sp.Expr) -> sp.Expr:
+    def _symbol_for(self, constant: sp.Expr) -> sp.Expr:
         if constant.is_Integer or (constant.is_Rational and constant.q in (2, 4)):
             return constant
         symbol = sp.Symbol(f"c{self.first + len(self.places)}", real=True)

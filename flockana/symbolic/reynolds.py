@@ -13,7 +13,7 @@ OWN = sp.Symbol("q_i", real=True)
 _PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F-; what has no stress adds nothing
 
 
-def _over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
+def _sum_over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
     """Return a sum over friends term by term, factors that do not depend on the friend in front."""
     terms = (term.as_independent(_J) for term in sp.Add.make_args(sp.expand(summand)))
     return sp.Add(*(front * sp.Sum(rest, limits) for front, rest in terms if front != 0))
@@ -21,7 +21,7 @@ def _over(summand: sp.Expr, limits: tuple[sp.Expr, ...]) -> sp.Expr:
 
 def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return a component of u_i^g, the sum of s_ij (q_j - q_i) over the friends of agent i."""
-    return sp.expand(sp.Add(*(_over(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)), part) for part in _PARTS)))
+    return sp.expand(sp.Add(*(_sum_over(STRESS[_J] * ((PLACE[_J] + shift) - (OWN + shift)), part) for part in _PARTS)))
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
@@ -32,8 +32,8 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
     """
     total = sp.S.Zero
     for part in _PARTS:
-        stress = _over(STRESS[_J], part)
-        mean = _over(STRESS[_J] * (PLACE[_J] + shift), part) / stress
+        stress = _sum_over(STRESS[_J], part)
+        mean = _sum_over(STRESS[_J] * (PLACE[_J] + shift), part) / stress
         total += stress * (mean if printed else mean - (OWN + shift))
     return sp.expand(total)
 

@@ -12,7 +12,7 @@ from flint import arb, fmpq
 from flockana.symbolic.decide import up
 from flockana.symbolic.enclosed import Enclosed, interval, precision
 from flockana.symbolic.pair_facts import exact_numbers
-from flockana.symbolic.pair_formula import EPS, Cut, S, Z
+from flockana.symbolic.pair_formula import EPS, PiecewiseFormula, S, Z
 
 _HALVINGS = 6  # of a part, for a bound within twice the slope at its middle
 _BITS = 96
@@ -27,7 +27,9 @@ class SlopeBound(NamedTuple):
     adjacency: float
 
 
-def slope_bounds(cut: Cut, eps: float, r: float, places: list[float], parts: int) -> tuple[SlopeBound, ...]:
+def slope_bounds(
+    cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
+) -> tuple[SlopeBound, ...]:
     """Return bounds of the slopes on equal parts of the range, also split at the cuts."""
     numbers, found = exact_numbers(cut.numbers, eps), []
     root = sp.sqrt(1 + EPS * S**2)

@@ -17,7 +17,7 @@ from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.wrapped import wrappers_of
 from flockana.theorems.claims import vacuous
 from flockana.theorems.fits import ensure_fits
-from flockana.theorems.observed import Observed, as_known
+from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.theorem import Hypothesis, Theorem, Tolerances, Verdict
 
@@ -179,9 +179,7 @@ def verify(
     """
     if _is_recording(trajectory):
         if basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
-            raise ArgumentError(
-                "of a recording: expected verify(theorem, recording, law=...), or d= and r= without a law"
-            )
+            raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
         from flockana.theorems.on_recordings import verify_recording, verify_recording_together
 
         used, case = Tolerances() if tolerances is None else tolerances, {"law": law, "d": d, "r": r}
@@ -278,5 +276,5 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
     ensure_fits(run)
     seen = Observed.of(run)
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    known = as_known(*examined(item, seen, tolerances), seen)
+    known = with_resolution(*examined(item, seen, tolerances), seen)
     return Verdict(item.id, *known, tolerances, subject, item.author)

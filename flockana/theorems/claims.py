@@ -63,7 +63,7 @@ def judged(
     'verified'
     """
     by_numbers, worst = _status_of(margin, about), margin.worst
-    return concluded(
+    return conclude(
         name,
         by_numbers,
         worst,
@@ -77,7 +77,7 @@ def judged(
     )
 
 
-def concluded(
+def conclude(
     name: str,
     by_numbers: Status,
     margin: Enclosure,

@@ -13,7 +13,7 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
-from flockana.theorems.claims import concluded, vacuous
+from flockana.theorems.claims import conclude, vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Theorem, Tolerances, unmet
@@ -102,7 +102,7 @@ def _stays(seen: Observed, case: _Case) -> Claim:
     """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
     radius, apart = unit * float(basin.radius), unit * float(basin.distance)
-    return _beside(
+    return _nearer(
         seen,
         case,
         "stays",
@@ -128,7 +128,7 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
         since = ball(float(run.t[first]) - float(run.t[0]))
         start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
         allowed = case.unit * float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
-    return _beside(
+    return _nearer(
         seen,
         case,
         "ultimate",
@@ -141,7 +141,7 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
     )
 
 
-def _beside(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
+def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
     """Return a proved claim that the flock is nearer to the orbit than a bound, with samples for comparison."""
     basin, run, unit = case.bound.basin, seen.given, case.unit
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
@@ -151,17 +151,17 @@ def _beside(seen: Observed, case: _Case, name: str, first: int, allowed: float, 
     margin = Enclosure(allowed - reached - error, allowed - reached, np.maximum(allowed, allowed - reached))
     by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"
     text = detail.format(reached=reached)
-    return concluded(name, by_samples, margin, about="all", proof=_PROOF, computed=reached, detail=text, **fields)
+    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached, detail=text, **fields)
 
 
 THEOREM = Theorem(
     id="disturbed-basin",
     title="A bounded disturbance leaves a flock near its certified equilibrium",
     statement=(
-        "If a disturbance d of the accelerations, its mean over the agents taken off, is at most W at all times, a "
-        "flock under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and in the end is "
-        "within W c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin "
-        "falls at the rate α wherever it is larger than (W c/α)²."
+        "If a disturbance d of the accelerations, minus its mean over the agents, is at most W at all times, a flock "
+        "under Algorithm 1 or 2 that starts deep enough in a certified basin stays in it, and is eventually within W "
+        "c/(α √(1 − e)) √(2/λ) of the orbit of the equilibrium: the strict Lyapunov function of the basin falls at "
+        "the rate α wherever it is larger than (W c/α)²."
     ),
     source="ours",
     kind="trajectory",

@@ -14,14 +14,17 @@ Sort = Literal["wrong", "incomplete", "vacuous", "confirmed"]
 SORTS: dict[Sort, str] = {
     "wrong": "false as printed",
     "incomplete": "true with a hypothesis that is missing",
-    "vacuous": "true of nothing, or of next to nothing",
-    "confirmed": "looked into, and true as printed",
+    "vacuous": "true, but of no flock or of hardly any",
+    "confirmed": "examined, and true as printed",
 }
-SOURCES = {"E": ("olfati-saber-2006",), "J": ("jond-2025",), "L": ("li-dead-zone",)}  # by the first letter of an id
-# whose errata they are
+SOURCES = {
+    "E": ("olfati-saber-2006",),
+    "J": ("jond-2025",),
+    "L": ("li-dead-zone",),
+}  # sources by the first letter of an id
 FOREWORD = (
-    "E1 to E16 are of lecture slides and of student projects on Olfati-Saber's paper of 2006; of none is it shown that "
-    "the paper has it, and where that was not looked up, the table says so. The others are of the papers named."
+    "E1 to E16 are in lecture slides and student projects on Olfati-Saber's paper of 2006. None is shown to be in the "
+    "paper itself; the last column says where that was not looked up. The others are in the papers named."
 )
 _COLUMNS = 9
 _MARKS = {"verified": "✓", "refuted": "✗", "": "·"}
@@ -37,7 +40,7 @@ class Erratum:
     E0 · slides: 1 = 2 ✗ · right: 1 = 1 ✓
     """
 
-    id: str  # of the theorem that checks it; a misprint that was only read has none of its name
+    id: str  # id of the theorem that checks it; a misprint has no theorem
     printer: str  # who prints it
     where: str
     printed: str

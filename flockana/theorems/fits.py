@@ -45,7 +45,7 @@ def _rounded_input(run: Trajectory, k: int) -> float:
         return 0.0
     try:
         slopes = run.law.derivatives(run.t[k], run.q[k], run.p[k])
-    except FlockanaError:  # where the law has none no run comes
+    except FlockanaError:  # where the law has no input, no run can be
         return 0.0
     forces = zip(slopes, (run.q[k], run.p[k]), strict=True)
     return float(sum(abs(slope) @ np.spacing(np.abs(x).ravel()) for slope, x in forces).max())

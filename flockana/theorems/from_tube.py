@@ -27,7 +27,7 @@ Pair = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Enclosed:
+class TubeAndBasin:
     """A tube, and the basin that it ends in, if it certainly ends in one.
 
     Attributes
@@ -45,7 +45,7 @@ class Enclosed:
     doubt: str
 
     @classmethod
-    def of(cls, tube: Tube, basin: BasinLike | None) -> Enclosed:
+    def of(cls, tube: Tube, basin: BasinLike | None) -> TubeAndBasin:
         """A tube with the basin that it may end in."""
         if basin is None:
             return cls(tube, None, "no certified basin was given")
@@ -127,7 +127,7 @@ def met(tube: Tube) -> dict[Pair, float]:
     return times
 
 
-def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proof: str | None = None) -> Claim:
+def no_collision(case: TubeAndBasin, needs: Iterable[Hypothesis], *, name: str, proof: str | None = None) -> Claim:
     """The claim that no two agents ever coincide: all distances are certainly positive, or a pair certainly meets."""
     from flint import arb
 
@@ -154,7 +154,7 @@ def no_collision(case: Enclosed, needs: Iterable[Hypothesis], *, name: str, proo
 
 
 def in_the_limit(
-    case: Enclosed, needs: Iterable[Hypothesis], margin: arb | None = None, *, name: str, **fields: Any
+    case: TubeAndBasin, needs: Iterable[Hypothesis], margin: arb | None = None, *, name: str, **fields: Any
 ) -> Claim:
     """Return a claim about the limit of every start: by a margin of the basin that the tube ends in, if it has one."""
     if case.basin is None:
@@ -171,7 +171,7 @@ def in_the_limit(
 
 
 def converges(
-    case: Enclosed, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str, proof: str | None = None
+    case: TubeAndBasin, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str, proof: str | None = None
 ) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]

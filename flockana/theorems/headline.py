@@ -72,8 +72,8 @@ def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
 def _listed(claims: Iterable[Claim]) -> str:
     """Each claim in short with its status; vacuous ones only where all are."""
     given = tuple(claims)
-    told = [claim for claim in given if claim.status != "vacuous"] or list(given[:1])
-    return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in told))
+    counted = [claim for claim in given if claim.status != "vacuous"] or list(given[:1])
+    return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted))
 
 
 def _short(claim: Claim) -> str:

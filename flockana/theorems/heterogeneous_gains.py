@@ -14,11 +14,11 @@ from flockana.stability.rounding import eigen
 from flockana.theorems.claims import spectral, undecided
 from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
 
-_WORTH = 0.01  # gain in the rate that counts: both searches end at roots that coalesce, and near the best only
+_WORTH = 0.01  # least relative improvement that counts: both searches end only near the best, where roots coalesce
 _CUSP = 1e-4  # relative error of a rate at coalescing roots
 _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
     ("printed", 12, {"rotation": "counted"}, "matrix as printed, rotation counted"),
-    ("apart", 12, {"rotation": "apart"}, "rotation set apart"),
+    ("apart", 12, {"rotation": "apart"}, "rotation not counted"),
     ("simplified", 30, {"form": "simplified"}, "simplified form, without ∇²V"),
 )
 
@@ -63,9 +63,9 @@ THEOREM = Theorem(
     id="heterogeneous-gains",
     title="Do gains of its own for each agent make a faster flock?",
     statement=(
-        "Per-agent c1γ and c2γ within bounds can make the slowest mode of the linearised flock decay faster than "
-        "any gains alike. The printed matrix holds the flock's rotation, which no flock at rest does: with the "
-        "rotation set apart the gain nearly vanishes."
+        "Per-agent c1γ and c2γ within bounds can make the slowest mode of the linearised flock decay faster than any "
+        "common gains. The printed matrix resists the flock's rotation, which no law of a flock at rest does: without "
+        "the rotation the improvement nearly vanishes."
     ),
     source="Montanari, Barioni, Duan, Motter, Optimal flock formation induced by agent heterogeneity",
     kind="fixed",

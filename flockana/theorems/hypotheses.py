@@ -144,7 +144,7 @@ def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hy
     return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
-def by_fact(name: str, fact: Fact) -> Hypothesis:
+def hypothesis_from_fact(name: str, fact: Fact) -> Hypothesis:
     """Return a hypothesis about a function, with the status of a fact about it.
 
     Parameters
@@ -154,7 +154,7 @@ def by_fact(name: str, fact: Fact) -> Hypothesis:
 
     Examples
     --------
-    >>> by_fact("ψ is C¹", Fact("unmet", "the force jumps at s = 1")).status
+    >>> hypothesis_from_fact("ψ is C¹", Fact("unmet", "the force jumps at s = 1")).status
     'unmet'
     """
     left = f" (open on a length of {fact.width:.2g})" if fact.status == "assumed" and fact.width > 0.0 else ""
@@ -172,7 +172,7 @@ def smooth_pair(run: Observed) -> Hypothesis:
         A run of a law with a pair interaction.
     """
     fact = Fact("met") if run.law.pair is None else run.law.pair.facts.smooth
-    return by_fact("the pair law is C¹ and vanishes at its range", fact)
+    return hypothesis_from_fact("the pair law is C¹ and vanishes at its range", fact)
 
 
 def weight_nonnegative(run: Observed) -> Hypothesis:
@@ -187,7 +187,7 @@ def weight_nonnegative(run: Observed) -> Hypothesis:
     net = getattr(law, "net", None) or law.alpha
     if net is None or law.gains.c2_alpha == 0.0:
         return Hypothesis(name, "met", detail="no velocities are averaged")
-    return by_fact(name, net.sign if isinstance(net, Weight) else net.facts.weight)
+    return hypothesis_from_fact(name, net.sign if isinstance(net, Weight) else net.facts.weight)
 
 
 def positive(run: Observed | Tube, **gains: str) -> Hypothesis:

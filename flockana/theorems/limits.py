@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.theorems.claims import concluded
+from flockana.theorems.claims import conclude
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.theorem import Claim, Hypothesis, Status
 
@@ -100,7 +100,7 @@ def limit_claim(
     margin = Enclosure.around(best.margin, best.error)
     if escape is not None and escape.certain:
         best, by_numbers, margin = escape, "refuted", Enclosure.around(-escape.margin, escape.error)
-    claim = concluded(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
+    claim = conclude(name, by_numbers, margin, needs, about="limit", proof=proof, **fields)
     proved = claim.status == "verified" and not best.certain
     if proved:  # no number of this run says how far it holds
         return replace(

@@ -23,10 +23,10 @@ def ensure_steps_of_map(run: Trajectory) -> None:
     """Raise unless the map leads from sample to sample, by some intervals from the first to the last."""
     steps = np.maximum(np.rint(np.diff(run.t) / run.law.dt), 1.0).astype(np.int64).tolist()
     for k in sorted({int(k) for k in np.linspace(0, len(steps) - 1, min(_SPREAD, len(steps)))}):
-        _ensure_leads_on(run, k, steps[k])
+        _ensure_next_step(run, k, steps[k])
 
 
-def _ensure_leads_on(run: Trajectory, k: int, steps: int) -> None:
+def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
     """Raise unless the map leads from sample k to the next, beyond what rounding may grow to over several steps."""
     for name, off, difference in _differences(run, k, steps):
         if not (off <= SAME or (steps > 1 and off <= SAME + SLACK * _growth(run, k, steps, name))):
@@ -40,7 +40,7 @@ def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, flo
     """Return (name, relative error, error) of each series at the sample after sample k."""
     scales = run.scales
     least = {"q": scales.length, "p": scales.speed, "u": scales.force}
-    for name, values in _made_again(run, k, steps, 0.0).items():
+    for name, values in _recompute(run, k, steps, 0.0).items():
         sample = (getattr(run, name) if name in least else run.extra[name])[k + 1]
         size = least.get(name, 0.0) + float(np.abs(values).max(initial=0.0))
         same = (sample == values) | (np.isnan(sample) & np.isnan(values))
@@ -50,12 +50,12 @@ def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, flo
 
 def _growth(run: Trajectory, k: int, steps: int, name: str) -> float:
     """Return the relative change of a series over the interval when the positions of sample k are perturbed."""
-    exact, nudged = (_made_again(run, k, steps, nudge)[name] for nudge in (0.0, _NUDGE))
+    exact, nudged = (_recompute(run, k, steps, nudge)[name] for nudge in (0.0, _NUDGE))
     size = float(np.abs(exact).max(initial=0.0))
     return float(np.abs(nudged - exact).max(initial=0.0)) / size if size else 0.0
 
 
-def _made_again(run: Trajectory, k: int, steps: int, nudge: float) -> dict[str, FloatArray]:
+def _recompute(run: Trajectory, k: int, steps: int, nudge: float) -> dict[str, FloatArray]:
     """Return q, p, u and the map's memory after some steps recomputed from sample k."""
     law: DiscreteLaw = run.law
     q, p, t = run.q[k] * (1.0 + nudge), run.p[k].copy(), float(run.t[k])

@@ -14,7 +14,7 @@ from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Hypothesis
 
 
-class Meeting(NamedTuple):
+class PairEnergies(NamedTuple):
     """Energies of a law's pairs, gain included.
 
     Attributes
@@ -29,18 +29,18 @@ class Meeting(NamedTuple):
     floor: float
 
 
-def meeting(run: Trajectory | Observed) -> Meeting:
+def meeting(run: Trajectory | Observed) -> PairEnergies:
     """Return the pair energies of a run's law, which has an α-interaction, for the run's number of agents."""
     pair, gain = run.law.alpha, run.law.gains.c1_alpha
     if gain == 0.0:
-        return Meeting(0.0, 0.0)
-    (least, _), (top, most) = _bounds(pair)
+        return PairEnergies(0.0, 0.0)
+    (least, _), (top, most) = _potential_bounds(pair)
     if most == -np.inf:
-        return Meeting(0.0, -np.inf)  # a pair that meets has less energy than any bound
-    return Meeting(gain * (top - least), gain * least * (run.n * (run.n - 1) // 2))
+        return PairEnergies(0.0, -np.inf)  # a pair that meets has less energy than any bound
+    return PairEnergies(gain * (top - least), gain * least * (run.n * (run.n - 1) // 2))
 
 
-def _bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
+def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return bounds of the least potential and of the potential at contact; if unproved, values at two distances."""
     least, contact = pair.facts.least, pair.facts.contact
     if np.isfinite(least[0]) and contact[0] > -np.inf:

@@ -20,13 +20,13 @@ from flockana.base.memory import ResultCache
 from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.tolerance import Floors
+from flockana.dynamics.tolerance import ErrorFloors
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.theorems.claims import with_needs
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
-from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, failure, largest_over, paired
+from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, failure, largest_over, paired
 from flockana.theorems.step_resolution import NAME
 from flockana.theorems.theorem import Claim, Hypothesis, Status
 
@@ -81,7 +81,7 @@ class Observed(ResultCache):
     def alone(cls, run: Trajectory) -> Observed:
         """Return a run as exact up to rounding, for comparisons of claims between two runs."""
         zeros = np.zeros((len(run.t), run.n))
-        return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_of(run))
+        return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_about(run))
 
     @property
     def law(self) -> Any:
@@ -114,7 +114,7 @@ class Observed(ResultCache):
         return isinstance(self.law, DiscreteLaw)
 
     @property
-    def floors(self) -> Floors:
+    def floors(self) -> ErrorFloors:
         """Least errors of the looser run: of position, speed and work."""
         return self.other.floors
 
@@ -297,16 +297,16 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
     if not seen.doubt:
         return tuple(claims)
     failed = bool(failure(seen.given))
-    told: list[Claim] = []
+    judged: list[Claim] = []
     for claim in claims:
         decided = claim.status in ("verified", "refuted") and failed and claim.rigour != "symbolic"
         status: Status = "inconclusive" if decided else claim.status
         detail = f"{claim.detail}; {seen.doubt}" if status == "inconclusive" else claim.detail
-        told.append(replace(claim, status=status, detail=detail.lstrip("; ")))
-    return tuple(told)
+        judged.append(replace(claim, status=status, detail=detail.lstrip("; ")))
+    return tuple(judged)
 
 
-def as_known(
+def with_resolution(
     hypotheses: Iterable[Hypothesis], claims: Iterable[Claim], seen: Observed
 ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
     """Return hypotheses and claims, with one more hypothesis where steps may not resolve the law."""
@@ -314,10 +314,10 @@ def as_known(
     if not seen.unresolved:
         return tuple(hypotheses), claims
     need = Hypothesis(NAME, "assumed", detail=seen.unresolved)
-    return (*hypotheses, need), tuple(_resting_on(claim, need) for claim in claims)
+    return (*hypotheses, need), tuple(_with_hypothesis(claim, need) for claim in claims)
 
 
-def _resting_on(claim: Claim, need: Hypothesis) -> Claim:
+def _with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
     """Return a claim under one more hypothesis, unless a proof decides it or it says nothing of this run."""
     if claim.rigour not in ("numeric", "statistical") or claim.status == "vacuous":
         return claim

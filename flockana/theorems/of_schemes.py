@@ -30,7 +30,7 @@ ON_STEPS = {
 _FINE = 8  # times finer than usual the flow is integrated
 
 
-def says_of_schemes(item: Theorem) -> str:
+def scheme_note(item: Theorem) -> str:
     """Return a sentence on what a theorem on motion yields for a scheme's run; empty for other theorems."""
     if item.kind != "trajectory":
         return ""

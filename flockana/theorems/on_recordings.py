@@ -26,9 +26,9 @@ from flockana.recorded.recording import Recording
 from flockana.theorems.catalogue import theorem
 from flockana.theorems.claims import vacuous
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed, as_known
+from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
-from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_of, largest_over
+from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
 from flockana.theorems.together import Verdicts, theorems_about
 
@@ -143,7 +143,7 @@ def verify_recording(
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    hypotheses, claims = as_known(*examined(item, seen, tolerances), seen)
+    hypotheses, claims = with_resolution(*examined(item, seen, tolerances), seen)
     decided = tuple(_weighed(claim, rec, first) for claim in claims)
     return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
 
@@ -190,7 +190,7 @@ def _of_samples(
     stated = Hypothesis(
         "the accuracy of the samples is stated", "met" if rec.accuracy.decides else "assumed", detail=str(rec.accuracy)
     )
-    hypotheses, claims = as_known(*item.examine(seen, tolerances), seen)
+    hypotheses, claims = with_resolution(*item.examine(seen, tolerances), seen)
     decided = tuple(_weighed(claim, rec, stated) for claim in claims)
     name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
     return Verdict(
@@ -214,8 +214,10 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     p = np.broadcast_to(follow.p, rec.q.shape)
     zeros = np.zeros(rec.q.shape)
     given = Trajectory(rec.t, rec.q, p, zeros, law, {}, run.status, run.message, {"steps": len(rec.t) - 1})
-    if seen.doubt or len(run.t) != len(rec.t) or doubt_of(given):
-        return ObservedRecording(given, run, seen.other, seen.errors, seen.doubt or doubt_of(given) or "the run ended")
+    if seen.doubt or len(run.t) != len(rec.t) or doubt_about(given):
+        return ObservedRecording(
+            given, run, seen.other, seen.errors, seen.doubt or doubt_about(given) or "the run ended"
+        )
     place, (apart, slip) = _widths(rec)[0], (rec.q - run.q, p - run.p)
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:

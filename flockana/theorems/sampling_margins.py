@@ -29,16 +29,16 @@ _TREE = ((0, 1), (1, 2), (1, 3))
 
 
 @dataclass(frozen=True)
-class Step:
+class SourceMap:
     """A source's map at an equilibrium of its law."""
 
     name: str  # of the claim
-    words: str  # whose step, of how many agents
+    words: str  # source, and number of agents
     law: DiscreteLaw  # the map
     q: FloatArray  # equilibrium, or where to look for one
 
 
-def sources_steps() -> tuple[Step, ...]:
+def sources_steps() -> tuple[SourceMap, ...]:
     """Return the sources' maps with the equilibria at which they are linearised.
 
     Examples
@@ -53,12 +53,14 @@ def sources_steps() -> tuple[Step, ...]:
     tree = MinimalFlocking(edges=_TREE, spacing=2.0)
     few, many, small = hexagonal_spiral(19, _MSN.d), hexagonal_spiral(100, _MSN.d), hexagonal_spiral(7, 1.0)
     return (
-        Step("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
-        Step("msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few),
-        Step("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
-        Step("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
-        Step("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
-        Step(
+        SourceMap("msn-few", "MSN project, cases 3 and 4, 19 agents, all at once", at_once, few),
+        SourceMap(
+            "msn-few-in-place", "MSN project, cases 3 and 4, 19 agents, in place", MSNDiscretisation(msn, 0.009), few
+        ),
+        SourceMap("msn", "MSN project, cases 3 and 4, its 100 agents, all at once", at_once, many),
+        SourceMap("notebook-1", "R² notebook, Algorithm 1, 7 agents", TaylorStep(first, 0.05), _NOTEBOOK_1.d * small),
+        SourceMap("notebook-2", "R² notebook, Algorithm 2, 7 agents", TaylorStep(second, 0.1), _NOTEBOOK_2.d * small),
+        SourceMap(
             "minimal",
             "bearing-distance paper, minimal model on a tree of 4",
             tree.discrete(0.1),
@@ -71,7 +73,7 @@ def _check(tolerances: Tolerances) -> Checked:
     return [], [_claim(step) for step in sources_steps()]
 
 
-def _claim(step: Step) -> Claim:
+def _claim(step: SourceMap) -> Claim:
     """Compare the step with the margin; where the margin is only an upper bound, judge the multipliers at the step."""
     law: Any = step.law.continuous
     rest = step.q if isinstance(law, MinimalFlocking) else find_equilibrium(law, step.q).q
@@ -96,10 +98,10 @@ THEOREM = Theorem(
     id="sampling-margins",
     title="How far from instability the sources' time steps are",
     statement=(
-        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, the "
-        "map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN project's "
-        "0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly for the step; "
-        "the R² notebook's 0.05 is half of what is stable, and its 0.1 all but all of it."
+        "A source that prints a step and simulates with it runs a map. Linearised about an equilibrium of the law, "
+        "the map is stable if all its multipliers but those of neutral motions lie in the unit disc. The MSN "
+        "project's 0.009 is stable for small flocks and not for its 100 agents, whose many links damp too strongly "
+        "for the step; the R² notebook's 0.05 is half of the largest stable step, and its 0.1 nearly all of it."
     ),
     source="ours, on the steps of the MSN project, the R² notebook and the bearing-distance paper",
     kind="fixed",

@@ -58,16 +58,16 @@ class Pair(NamedTuple):
 
 def paired(run: Trajectory) -> Pair:
     """Return a run with its second one; a map, and a run of which nothing is known, are paired with themselves."""
-    doubt = doubt_of(run)
+    doubt = doubt_about(run)
     if doubt or isinstance(run.law, DiscreteLaw):
-        return Pair(run, run, _nothing_known(run), doubt)
-    steps, states = _steps_in_common(run)
+        return Pair(run, run, _unbounded_errors(run), doubt)
+    steps, states = _common_steps(run)
     tight = "rtol" not in run.stats or TIGHTER * run.stats["rtol"] >= FINEST
     again = second_run(run, steps, TIGHTER if tight else 1.0 / TIGHTER, _longest_step(run))
     if again.status != "complete" or len(again.t) != len(steps):
         kind = "tighter" if tight else "looser"
         doubt = f"a {kind} second run ended at t = {again.t[-1]:.6g}: {again.message}"
-        return Pair(run, run, _nothing_known(run), doubt)
+        return Pair(run, run, _unbounded_errors(run), doubt)
     thinned = _at_samples_of(again, run.t)
     first, second = (thinned, run) if tight else (run, thinned)
     place, speed, _ = second.floors
@@ -109,7 +109,7 @@ def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float
     return made
 
 
-def doubt_of(run: Trajectory) -> str:
+def doubt_about(run: Trajectory) -> str:
     """Return why a run by itself shows nothing, or an empty text."""
     if reason := failure(run):
         return reason
@@ -132,12 +132,12 @@ def failure(run: Trajectory) -> str:
     return ""
 
 
-def _nothing_known(run: Trajectory) -> Errors:
+def _unbounded_errors(run: Trajectory) -> Errors:
     unknown = np.full((1, run.n), np.inf)
     return Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
 
 
-def _steps_in_common(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
     """Return the times at which the two runs are compared, and the first run's states there."""
     path = run.path
     stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))

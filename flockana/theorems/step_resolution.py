@@ -33,7 +33,7 @@ class Formula(NamedTuple):
     damping: float
 
 
-class Demand(NamedTuple):
+class NeededSteps(NamedTuple):
     """Steps that contain each interval of a run's path, and the longest ones that would resolve the law there."""
 
     t: FloatArray
@@ -62,7 +62,7 @@ def formulas_of(law: Any) -> tuple[Formula, ...]:
     )
 
 
-def demand_of(run: Trajectory, place: float) -> Demand:
+def demand_of(run: Trajectory, place: float) -> NeededSteps:
     """Return the steps of a run with the longest ones that its pair laws' slopes allow, positions known to an error."""
     t, q, p, u, slack = run.path
     step, longest = steps_of(run)[1], np.full(len(t) - 1, np.inf)
@@ -77,7 +77,7 @@ def demand_of(run: Trajectory, place: float) -> Demand:
                 hides = rate * step[k] ** 2 * way > place
                 worst = float(rate.max(where=hides, initial=0.0))
                 longest[k] = min(longest[k], RESOLVED / np.sqrt(worst) if worst > 0.0 else np.inf)
-    return Demand(t, step, longest)
+    return NeededSteps(t, step, longest)
 
 
 def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:

@@ -121,7 +121,7 @@ class Claim:
             )
 
     @property
-    def account(self) -> str:
+    def explanation(self) -> str:
         """Detail; for a vacuous claim with the unmet hypothesis in front."""
         missed = unmet(self.needs) if self.status == "vacuous" else None
         if missed is None or self.detail.startswith(does_not_hold(missed.name)):
@@ -229,7 +229,7 @@ class Verdict:
         lines += [f"  given {h.status:8} {h.name}{': ' + h.detail if h.detail else ''}" for h in self.hypotheses]
         for name, c in merged((*self.main_claims, *self.further_claims)):
             whose = "" if c.by == self.author else f"[{BYLINES[c.by]}] "
-            lines.append(f"  {name:>14} {c.status:12} {whose}{c.account}{c.cited}")
+            lines.append(f"  {name:>14} {c.status:12} {whose}{c.explanation}{c.cited}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def verdict_html(verdict: Verdict) -> str:
     """Return a verdict as an HTML table of its hypotheses and claims."""
     rows: list[tuple[str, ...]] = [(f"given: {h.name}", h.status, "", h.detail) for h in verdict.hypotheses]
-    rows += [(_named(verdict, c), c.status, number(c.margin), c.account + c.cited) for c in verdict.claims]
+    rows += [(_named(verdict, c), c.status, number(c.margin), c.explanation + c.cited) for c in verdict.claims]
     on = f" on {verdict.subject}" if verdict.subject else ""
     caption = f"{verdict.theorem}: {MARKS[verdict.status]} {verdict.status} ({verdict.rigour}){on}; {verdict.summary}"
     return html_table(rows, ("claim", "status", "margin", "in words"), caption)
@@ -23,7 +23,7 @@ def verdict_html(verdict: Verdict) -> str:
 def verdict_latex(verdict: Verdict) -> str:
     """Return the claims of a verdict as a LaTeX ``tabular`` in the style of booktabs."""
     rows = [
-        (tex(_named(verdict, c)), c.status, c.rigour, _measured(c.margin, c.error), tex(c.account + c.cited))
+        (tex(_named(verdict, c)), c.status, c.rigour, _measured(c.margin, c.error), tex(c.explanation + c.cited))
         for c in verdict.claims
     ]
     return latex_table(rows, ("claim", "status", "rigour", "margin", "in words"), "lllrp{0.45\\linewidth}")

@@ -63,17 +63,17 @@ def expected(ratio, needs, about, proof, disproof):
 @pytest.fixture
 def planted(monkeypatch):
     """All claims that a theorem makes from margins with an error, made with each planted margin instead."""
-    made, concluded = [], claims.concluded
+    made, conclude = [], claims.conclude
 
     def recorded(name, by_numbers, margin, needs=(), *, about, **fields):
         if 0.0 < (half := float(margin.half_width)) < float("inf"):
             for ratio in RATIOS:
                 number = Enclosure.around(ratio * half, half)
                 status = claims._status_of(number, about)
-                made.append((ratio, concluded(name, status, number, tuple(needs), about=about, **fields)))
-        return concluded(name, by_numbers, margin, needs, about=about, **fields)
+                made.append((ratio, conclude(name, status, number, tuple(needs), about=about, **fields)))
+        return conclude(name, by_numbers, margin, needs, about=about, **fields)
 
-    monkeypatch.setattr(claims, "concluded", recorded)
+    monkeypatch.setattr(claims, "conclude", recorded)
     return made
 
 

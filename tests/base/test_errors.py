@@ -24,8 +24,8 @@ def test_the_family():
 def test_unknown_name_suggests_and_lists():
     error = UnknownNameError("theorem", "os-11", ["os-3", "os-1"])
     assert str(error) == "unknown theorem 'os-11'; did you mean 'os-1'? Known: os-1, os-3"
-    assert str(UnknownNameError("scenario", "zzz", ["collapse"])) == "unknown scenario 'zzz'; Known: collapse"
-    assert str(UnknownNameError("scenario", None, 3)) == "unknown scenario None; Known: 3"
+    assert str(UnknownNameError("scenario", "zzz", ["collapse"])) == "unknown scenario 'zzz'; known: collapse"
+    assert str(UnknownNameError("scenario", None, 3)) == "unknown scenario None; known: 3"
 
 
 @pytest.mark.parametrize(

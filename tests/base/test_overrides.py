@@ -149,7 +149,7 @@ def test_a_law_that_defines_the_source_anew_is_integrated_with_it():
 
 def test_what_is_said_to_follow_exists():
     modules = (fl, flockana.laws.bearing_distance, flockana.interactions.dead_zone, flockana.interactions.weights)
-    kinds = {kind for module in modules for kind in vars(module).values() if hasattr(kind, "derives")}
+    kinds = {kind for module in modules for kind in vars(module).values() if hasattr(kind, "derived_methods")}
     for kind in (*kinds, *(getattr(fl, name) for name in ("AlphaInteraction", "BetaInteraction", "Algorithm1"))):
-        for source, names in kind.derives.items():
+        for source, names in kind.derived_methods.items():
             assert all(callable(getattr(kind, name)) or name == "c_star" for name in names), (kind, source)

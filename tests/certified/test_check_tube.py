@@ -18,11 +18,11 @@ def precise():
         yield
 
 
-def pair_on_a_line(weight=10.0, c1_gamma=0.0, c2_gamma=0.0, velocity=0.0, told=0.0):
+def pair_on_a_line(weight=10.0, c1_gamma=0.0, c2_gamma=0.0, velocity=0.0, declared=0.0):
     """Two agents that only a γ-agent acts on, which is at 0 at first."""
     names = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
     gain = {name: arb(x) for name, x in zip(names, (0.0, 0.0, c1_gamma, c2_gamma), strict=True)}
-    return Run(AlphaParameters(), gain, [arb(0)], [arb(velocity)], [arb(told)], 2, 1, False, (), arb(weight))
+    return Run(AlphaParameters(), gain, [arb(0)], [arb(velocity)], [arb(declared)], 2, 1, False, (), arb(weight))
 
 
 def row(*coefficients):
@@ -84,7 +84,7 @@ def test_a_defect_holds_what_the_force_has_beyond_the_order_of_the_path():
 def test_a_defect_across_a_change_of_piece_is_that_at_the_begin_and_what_its_slope_adds(t):
     """Two agents about their range: y'' − u = 6bt + c1 (y − Vt) + c2 (y' − V), for both agents alike."""
     h, b, x, speed, c1, c2 = 0.25, 0.5, 4.0, 1.0, 2.0, 0.5
-    run = pair_on_a_line(c1_gamma=c1, c2_gamma=c2, velocity=-speed, told=-speed)
+    run = pair_on_a_line(c1_gamma=c1, c2_gamma=c2, velocity=-speed, declared=-speed)
     path = [row(x - speed * t, 0, 0, b), row(x + 8.4 - 0.01 - speed * t, 0.25, 0, b)]
     box = run.at(path, arb(0).union(arb(h)))
     assert run.pieces(box[:2]) == [None]

@@ -9,7 +9,7 @@ from flockana import Algorithm1
 from flockana.certified import shells
 from flockana.certified.balls import ball
 from flockana.certified.pair_floors import LengthCells
-from flockana.certified.shells import SHELLS, Shells, Surroundings
+from flockana.certified.shells import SHELLS, BondTable, Shells
 from flockana.certified.structure import Structure
 
 LAW = Algorithm1()
@@ -33,16 +33,16 @@ def test_what_follows_from_curvatures_is_their_integral(curvatures, slopes, leve
 def test_pairs_that_may_come_into_range_have_bounds_too():
     with ctx.workdps(25):
         u = Structure.of(LAW, 3, 1)
-        around = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.5")])
+        around = BondTable(LAW, u, [arb(-8), arb(0), arb("8.5")])
         assert [bond.pairs for bond in around.bonds(fmpq(1, 20))] == [((0, 1),)]
         assert [bond.pairs for bond in around.bonds(fmpq(1, 5))] == [((0, 1),), ((1, 2),)]
-        wide = Surroundings(LAW, u, [arb(-8), arb(0), arb("8.55", "0.2")])
+        wide = BondTable(LAW, u, [arb(-8), arb(0), arb("8.55", "0.2")])
         assert [bond.pairs for bond in wide.bonds(fmpq(1, 100))] == [((0, 1),), ((1, 2),)]
 
 
 def test_pairs_of_one_bond_have_all_their_lengths_in_one_ball():
     with ctx.workdps(25):
-        around = Surroundings(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.0000005")])
+        around = BondTable(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.0000005")])
         (bond,) = around.bonds(fmpq(1, 10))
         assert bond.pairs == ((0, 1), (1, 2))
         assert bond.rest.contains(7)
@@ -58,7 +58,7 @@ def test_what_is_proved_was_asked_of_each_bond_up_to_the_end_of_each_shell(monke
 
     monkeypatch.setattr(LengthCells, "holds", noted)
     with ctx.workdps(25):
-        around = Surroundings(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.25")])
+        around = BondTable(LAW, Structure.of(LAW, 3, 1), [arb(-7), arb(0), arb("7.25")])
         floors, refused = around.proposed(0.12345678), None
         found = shells.prove(around, floors)
         assert found.radius == fmpq(1234, 10_000)
@@ -86,7 +86,7 @@ def test_what_is_proved_was_asked_of_each_bond_up_to_the_end_of_each_shell(monke
 def test_a_matrix_that_nothing_is_proved_of_leaves_no_shells(monkeypatch):
     with ctx.workdps(25):
         u = Structure.of(LAW, 2, 1)
-        around = Surroundings(LAW, u, [arb("-3.5"), arb("3.5")])
+        around = BondTable(LAW, u, [arb("-3.5"), arb("3.5")])
         floors = around.proposed(0.1)
         found = shells.prove(around, floors)
         assert found is not None
@@ -97,7 +97,7 @@ def test_a_matrix_that_nothing_is_proved_of_leaves_no_shells(monkeypatch):
 def test_a_curvature_is_below_that_of_every_matrix_in_the_balls():
     """Of two agents on a line it is 2α: with α in a ball, twice the least."""
     with ctx.workdps(25):
-        around = Surroundings(LAW, Structure.of(LAW, 2, 1), [arb("-3.5"), arb("3.5")])
+        around = BondTable(LAW, Structure.of(LAW, 2, 1), [arb("-3.5"), arb("3.5")])
         bonds = around.bonds(fmpq(1, 10))
         for along in (arb(3), arb(3, 0.5), arb(-3, 0.5)):
             found = around.curvature(bonds, [along], [fmpq(0)])

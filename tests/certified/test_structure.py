@@ -78,7 +78,7 @@ def test_products():
     ("law", "message"),
     [
         (CuckerSmale(), "expected Algorithm1 or Algorithm2 with AlphaInteraction, unwrapped"),
-        (Algorithm1(gains=Gains(c1_alpha=0.0)), "c1_alpha = 0: expected more than 0, or nothing holds the agents"),
+        (Algorithm1(gains=Gains(c1_alpha=0.0)), "c1_alpha = 0: expected more than 0, or no force holds the agents"),
         (Algorithm1(AlphaInteraction(unit=2.0)), "unit = 2: expected 1; rescale law and places by it"),
     ],
 )

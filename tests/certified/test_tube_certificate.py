@@ -92,7 +92,7 @@ def bits(value):
         *((("law", name), more, "the error may exceed") for name in ("h", "b")),
         (("law", "a"), more, "expected 0 < d < r"),
         (("law", "start", 0), more, "the error may exceed"),
-        (("law", "told", 0), more, "the error may exceed"),
+        (("law", "declared", 0), more, "the error may exceed"),
         (("distance",), more, "the least distance"),
         (("cohesion_radius",), more, "the largest radius"),
         (("energy",), more, "the energy at the start"),

@@ -126,7 +126,7 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
     [
         (["verify", "colapse"], "unknown scenario or theorem 'colapse'; did you mean 'collapse'?"),
         (["verify", "--seed", "x"], "--seed"),
-        (["verify", "os-1", "--seeds", "2"], "os-1 is no scenario with a source"),
+        (["verify", "os-1", "--seeds", "2"], "expected a scenario whose source reports an outcome, got os-1"),
         (["verify", "zone-51", "--seeds", "2", "--on", "x.nc"], "a saved run has one seed"),
         (["verify", "--seed", "-1"], "greater than or equal to 0; got '-1'"),
         (["verify", "--jobs", "0"], "greater than or equal to 1; got '0'"),
@@ -153,7 +153,7 @@ def test_everything_is_every_scenario_with_all_its_verdicts(catalogue):
         (["animate", "hexagn", "-o", "x.gif"], "unknown scenario 'hexagn'; did you mean 'hexagon'?"),
         (["animate", "hexagon", "-o", "x.png"], "expected a file name that ends in .gif or .mp4"),
         (["animate", "hexagon", "-o", "x.gif", "--seconds", "0"], "seconds = 0: expected a number > 0"),
-        (["flock"], "unknown command 'flock'; Known: animate, check, "),
+        (["flock"], "unknown command 'flock'; known: animate, check, "),
         (["verfy"], "unknown command 'verfy'; did you mean 'verify'? Known: "),
         ([""], "unknown command ''"),
         (["verify", "--colour"], "--colour"),

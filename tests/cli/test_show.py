@@ -6,7 +6,7 @@ import pytest
 from flockana.base.errors import FileError
 from flockana.cli.picture import ensure_file
 from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import complain
+from flockana.cli.status import print_error
 from flockana.report.tables import fact_table
 
 
@@ -33,7 +33,7 @@ def test_json_holds_letters_as_they_are_and_no_nan(capsys):
 
 
 def test_what_is_wrong_is_one_line_on_the_error_stream(capsys):
-    complain(ValueError("two\n   lines"))
+    print_error(ValueError("two\n   lines"))
     assert capsys.readouterr() == ("", "flockana: two lines\n")
 
 

@@ -10,7 +10,7 @@ from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.tolerance import Control, Floors
+from flockana.dynamics.tolerance import Control, ErrorFloors
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.polygon import Polygon
@@ -107,7 +107,7 @@ def laws():
 @pytest.mark.parametrize(("m", "law"), list(laws()))
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
-    control = Control(1e-10, Floors(1e-10, 1e-10, 1e-10))
+    control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
     engine = engine_of(law, q0, p0, 0.5, Plan("DOP853", np.array([0.7]), np.empty(0), control))
     made = engine.advance(StepChecks(law, engine.frame, engine.plan))
     t, f = float(engine.block.t[made]), engine.block.f[made]

@@ -290,5 +290,5 @@ def test_overlapping_obstacles_are_left_behind_or_leave_nothing() -> None:
     free = np.array([json.loads(str(caught.value).split("outside; ")[1].removesuffix(" is free"))])
     assert min(o.clearance(free)[0] for o in two) > 0.0
     facing = (Wall((1.0, 0.0), (1.0, 0.0)), Wall((-1.0, 0.0), (-1.0, 0.0)))
-    with pytest.raises(ArgumentError, match=r"agent 0 .* overlapping obstacles leave no free point"):
+    with pytest.raises(ArgumentError, match=r"agent 0 .* no free point was found by pushing it out"):
         check_free(np.array([[0.0, 3.0]]), facing)

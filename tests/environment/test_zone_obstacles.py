@@ -255,7 +255,7 @@ def test_worlds_that_cannot_be():
         Box((0.0, 5.0), (9.0, 5.0))
     with pytest.raises(ArgumentError, match=r"start = \(9.0, 9.0\): expected a point of the alien's territory"):
         Alien((9.0, 9.0), ARROW)
-    with pytest.raises(ArgumentError, match="expected a SimplePolygon, of an alien in the plane"):
+    with pytest.raises(ArgumentError, match="expected a SimplePolygon, and an alien in the plane"):
         Alien((9.0, 9.0, 1.0), ARROW)
     with pytest.raises(ArgumentError, match="detection = 0: expected a number > 0"):
         Alien((9.0, 9.0), detection=0)

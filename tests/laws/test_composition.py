@@ -185,14 +185,14 @@ def test_the_frame_of_the_energy_follows_what_ties_the_shape():
     pair, target = AlphaInteraction(), StaticTarget((4.0, 0.0))
     free = compose(pair=pair, navigation=target, drag=0.1)
     assert free.moving
-    assert free.splits
+    assert free.centre_decouples
     assert not free.terms[0].idle
     for tied in ({"obstacles": SOLIDS}, {"speed": (1.0, 1.0)}, {"informed": (0,), "agents": 2}, {"bounded": 2.0}):
         law = compose(pair=pair, navigation=target, **tied)
         assert not law.moving
-        assert not law.splits
-    assert not compose(pair=pair, speed=(1.0, 1.0)).splits  # the speed of the centre changes the shape
-    assert compose(pair=pair, drag=1.0).splits
+        assert not law.centre_decouples
+    assert not compose(pair=pair, speed=(1.0, 1.0)).centre_decouples  # the speed of the centre changes the shape
+    assert compose(pair=pair, drag=1.0).centre_decouples
 
 
 def test_drag_takes_energy_and_speed_control_adds_it():

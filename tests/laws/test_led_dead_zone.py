@@ -88,7 +88,7 @@ def test_the_flow_keeps_its_balance_of_energy():
     run = simulate(LAW, q, p, (0.0, 5.0))
     assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
     assert not LAW.conservative
-    assert not LAW.splits
+    assert not LAW.centre_decouples
 
 
 def test_what_it_measures():

@@ -66,7 +66,7 @@ def test_each_term_s_power_is_the_rate_of_its_energy_and_work(name):
     speeds = [P + s * h * law.flow(t, Q, P)[0] for _, _, s in states]
     before, after = (law.hamiltonian(when, q, p) for (when, q, _), p in zip(states, speeds, strict=True))
     assert (after - before) / (2.0 * h) == pytest.approx(law.flow(t, Q, P)[1], rel=2e-5)
-    if law.splits:
+    if law.centre_decouples:
         slope = np.zeros_like(Q)
         for k in np.ndindex(*Q.shape):
             e = np.zeros_like(Q)
@@ -163,7 +163,7 @@ def test_what_laws_have():
         "euler": (SemiImplicitEuler(SUMS["3"]), False, False, (7.0, 8.4), TARGET, 2),
     }
     for name, (law, *expected) in table.items():
-        has = [law.conservative, law.splits, law.lattice, law.target, len(law.obstacles)]
+        has = [law.conservative, law.centre_decouples, law.lattice, law.target, len(law.obstacles)]
         assert has == expected, name
     assert SUMS["dead zone"].pair == DeadZoneInteraction()
     assert msn.pair == AlphaInteraction()

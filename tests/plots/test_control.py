@@ -56,7 +56,7 @@ def test_the_gain_sweep_leaves_the_neutral_out():
     sweep = Sweep("c2_alpha", np.array([1.0, 2.0]), np.array([[0.0, -1.0 + 2j, -3.0], [0.0, -2.0 + 1j, -4.0]]), 1)
     ax = draw.gain_sweep(sweep, ax=axes())
     np.testing.assert_allclose(lines(ax)["the slowest"][:, 1], [-1.0, -2.0])
-    assert "(1 neutral set apart)" in lines(ax)
+    assert "(1 neutral not shown)" in lines(ax)
     assert ax.get_xlabel() == r"$c_2^\alpha$ (1/time)"
     assert sum(np.array_equal(line.get_ydata(), [-3.0, -4.0]) for line in ax.get_lines()) == 1
 

@@ -19,10 +19,12 @@ def drawn(ax):
 def test_runs_the_least_so_far_and_the_refuted_are_where_they_are():
     ax = search_history(MARGINS, BEST, found=[4], label="os-1:iii", ax=axes(), title="a search")
     found = drawn(ax)
-    np.testing.assert_array_equal(found["a run"], [[1, 3.0], [3, 1.0], [4, 2.0], [5, -0.5]])
-    np.testing.assert_array_equal(found["least so far"], np.column_stack([np.arange(1, 6), [3.0, 3.0, 1.0, 1.0, -0.5]]))
+    np.testing.assert_array_equal(found["one run"], [[1, 3.0], [3, 1.0], [4, 2.0], [5, -0.5]])
+    np.testing.assert_array_equal(
+        found["smallest margin so far"], np.column_stack([np.arange(1, 6), [3.0, 3.0, 1.0, 1.0, -0.5]])
+    )
     np.testing.assert_array_equal(found["refuted"], [[5, -0.5]])
-    np.testing.assert_array_equal(found["nothing claimed"][:, 0], [2])
+    np.testing.assert_array_equal(found["no margin"][:, 0], [2])
     assert ax.get_ylabel() == "margin of os-1:iii"
     assert ax.get_yscale() == "linear"
     ax.figure.canvas.draw()
@@ -33,13 +35,13 @@ def test_margins_of_many_sizes_have_an_axis_that_shows_them():
     ax = search_history(values, values, ax=axes())
     assert ax.get_yscale() == "symlog"
     assert "refuted" not in drawn(ax)
-    assert "nothing claimed" not in drawn(ax)
+    assert "no margin" not in drawn(ax)
     ax.figure.canvas.draw()
 
 
 def test_a_search_on_which_nothing_is_claimed():
     ax = search_history([np.nan, np.nan], [np.nan, np.nan], ax=axes())
-    assert len(drawn(ax)["nothing claimed"]) == 2
+    assert len(drawn(ax)["no margin"]) == 2
     ax.figure.canvas.draw()
 
 
@@ -56,6 +58,6 @@ def test_a_counterexample_is_drawn_as_a_snapshot():
     np.testing.assert_allclose(np.asarray(agents.get_offsets())[:, :1], found.q0, rtol=1e-15)
     ax = plots.falsification(found, ax=axes())
     curves = drawn(ax)
-    np.testing.assert_array_equal(curves["least so far"][:, 1], found.history)
+    np.testing.assert_array_equal(curves["smallest margin so far"][:, 1], found.history)
     assert curves["refuted"][:, 0].tolist() == [k + 1 for k in found.refuting("twice")]
     assert ax.get_ylabel() == "margin of collision-energy:twice"

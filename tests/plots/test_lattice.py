@@ -88,8 +88,8 @@ def test_brackets_are_drawn_by_size_whatever_their_order():
 def test_the_barrier_is_the_difference_in_units_of_the_printed_bound():
     ax = plots.barrier({3: 10.0, 7: 30.0}, {3: 0.0, 7: 18.0}, 10.0, ax=axes())
     lines = {line.get_label(): np.asarray(line.get_ydata()) for line in ax.get_lines()}
-    np.testing.assert_allclose(lines["least V where two meet"], [1.0, 3.0])
-    np.testing.assert_allclose(lines["least V"], [0.0, 1.8])
+    np.testing.assert_allclose(lines["least V with two agents coincident"], [1.0, 3.0])
+    np.testing.assert_allclose(lines["least V of all states"], [0.0, 1.8])
     np.testing.assert_allclose(lines["barrier"], [1.0, 1.2])
     assert ax.get_ylim()[0] == 0.0
 

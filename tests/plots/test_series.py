@@ -62,7 +62,7 @@ def test_distances_show_samples_bound_and_the_law_s_lengths():
     run = a_run()
     ax = plots.distances(run, ax=axes())
     np.testing.assert_array_equal(line(ax, "at the samples").get_ydata(), run.metrics().min_distance)
-    stairs = next(p for p in ax.patches if p.get_label() == "lower bound between")
+    stairs = next(p for p in ax.patches if p.get_label() == "lower bound between samples")
     np.testing.assert_array_equal(stairs.get_data().values, run.closest_approach().lower_by_interval)
     assert set(line(ax, "d").get_ydata()) == {7.0}
     assert set(line(ax, "r").get_ydata()) == {8.4}
@@ -90,7 +90,7 @@ def test_laws_without_range_energy_or_target_draw_what_there_is(law):
     assert "no energy" in plots.energy_residual(run, ax=axes()).texts[0].get_text()
     plots.snapshot(run, ax=axes())
     plots.centre_path(run, ax=axes())
-    bounded = any(p.get_label() == "lower bound between" for p in plots.distances(run, ax=axes()).patches)
+    bounded = any(p.get_label() == "lower bound between samples" for p in plots.distances(run, ax=axes()).patches)
     assert bounded == isinstance(law, Law)  # between the steps of a map there is nothing to bound
 
 

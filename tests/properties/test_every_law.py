@@ -159,7 +159,9 @@ def test_a_state_that_cannot_be_written_gives_the_same_and_stays_what_it_was(nam
 @pytest.mark.parametrize("name", LAWS)
 def test_what_a_law_says_of_itself_is_true_or_false_and_not_a_method(name):
     law = LAWS[name][0]
-    said = [getattr(law, word) for word in ("conservative", "splits", "located", "moving") if hasattr(law, word)]
+    said = [
+        getattr(law, word) for word in ("conservative", "centre_decouples", "located", "moving") if hasattr(law, word)
+    ]
     assert said
     assert all(type(word) is bool for word in said)
     assert isinstance(getattr(law, "surfaces", ()), tuple)

@@ -7,6 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
+from flockana.recorded.contributions import contributions, remainder
 from flockana.recorded.schemes import kinematic_scheme, scheme_by_law
 from flockana.recorded.variants import variants
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
@@ -44,6 +45,16 @@ def test_recorded_accelerations_are_compared_at_the_samples():
     u[7, 3] += 5.0
     worst = fl.compare(fl.Recording(T, q, p, u), LAW).worst[0]
     assert worst == (pytest.approx(T[7]), "3", pytest.approx(5.0 * np.sqrt(2.0)))
+
+
+def test_drag_and_feedforward_are_no_part_of_any_gain():
+    target = fl.CircleTarget((0.0, 0.0), 10.0, 0.1)
+    law = fl.compose(pair=LAW.alpha, navigation=target, feedforward=True, speed=(0.3, 0.1))
+    rest, each = remainder(law), contributions(law)
+    own = rest(0.0, Q0, P0) - (0.3 - 0.1 * (P0**2).sum(1)[:, None]) * P0
+    np.testing.assert_allclose(own, np.array([[-10.0 * (0.2 * np.pi) ** 2, 0.0]] * len(Q0)), rtol=1e-12, atol=1e-12)
+    total = rest(0.0, Q0, P0) + sum(one.stated * one.acts(0.0, Q0, P0) for one in each)
+    np.testing.assert_allclose(total, law.acceleration(0.0, Q0, P0), rtol=1e-12, atol=1e-12)
 
 
 SCHEMES = {

@@ -8,8 +8,16 @@ from scipy.optimize import least_squares
 
 import flockana as fl
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.recorded.parameters import Free
-from flockana.recorded.shooting import Window, _differences, _fine_enough, _nearby_laws, _Normal, _Rate, _share
+from flockana.recorded.parameters import FreeParameters
+from flockana.recorded.shooting import (
+    Window,
+    _differences,
+    _Linearised,
+    _neighbouring_laws,
+    _NormalEquations,
+    _refinement,
+    _share,
+)
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
 NAMES = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
@@ -31,7 +39,7 @@ def test_gains_of_an_exact_recording_are_found_from_sample_to_sample():
     for name in NAMES:
         assert found.values[name] == pytest.approx(getattr(TRUE, name), rel=1e-6)
         assert getattr(found.law.gains, name) == found.values[name]
-    assert found.untold == ()
+    assert found.unidentifiable == ()
     guess = replace(law, alpha=fl.AlphaInteraction(d=6.7, r=8.4))
     assert fl.fit(rec, guess, free=("alpha.d",)).values["alpha.d"] == pytest.approx(7.0, rel=1e-6)
 
@@ -97,22 +105,22 @@ def test_standard_errors_are_those_of_least_squares_by_the_closed_form(stated):
 
 def test_slopes_are_carried_by_three_terms_of_the_exponential():
     """Place and velocity of one agent, and a parameter that forces it: h A with A = [[0, 1, 0], [-2, -0.5, 3], 0]."""
-    rate = _Rate(np.array([[-2.0]]), np.array([[-0.5]]), np.array([[0.0, 0.0, 3.0]]))
+    rate = _Linearised(np.array([[-2.0]]), np.array([[-0.5]]), np.array([[0.0, 0.0, 3.0]]))
     a = 0.2 * np.array([[0.0, 1.0, 0.0], [-2.0, -0.5, 3.0], [0.0, 0.0, 0.0]])
     series = np.eye(3) + a + a @ a / 2.0 + a @ a @ a / 6.0
-    np.testing.assert_allclose(rate.carried(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
+    np.testing.assert_allclose(rate.propagate(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
 
 
 def test_slopes_are_differences_of_solutions_to_the_second_power_of_a_block():
     law, start, t = fl.Algorithm1(), np.array([0.0, 6.0, 1.0, -1.0]), np.arange(65) * 0.005
-    free = Free.of(law, ("c1_alpha", "c2_alpha"))
+    free = FreeParameters.of(law, ("c1_alpha", "c2_alpha"))
     part = Window(t, np.zeros((65, 2, 1)), np.ones((65, 2)), start)
     z = np.concatenate([start, free.values])
     by_hand = _differences(lambda z: part.solution(free.with_values(z[4:]), z[:4], 4)[0].ravel(), z)
     off = []
     for samples in (16, 8):
         block = 1.01 * samples * 0.005 / law.scales.time
-        slopes = part.slopes(law, _nearby_laws(free.with_values, free.values), start, 4, block)
+        slopes = part.slopes(law, _neighbouring_laws(free.with_values, free.values), start, 4, block)
         off.append(np.linalg.norm((slopes - by_hand) / np.abs(by_hand).max(axis=0)))
     assert off[0] > 3.5 * off[1]
 
@@ -121,7 +129,7 @@ def test_steps_are_halved_until_their_error_is_a_twentieth_of_a_standard_error()
     t, deviation = np.arange(9) * 2.0, 1e-5
     exact = place(t, 3.0, -1.0, 2.0, 0.6)
     part = Window(t, exact[:, None, None], np.full((9, 1), 1.0 / deviation), np.array([3.0, -1.0]))
-    finer = _fine_enough([part], pulled())
+    finer = _refinement([part], pulled())
     off = [np.linalg.norm(part.residual(pulled(), part.start, steps)) for steps in (finer, finer // 2)]
     assert off[0] < 0.06 < off[1]
 
@@ -141,7 +149,7 @@ def test_a_step_solves_the_damped_normal_equations_of_all_starts_at_once(damping
     whole = dense.T @ dense
     whole *= 1.0 + damping * np.eye(6)
     z = np.linalg.solve(whole, dense.T @ off)
-    normal = _Normal.of(list(slopes), 2, damping)
+    normal = _NormalEquations.of(list(slopes), 2, damping)
     moved, starts, promised = normal.step(list(residuals))
     np.testing.assert_allclose([*starts[0], *starts[1], *moved], z)
     assert promised == pytest.approx(z @ dense.T @ off)
@@ -184,7 +192,7 @@ def test_what_the_data_cannot_tell_is_said():
     found = fl.fit(rec, law, free=("c1_gamma",))
     assert found.values["c1_gamma"] == pytest.approx(1.5, rel=0.01)
     unseen = fl.fit(rec, law, free=("c1_alpha", "c1_gamma"))
-    assert any("do not tell c1_alpha" in text for text in unseen.untold)
+    assert any("do not tell c1_alpha" in text for text in unseen.unidentifiable)
 
 
 def test_wrong_names_and_maps_are_refused():

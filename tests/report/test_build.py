@@ -176,7 +176,7 @@ def test_a_scenarios_own_instants_come_first(result):
     assert "instants" not in page(result).pictures[0].caption
     shown = page(replace(result, scenario=replace(result.scenario, instants=(0.0, 0.2, 0.5, 1.0)))).pictures
     assert len(shown) == 1 + len(page(result).pictures)
-    assert "as the source shows, 4" in shown[0].caption
+    assert "The 4 instants that the source shows" in shown[0].caption
 
 
 def test_the_run_in_the_page_is_the_run(result):

@@ -113,7 +113,7 @@ def test_measured_points_stand_on_the_bode_plot(pages, monkeypatch):
 
 def test_the_flocks_are_drawn():
     pictures = stability.flock_pictures(stability._flocks())
-    assert "Algorithm 1. Set apart: translation x, translation y, rotation" in pictures[0].caption
+    assert "Algorithm 1. Zero modes, not counted: translation x, translation y, rotation" in pictures[0].caption
     assert "abscissa -1.0488, of the shape -1.9352" in pictures[1].caption
     assert all(one.source.startswith("<svg") for one in pictures)
 

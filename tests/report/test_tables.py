@@ -4,7 +4,7 @@ import pytest
 from rich.console import Console
 from rich.table import Column
 
-from flockana.report.tables import WholeTable, column, fact_table, headed_table
+from flockana.report.tables import FoldingTable, column, fact_table, headed_table
 
 
 def printed(table, width=60):
@@ -80,7 +80,7 @@ def test_facts_lose_no_letter(width):
 
 
 def test_a_column_that_takes_what_is_left_is_not_squeezed_to_nothing():
-    table = WholeTable(column("theorem"), Column("what", ratio=1, overflow="fold"), column("checked on"), box=None)
+    table = FoldingTable(column("theorem"), Column("what", ratio=1, overflow="fold"), column("checked on"), box=None)
     table.add_row("alpha-flocking-strict", "The run is strictly α-flocking", "a run")
     assert printed(table, 40) == [
         *("alpha-flocking-strict", "what: The run is strictly α-flocking", "checked on: a run")

@@ -4,13 +4,13 @@ from collections import Counter
 
 from flockana.laws.discrete import DiscreteLaw
 from flockana.report.surveys import Survey, surveys
-from flockana.report.work import _begun_apart, plan
+from flockana.report.work import _execution_order, plan
 from flockana.scenarios import scenario, scenarios
 
 
 def test_one_flow_is_begun_then_all_maps_then_the_others():
     tasks = (*plan(figures=False), *surveys(None, None))
-    begun = _begun_apart(tasks)
+    begun = _execution_order(tasks)
     assert Counter(begun) == Counter(tasks)
     subjects = [task.scenario if isinstance(task, Survey) else task.name for task in begun]
     maps = [name in scenarios() and isinstance(scenario(name).law, DiscreteLaw) for name in subjects]
@@ -22,6 +22,6 @@ def test_one_flow_is_begun_then_all_maps_then_the_others():
 
 def test_one_task_is_begun_as_it_is():
     for name in ("zone-51", "hexagon", "E8"):
-        assert _begun_apart(plan(name)) == list(plan(name))
+        assert _execution_order(plan(name)) == list(plan(name))
     unknown = (Survey("module:function", (0,)), *plan("E8"))
-    assert _begun_apart(unknown) == list(unknown)
+    assert _execution_order(unknown) == list(unknown)

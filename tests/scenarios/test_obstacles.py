@@ -155,7 +155,7 @@ def test_an_unknown_option_is_refused():
 
 def test_the_told_velocity_decides_condition_76():
     """From behind the flock goes the way of p_d, slower than p_d in the end: (76) is broken to the end."""
-    ahead, behind = (scenario(f"told-velocity-{side}") for side in ("ahead", "behind"))
+    ahead, behind = (scenario(f"declared-velocity-{side}") for side in ("ahead", "behind"))
     for entry in (ahead, behind):
         assert entry.law.target.rate(0.0).tolist() == [0.0, 0.0]
         assert entry.law.target.state(0.0)[1].tolist() == [5.0, 0.0]

@@ -129,7 +129,7 @@ def test_the_limit_of_a_damped_free_flock_and_of_one_without_zero_modes():
 
 def test_a_drifting_flock_has_no_limit():
     found = linearise(Algorithm1(), HEXAGON)
-    with pytest.raises(ArgumentError, match=r"drift \(translation x, translation y\).*take the mean off"):
+    with pytest.raises(ArgumentError, match=r"drift \(translation x, translation y\).*subtract the mean"):
         found.limit(0.0 * HEXAGON, 0.0 * HEXAGON)
     with pytest.raises(ArgumentError, match=r"dq has shape \(1, 2\): expected \(7, 2\)"):
         found.limit([[0.0, 0.0]], [[0.0, 0.0]])

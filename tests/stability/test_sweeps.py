@@ -91,7 +91,7 @@ def test_the_margin_of_the_sweep_is_that_of_the_state():
     ("call", "error", "message"),
     [
         (lambda: gain_sweep(Algorithm1(), [[0.0]], "c1_gamma", [1.0]), UnknownNameError, "unknown gain 'c1_gamma'"),
-        (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), UnknownNameError, "Known: c1_gamma, c2_gamma"),
+        (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), UnknownNameError, "nown: c1_gamma, c2_gamma"),
         (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), ArgumentError, "expected rising gains"),
         (lambda: centre_locus(Gains(), "c1_gamma", []), ArgumentError, "expected rising gains"),
         (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), ArgumentError, "given per agent"),

@@ -10,7 +10,7 @@ import flockana as fl
 from flockana.base.facts import Fact, conjunction
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, FormulaInteraction
 from flockana.interactions.weights import RationalWeight
-from flockana.symbolic.pair_facts import _Decided
+from flockana.symbolic.pair_facts import _NumericFormula
 from tests.toys.formulas import alpha_formula, spring
 
 END = "*(r - s)**2"  # ends smoothly
@@ -121,7 +121,7 @@ def test_the_sign_of_an_adjacency(adjacency, weight, inside):
 
 def test_the_least_adjacency_is_cut_off_at_0_only_where_its_sign_is_proved(monkeypatch):
     facts = Fact("assumed"), Fact("assumed")
-    monkeypatch.setattr(_Decided, "_signs", lambda self: facts)
+    monkeypatch.setattr(_NumericFormula, "_signs", lambda self: facts)
     assert pair("s**2" + END, "(s - 1)*(1 - s/r)").facts.least_weight[0] == pytest.approx(-1.0)
 
 

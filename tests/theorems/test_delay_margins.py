@@ -80,7 +80,7 @@ def test_a_sweep_that_is_off_by_a_tenth_is_refuted(monkeypatch, share):
         if claim.name == "pair":
             assert claim.contradicts == "second-order-modes"
             assert claim.margin == pytest.approx(1e-9 - 0.1, rel=1e-9)
-            assert "off by 0.1 of it in a sweep" in claim.detail
+            assert "a sweep over frequency finds it to 0.1 of its value" in claim.detail
         else:
             wrong = claim.witness["Re s below" if share > 1.0 else "Re s above"]
             assert (wrong > 0.0) == (share > 1.0)

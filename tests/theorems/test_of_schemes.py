@@ -5,7 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.theorems.catalogue import catalogue
-from flockana.theorems.of_schemes import ON_STEPS, says_of_schemes
+from flockana.theorems.of_schemes import ON_STEPS, scheme_note
 from tests.recorded.written import LAW, P0, Q0
 
 
@@ -53,6 +53,6 @@ def test_theorem_6_speaks_of_steps_where_its_hypotheses_hold():
 
 def test_every_theorem_on_motion_says_what_it_says_of_schemes():
     for item in catalogue().values():
-        assert (says_of_schemes(item) != "") == (item.kind == "trajectory")
-    assert "definition" not in says_of_schemes(catalogue()["energy"])
+        assert (scheme_note(item) != "") == (item.kind == "trajectory")
+    assert "definition" not in scheme_note(catalogue()["energy"])
     assert set(ON_STEPS) <= set(catalogue())

@@ -155,7 +155,7 @@ def test_what_is_missing_is_said(own):
         fl.verify("E1", rec, law=LAW)
     with pytest.raises(ArgumentError, match="law and d or r are given"):
         fl.verify("os-3", rec, law=LAW, d=7.0)
-    with pytest.raises(ArgumentError, match="of a recording: expected"):
+    with pytest.raises(ArgumentError, match="a recording: expected"):
         fl.verify("os-3", rec, law=LAW, q0=Q0)
     q = own[0].copy()
     q[3, 2] = np.nan

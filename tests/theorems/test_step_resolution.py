@@ -7,7 +7,7 @@ import pytest
 
 import flockana as fl
 from flockana.theorems import Claim
-from flockana.theorems.observed import Observed, as_known
+from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
 from flockana.theorems.step_resolution import NAME, demand_of, steps_of
 
@@ -61,7 +61,7 @@ def test_a_pole_counts_where_a_pair_comes_near_it(place, status):
 def test_nothing_but_a_fact_about_the_run_rests_on_steps_that_may_leap(about, status):
     seen = replace(Observed.of(meeting(FLAT)), unresolved="somewhere")
     given = Claim("i", status, about=about), Claim("ii", status, "smt", about=about)
-    (need,), (first, proved) = as_known((), given, seen)
+    (need,), (first, proved) = with_resolution((), given, seen)
     kept = status == "verified" and about == "run"
     assert (first.status, need.status) == (status if kept else "inconclusive", "assumed")
     assert NAME in first.detail

@@ -84,9 +84,9 @@ def test_a_theorem_that_calls_itself_ours_is_not_its_sources():
 
 def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
     needs = (MET, UNMET)
-    assert Claim("i", "vacuous", needs=needs, detail="3 links").account == f"{NOT}; 3 links"
-    assert Claim("i", "vacuous", needs=needs, detail=f"{NOT}: 2 parts").account == f"{NOT}: 2 parts"
-    assert Claim("i", "verified", needs=(MET,), detail="3 links").account == "3 links"
+    assert Claim("i", "vacuous", needs=needs, detail="3 links").explanation == f"{NOT}; 3 links"
+    assert Claim("i", "vacuous", needs=needs, detail=f"{NOT}: 2 parts").explanation == f"{NOT}: 2 parts"
+    assert Claim("i", "verified", needs=(MET,), detail="3 links").explanation == "3 links"
 
 
 def test_claims_that_are_vacuous_for_one_reason_are_shown_as_one():

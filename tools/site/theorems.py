@@ -15,7 +15,7 @@ from flockana.scenarios import scenario
 from flockana.theorems import Theorem
 from flockana.theorems.catalogue import catalogue
 from flockana.theorems.headline import BYLINES
-from flockana.theorems.of_schemes import says_of_schemes
+from flockana.theorems.of_schemes import scheme_note
 from tools.site.proofs import backing, outcome
 from tools.site.scenarios import checked_on, in_report, thumbnail
 from tools.site.verdicts import Verdicts
@@ -37,7 +37,7 @@ def page(item: Theorem, verdicts: Verdicts, *, images: bool, report: bool) -> st
         f"*{plain(item.source)}*",
         *([] if item.erratum is None else [plain(f"{item.erratum} ({item.erratum.sort})")]),
         "## Statement",
-        plain(f"{item.statement} {says_of_schemes(item)}"),
+        plain(f"{item.statement} {scheme_note(item)}"),
         _KINDS[item.kind].format(id=item.id),
         "## Hypotheses",
         _hypotheses(item, verdicts),

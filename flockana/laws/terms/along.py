@@ -29,7 +29,7 @@ class AlongVelocity(Term):
     idle: ClassVar[bool] = True
 
     @property
-    def splits(self) -> bool:
+    def centre_decouples(self) -> bool:
         """Whether shape and centre of mass decouple: under plain drag they do, under speed control not."""
         return self.brake == 0.0
 

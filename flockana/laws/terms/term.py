@@ -92,7 +92,7 @@ class Term(ABC):
         return "rigid motions"
 
     @property
-    def splits(self) -> bool:
+    def centre_decouples(self) -> bool:
         """Whether shape and centre of mass decouple: the term's forces cancel, or are one linear pull or drag."""
         return self.invariance == "rigid motions"
 

@@ -132,11 +132,11 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
             continue
         item = line[len("ITEM:") :].split()
         if item[:1] == ["TIMESTEP"]:
-            step = _whole(file, "step", 0, path)
+            step = _read_integer(file, "step", 0, path)
         elif item[:1] == ["TIME"]:
             time = float(_numbers(file, 1, 1, path)[0, 0])
         elif item[:3] == ["NUMBER", "OF", "ATOMS"]:
-            count = _whole(file, "number of atoms", 1, path)
+            count = _read_integer(file, "number of atoms", 1, path)
         elif item[:2] == ["BOX", "BOUNDS"]:
             box = Box.of(item[2:], _numbers(file, 3, None, path))
             if box is None:
@@ -166,7 +166,7 @@ def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str
     return {name: column[order] for name, column in columns.items()}
 
 
-def _whole(file: TextIO, name: str, least: int, path: Path) -> int:
+def _read_integer(file: TextIO, name: str, least: int, path: Path) -> int:
     value = float(_numbers(file, 1, 1, path)[0, 0])
     if not least <= value <= _LARGEST or value != int(value):
         raise FileError(f"{path}: {name} {value:g}; expected a whole number >= {least}; is it a damaged dump?")

@@ -41,7 +41,7 @@ def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, wh
     if layout.time is not None:
         series = frame[layout.time]
         if series.dtype.kind == "M" or (series.dtype.kind not in "fiu" and _is_date(series.iloc[0])):
-            return _dates(series, clock, where, layout.time)
+            return _read_dates(series, clock, where, layout.time)
         t = numbers(frame, layout.time)
         if np.isnan(t).any():
             k = int(np.argmax(np.isnan(t)))
@@ -70,7 +70,7 @@ def _is_date(value: Any) -> bool:
     return True
 
 
-def _dates(series: Any, clock: float | None, where: str, name: str) -> FloatArray:
+def _read_dates(series: Any, clock: float | None, where: str, name: str) -> FloatArray:
     import pandas as pd
 
     if clock is None:

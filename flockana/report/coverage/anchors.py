@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from flockana.report.coverage.references import is_erratum
 from flockana.report.pages import Page, ScenarioPage
-from flockana.scenarios.given import SOURCE
+from flockana.scenarios.checks import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:

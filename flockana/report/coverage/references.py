@@ -50,11 +50,11 @@ def locate(reference: Reference) -> str:
 
 
 def _function(name: str) -> str:
-    return _relative(_file(*_walked("function", name)))
+    return _relative(_file(*_resolve("function", name)))
 
 
 def _plot(name: str) -> str:
-    path = _relative(_file(*_walked("plot", name)))
+    path = _relative(_file(*_resolve("plot", name)))
     if not path.startswith("flockana/plots/"):
         raise ArgumentError(
             f"plot {name!r} is defined in {path}: expected one of flockana.plots; else call it function"
@@ -62,7 +62,7 @@ def _plot(name: str) -> str:
     return path
 
 
-def _walked(kind: str, name: str) -> tuple[Any, Any]:
+def _resolve(kind: str, name: str) -> tuple[Any, Any]:
     """Return the object that a dotted name leads to, and its owner."""
     first, *parts = name.split(".")
     if first != flockana.__name__ or not parts:
@@ -170,20 +170,20 @@ def _claim(name: str) -> str:
 
 
 def _proof(name: str) -> str:
-    known = {path.stem: path for path in _beside("proofs") if "\nPROOF = " in path.read_text(encoding="utf-8")}
+    known = {path.stem: path for path in _python_files("proofs") if "\nPROOF = " in path.read_text(encoding="utf-8")}
     if name not in known:
         raise UnknownNameError("proof", name, known)
     return _relative(str(known[name]))
 
 
 def _notebook(number: str) -> str:
-    known = {path.stem.partition("_")[0]: path for path in _beside("notebooks")}
+    known = {path.stem.partition("_")[0]: path for path in _python_files("notebooks")}
     if number not in known:
         raise UnknownNameError("notebook", number, known)
     return _relative(str(known[number]))
 
 
-def _beside(folder: str) -> list[Path]:
+def _python_files(folder: str) -> list[Path]:
     """Return the Python files of a folder of the checkout, except templates."""
     found = sorted(path for path in (_CHECKOUT / folder).glob("*.py") if not path.name.startswith("_"))
     if not found:

@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="|x_e| -> 0 on every edge of every spanning tree",
             witness=case | {"shortest edge at the end": float(lengths.min())},
             disproof="bearing-distance-printed",
-            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge longer than 0 for good; the "
+            detail=f"of {_TREES} random directed trees {_TREES - vanished} keep an edge longer than 0 permanently; the "
             f"shortest of all is {lengths.min():.8g} αr at the end",
         ),
         limit_claim(
@@ -84,8 +84,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J1",
     statement=(
-        "Theorem 1 lets the edge vectors x and their rates converge to zero. x = 0 is collision and contradicts "
-        "the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity difference."
+        "Theorem 1 says that the edge vectors x and their rates converge to zero. x = 0 is a collision and "
+        "contradicts the goal (27); what converges is the length error | |x_e| - α_i r_i | and the velocity "
+        "difference."
     ),
     source="Jond, bearing-distance flocking, Theorem 1, (36)",
     check=_check,

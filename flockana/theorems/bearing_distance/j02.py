@@ -77,9 +77,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J2",
     statement=(
-        "The proof takes the edge matrices for positive definite, A_cl for Hurwitz. W^s = diag(μ(1 - αr/|x|)) is "
-        "negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i r_i on "
-        "every edge. DᵀD_in is not positive definite once a node has five children."
+        "The proof assumes that the edge matrices are positive definite and A_cl is Hurwitz. W^s = diag(μ(1 - "
+        "αr/|x|)) is negative inside the desired spacing and zero at it: A_cl is Hurwitz if and only if |x_e| > α_i "
+        "r_i on every edge. DᵀD_in is not positive definite once a node has five children."
     ),
     source="Jond, bearing-distance flocking, Theorem 1, proof",
     check=_check,

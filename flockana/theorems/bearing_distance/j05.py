@@ -18,14 +18,14 @@ _RUNAWAY, _THRUST = np.array([0.0, 5.0 / 3.0, 5.0 / 3.0]), 2.0 / 3.0  # distance
 _PROOF = "bearing-distance-printed"
 
 
-def _wanted(law: MinimalFlocking) -> FloatArray:
+def _desired_lengths(law: MinimalFlocking) -> FloatArray:
     """Return the desired lengths of the edge between an end and the middle, as each of the two has it."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
     spacing = {(int(j), int(i)): float(length) for i, j, length in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
 
 
-def _off(law: MinimalFlocking, seed: int) -> Enclosure:
+def _error(law: MinimalFlocking, seed: int) -> Enclosure:
     """Return how far a run from a random start ends from the predicted equilibrium: edges 5/3 long, |u| = 2/3."""
     rng = np.random.default_rng(seed)
     q, p = rng.uniform(-2.0, 2.0, (3, 2)), rng.uniform(-1.0, 1.0, (3, 2))
@@ -46,7 +46,7 @@ def _rate(law: MinimalFlocking) -> float:
 def _check(tolerances: Tolerances) -> list[Claim]:
     """The ends of an undirected path of three want their edges at length 1, the middle at 2: both become 5/3."""
     law = MinimalFlocking(edges=both_ways([(0, 1), (1, 2)]))
-    wanted, off = _wanted(law), stacked([_off(law, seed) for seed in range(_STARTS)])
+    wanted, off = _desired_lengths(law), stacked([_error(law, seed) for seed in range(_STARTS)])
     worst, rate = float(off.mid.max()), _rate(law)
     return [
         judged(
@@ -57,8 +57,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             stated="| |x_e| - α_i r_i | -> 0 for all agents, with α_i r_i = |N_i|",
             witness={"graph": "frozen undirected path of three"},
             disproof=_PROOF,
-            detail=f"the two agents of an edge want different lengths if their degrees differ: whatever its length, "
-            f"it is off one of them by {0.5 * abs(wanted[1] - wanted[0]):g} or more",
+            detail=(
+                "the two agents of an edge desire different lengths if their degrees differ: whatever its length, it "
+                f"differs from one of the two by {0.5 * abs(wanted[1] - wanted[0]):g} or more"
+            ),
         ),
         judged(
             "runaway",
@@ -75,9 +77,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J5",
     statement=(
-        "With α_i r_i = |N_i| neighbours of different degree want different lengths of their edge, and with equal "
-        "radii perception is mutual, so that no graph is a directed tree. On a frozen path of three the ends come "
-        "to coincide 5/3 behind the middle, and all accelerate by 2/3 for ever."
+        "With α_i r_i = |N_i| neighbours of different degree desire different lengths of their edge, and with equal "
+        "radii perception is mutual, so that no graph is a directed tree. On a fixed path of three agents the ends "
+        "come to coincide 5/3 behind the middle, and all accelerate by 2/3 without end."
     ),
     source="Jond, bearing-distance flocking, section 4, assumptions",
     check=_check,

@@ -8,7 +8,7 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
 from flockana.theorems.bearing_distance import zone_1_corrected
 from flockana.theorems.claims import counted, erratum
-from flockana.theorems.observed import as_known, observed
+from flockana.theorems.observed import observed, with_resolution
 from flockana.theorems.theorem import Claim, Tolerances, Verdict
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
@@ -19,7 +19,7 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
     theorem, rng = zone_1_corrected.THEOREM, np.random.default_rng(m)
     q, p = rng.uniform(-2.0, 2.0, (5, m)), rng.uniform(-0.5, 0.5, (5, m))
     seen = observed(law, q, p, (0.0, 80.0))
-    verdict = Verdict(theorem.id, *as_known(*theorem.examine(seen, tolerances), seen))
+    verdict = Verdict(theorem.id, *with_resolution(*theorem.examine(seen, tolerances), seen))
     said = [claim.status for claim in verdict.claims]
     wrong, zeros = said.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
     return counted(

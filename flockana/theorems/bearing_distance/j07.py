@@ -84,8 +84,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J7",
     statement=(
-        "(10) passes the velocity through v^max tanh(|v|/v^max) in every step. That is a drag: 3 m/s become 2.54, "
-        "and with |u| <= 2 no speed above 2.01 lasts, so that v^d = 3 is out of reach. A plain clip is meant."
+        "(10) passes the velocity through v^max tanh(|v|/v^max) in every step. That is a drag: 3 m/s become 2.54, and "
+        "with |u| <= 2 no speed above 2.01 lasts, so that v^d = 3 is out of reach. The paper presumably means a plain "
+        "clip."
     ),
     source="Jond, bearing-distance flocking, (10)",
     check=_check,

@@ -63,8 +63,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J8",
     statement=(
-        "Remark 3 holds the bearing form with the estimate (17) for equivalent. (17) leaves out the global speed "
-        "term and both bounds: estimates drift away from the velocities, and the flock disperses."
+        "Remark 3 calls the bearing form with the estimate (17) equivalent. (17) leaves out the global speed term and "
+        "both bounds: estimates drift away from the velocities, and the flock disperses."
     ),
     source="Jond, bearing-distance flocking, (17) and Remark 3",
     check=_check,

@@ -54,7 +54,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             computed=gap,
             stated=stand_off,
             witness="the same agent and alien, 0 < d <= s_i",
-            detail=f"with 0 < d <= s_i it stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
+            detail=f"with 0 < d <= s_i the agent stops at {gap:.4f} m, where s - v^d w^ga/w^ss = {stand_off:g}",
         ),
         always(
             "flock",
@@ -70,7 +70,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J9",
     statement=(
-        "N_i^s holds the aliens at a_i < d <= s_i: one that comes closer exerts no force and walks through the "
+        "N_i^s contains the aliens at a_i < d <= s_i: one that comes closer exerts no force and passes through the "
         "flock. With 0 < d <= s_i an agent stands off at s - v^d w^ga/w^ss."
     ),
     source="Jond, bearing-distance flocking, definition of N_i^s",

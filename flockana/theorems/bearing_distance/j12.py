@@ -133,10 +133,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "J12",
     statement=(
-        "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes deeper in. Outside, where weights damp "
-        "the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another agent comes "
-        "to c - v^d w^ga/w from it. At the printed 5, 5, 3, 3 that is 0 at a wall, and two agents pass through each "
-        "other."
+        "Inside an obstacle or beyond a wall b - p_i reverses, and (8) pushes an agent deeper in. Outside, where "
+        "weights damp the approach, (w^ga)² > 4w (8w for two agents), an agent that runs head on at a wall or another "
+        "agent comes to c - v^d w^ga/w from it. At the printed 5, 5, 3, 3 that is 0 at a wall, and two agents pass "
+        "through each other."
     ),
     source="Jond, bearing-distance flocking, (8) and section 5",
     check=_check,

@@ -123,8 +123,9 @@ THEOREM = erratum(
     "J13",
     statement=(
         "The altitude of the obstacle zone may extend to a_i at speed, for more reaction space, and contract to r_i "
-        "when slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that head "
-        "on the longer zone changes nothing. Measured from the zone's own end it does what is said."
+        "when slow. But (8) measures from c_i: beyond it the force attracts, or, cut off there, is zero, so that the "
+        "longer zone changes nothing in a head-on approach. If (8) measures from the zone's own end, the zone does "
+        "what the paper says."
     ),
     source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
     check=_check,

@@ -38,10 +38,10 @@ def _pair(informed: int, speeds: tuple[float, float]) -> tuple[FloatArray, Float
     return run, np.array(predicted)
 
 
-def _told_and_not() -> list[Claim]:
-    told, predicted = _pair(1, (1.0, 1.0))
-    off = float(np.abs(told - predicted).max()) / _DESIRED
-    left = float(np.abs(told[-1] - _DESIRED).max()) / _DESIRED
+def _informed_or_not() -> list[Claim]:
+    informed, predicted = _pair(1, (1.0, 1.0))
+    off = float(np.abs(informed - predicted).max()) / _DESIRED
+    left = float(np.abs(informed[-1] - _DESIRED).max()) / _DESIRED
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
@@ -49,11 +49,13 @@ def _told_and_not() -> list[Claim]:
             "one-informed",
             _SAME - float(np.maximum(off, left)),
             _ROUNDING,
-            computed=told[-1].tolist(),
+            computed=informed[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
-            detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as by x' = M x, whose "
-            f"polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
+            detail=(
+                f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
+                f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})"
+            ),
         ),
         of_map(
             "none-informed",
@@ -77,19 +79,19 @@ def _speeds(informed: int) -> list[float]:
 def _check(tolerances: Tolerances) -> list[Claim]:
     two, none = _speeds(2), _speeds(0)
     return [
-        *_told_and_not(),
+        *_informed_or_not(),
         mostly(
             "two-of-ten",
             [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],
             "with two informed agents of ten the mean speed is about v^d",
-            "the flock takes over the speed of those who are informed",
+            "the flock adopts the speed of the informed agents",
             witness={"mean speed by seed": two},
         ),
         mostly(
             "none-of-ten",
             [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
             f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
-            "a flock of which nobody is informed does not fly at the desired speed",
+            "a flock without informed agents does not fly at the desired speed",
             witness={"mean speed by seed": none},
         ),
     ]
@@ -99,8 +101,8 @@ THEOREM = erratum(
     "J14",
     statement=(
         "When some agents alter their speeds their neighbours follow, and a new global speed results; w^ga = 0 for "
-        "agents that are not informed of v^d. True: whom alignment reaches takes over v^d from a single informed "
-        "agent. Without any the flock agrees on a mean of its own velocities, and not on v^d."
+        "agents that are not informed of v^d. True: all agents that alignment reaches adopt v^d from a single "
+        "informed agent. If none is informed, the flock agrees on a mean of its own velocities, and not on v^d."
     ),
     source="Jond, bearing-distance flocking, section 2.1 and (5)",
     check=_check,

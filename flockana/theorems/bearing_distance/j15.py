@@ -19,7 +19,11 @@ _RADII = ZoneRadii(1.5, c=_C, a=5.0)
 _UNBOUNDED = 1e6  # an input bound that never acts
 _STEPS = 1000
 _CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c), with g_c <= w^ls (c/r - 1)
-_STRONG, _FINE, _SLIDES = (5.0, 10.0), 0.005, 5e-3  # cohesion beyond that; a step; how near r it slides, relative
+_STRONG, _FINE, _SLIDES = (
+    (5.0, 10.0),
+    0.005,
+    5e-3,
+)  # stronger cohesion; a time step; relative distance from r at which the pair slides
 
 
 def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: float = 0.1) -> FloatArray:
@@ -85,7 +89,7 @@ def _pair() -> list[Claim]:
             computed=alone,
             stated=_C,
             witness={"g_c": 0.0, "q(0)": "2 m apart"},
-            detail="without cohesion (6) drives a pair towards c, where it vanishes, as is said",
+            detail="without cohesion (6) drives a pair towards c, where it vanishes, as the paper says",
         ),
     ]
 
@@ -108,9 +112,9 @@ THEOREM = erratum(
     "J15",
     statement=(
         "(6) is said to drive distances to c_i and so to ensure a minimum separation of c_i. In the zone of conflict "
-        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), below c whenever there is cohesion, as long as "
-        "that is r or more, g_c <= w^ls (c/r - 1); a stronger cohesion, which is off at r and nearer, makes it slide "
-        "at r. (On the way there agents come closer still: J12.)"
+        "cohesion acts as well: a pair rests at c w^ls/(w^ls + g_c), which is below c whenever there is cohesion, as "
+        "long as it is r or more, g_c <= w^ls (c/r - 1). A stronger cohesion, which is off at distances up to r, "
+        "makes the pair slide at r. (Before that agents come closer still: J12.)"
     ),
     source="Jond, bearing-distance flocking, (6)",
     check=_check,

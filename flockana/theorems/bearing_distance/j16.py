@@ -49,7 +49,7 @@ def _at_walls() -> Claim:
     return limit_claim(
         "at-walls",
         [],
-        escape=Certificate(float(margin), "their speeds towards the walls stay positive for ever", _ROUNDING),
+        escape=Certificate(float(margin), "their speeds towards the walls stay positive at all later times", _ROUNDING),
         computed={"steps off the linear recursion by": off, "eigenvalues": [float(fast.real), float(slow.real)]},
         stated=_REUNITE,
         witness={"q(0)": q.tolist(), "p(0)": p.tolist(), "bound of inputs": _UNBOUNDED},
@@ -79,7 +79,7 @@ def _circling() -> Claim:
     )
 
 
-def _lone() -> Claim:
+def _growing_radii() -> Claim:
     """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
@@ -121,16 +121,16 @@ def _pairs() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_at_walls(), _circling(), _lone(), _pairs()]
+    return [_at_walls(), _circling(), _growing_radii(), _pairs()]
 
 
 THEOREM = erratum(
     "J16",
     statement=(
-        "Remark 2 says that in a confined environment separated agents eventually reunite, and that else radii of "
-        "attraction may grow until a flockmate is found. Two that head for opposite walls at v^d come to rest there "
-        "and never meet. Others are seen to run along the walls, one behind the other, which decides nothing about "
-        "later. Growing radii bring lone agents back; fragments of two or more they leave apart."
+        "Remark 2 says that in a confined environment separated agents eventually reunite, and that otherwise radii "
+        "of attraction may grow until a flockmate is found. Two agents that head for opposite walls at v^d come to "
+        "rest there and never meet. Others run along the walls, one behind the other, which decides nothing about "
+        "later times. Growing radii bring lone agents back, but leave fragments of two or more agents apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
     check=_check,

@@ -40,7 +40,7 @@ def _flocks(n: int, ends: FloatArray) -> Claim:
         f"flock-{n}",
         (ends[:, 0] >= _IN_ORDER) & (ends[:, 1] == 1) & (ends[:, 2] > _SAFE),
         f"{n} agents are one flock after {_DURATION:g} s, C >= {_IN_ORDER:g}, all more than r apart",
-        "flocks of every size order, hold together and keep apart",
+        "flocks of every size align, stay together and keep their distance",
         witness={"least C": float(ends[:, 0].min()), "least distance": float(ends[:, 2].min())},
     )
 
@@ -76,9 +76,9 @@ THEOREM = erratum(
     "J18",
     statement=(
         "The behaviour is said to be scalable. At the density of section 5.1, 10, 100 and 500 agents order, hold "
-        "together and keep apart, and an agent has as many neighbours whatever the size. The text does not say from "
-        "which first velocities: its own, in (0, 1), are half aligned already, and from all directions a large flock "
-        "falls into many."
+        "together and keep apart, and an agent has as many neighbours whatever the size. The text does not say for "
+        "which initial velocities: its own, in (0, 1), are half aligned already, and from initial velocities of all "
+        "directions a large flock breaks up into many."
     ),
     source="Jond, bearing-distance flocking, abstract and conclusions",
     check=_check,

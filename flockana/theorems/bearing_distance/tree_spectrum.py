@@ -46,7 +46,7 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
     singular = np.linalg.svd(A, compute_uv=False)[::-1]
     zeros, kernel, rounding = _kernel(singular, (case.n - 1) * (m - 1))
     slowest = min(0.5 * (a - sqrt(max(a * a - 4.0 * mu, 0.0))) for a, mu in springs) / unit
-    return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), max(rounding, _off(len(A))))
+    return Spectrum(zeros, slowest, residual, min(1.0 - residual / POLYNOMIAL, kernel), max(rounding, _error(len(A))))
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
@@ -91,6 +91,6 @@ def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, 
     return expected, float(values[expected] / largest) if expected < len(values) else 1.0, rounding
 
 
-def _off(size: int) -> float:
+def _error(size: int) -> float:
     """Return the relative rounding of a determinant far outside the spectrum."""
     return 64.0 * size**2 * EPS / POLYNOMIAL

@@ -56,8 +56,10 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
         stated=f"a semisimple zero of multiplicity (n - 1)(m - 1) = {expected}, and {factors}",
         witness="the law linearised in edge coordinates, at the end's bearings and the desired lengths",
         proof=proof_of(case, m) if directed else None,
-        detail=f"zero has a kernel of dimension {spectrum.zeros}, that of the manifold of equilibria; the rest decays "
-        f"at {spectrum.slowest:.4g} or faster; {factors}",
+        detail=(
+            f"the eigenvalue 0 has multiplicity {spectrum.zeros}, the dimension of the manifold of equilibria; the "
+            f"other modes decay at {spectrum.slowest:.4g} or faster; {factors}"
+        ),
     )
 
 
@@ -106,10 +108,10 @@ THEOREM = Theorem(
     statement=(
         "On a frozen rooted out-tree with constant ρ_i > 0, μ_i > 0 the equilibria are |x_e| = ρ_e, x' = 0: a product "
         "of spheres. At each, the spectrum is, edge by edge, the roots of s² + s + μ once and {0, -1} m - 1 times, "
-        "zero semisimple: the manifold is normally hyperbolic, and length and velocity errors converge "
+        "with 0 semisimple: the manifold is normally hyperbolic, and length and velocity errors converge "
         "exponentially near it. On an edge from the root V = |x'|²/2 + μ(|x| - ρ)²/2 falls, and V(0) < μρ²/2 excludes "
         "its collision. On an undirected tree with the reciprocal law H = Σ|v - v̄|²/2 + Σ μ(|x| - ρ)²/2 falls and "
-        "every equilibrium without collision has |x_e| = ρ. Pairs that are no edge are not controlled."
+        "every equilibrium without collision has |x_e| = ρ. Distances of pairs that are not edges are not controlled."
     ),
     source="Jond, bearing-distance flocking, Theorem 1; corrected by us",
     kind="trajectory",

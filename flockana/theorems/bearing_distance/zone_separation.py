@@ -118,8 +118,8 @@ THEOREM = erratum(
     statement=(
         "Section 4 says that the separation (25) alone oscillates, and that alignment (24) brings a common motion and "
         "avoids close encounters. Two agents swing about the desired spacing with frequency sqrt(2μ), undamped; on "
-        "reciprocal graphs H is conserved, on a directed chain the swing even grows. Alignment damps it, but excludes "
-        "no collision: fast enough, two agents meet."
+        "reciprocal graphs H is conserved, on a directed chain the oscillation even grows. Alignment damps it, but "
+        "does not exclude collisions: two agents that are fast enough meet."
     ),
     source="Jond, bearing-distance flocking, section 4",
     check=_check,

@@ -26,7 +26,7 @@ _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
 
 @dataclass(frozen=True)
-class Decline:
+class AlignmentRate:
     """φ(s) = λ (1 + (c s/ℓ)²)^−β, at which a velocity spread falls when the position spread is s.
 
     Parameters
@@ -95,7 +95,7 @@ class Decline:
         w = float(brentq(lambda at: self._over(low, at) - asked, low, high, xtol=1e-14, rtol=1e-14))
         return self.weight.length / self.stretch * float(np.sinh(w))
 
-    def beyond_all(self, start: Enclosure) -> Enclosure:
+    def beyond_enclosed(self, start: Enclosure) -> Enclosure:
         """Return `beyond` of an enclosed start."""
         return start.falling(np.vectorize(self.beyond, otypes=[float])).scaled_out(QUADRATURE)
 
@@ -121,15 +121,15 @@ class Guarantee:
     stretch: float
 
     @cached_property
-    def phi(self) -> Decline:
+    def phi(self) -> AlignmentRate:
         """φ, with λ = K where sums are divided by n and λ = nK where they are not."""
         law = self.seen.law.continuous
-        return Decline(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
+        return AlignmentRate(law.weight, law.weight.strength * (1.0 if law.mean else self.seen.n), self.stretch)
 
     @cached_property
-    def room(self) -> Enclosure:
+    def integral_to_infinity(self) -> Enclosure:
         """∫φ from ‖x(0)‖ to infinity."""
-        return self.phi.beyond_all(self.seen.spread[0])
+        return self.phi.beyond_enclosed(self.seen.spread[0])
 
     @cached_property
     def bound(self) -> Enclosure:
@@ -139,12 +139,12 @@ class Guarantee:
     def hypothesis(self, name: str) -> Hypothesis:
         """Hypothesis ‖v(0)‖ < ∫φ from ‖x(0)‖ on, which always holds for β <= ½."""
         v0 = self.seen.velocity_spread[0]
-        if self.room.lo == inf:
+        if self.integral_to_infinity.lo == inf:
             return Hypothesis(
                 name, "met", 1.0, f"β = {self.seen.law.continuous.weight.decay:g}: the integral is infinite"
             )
-        detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.room.mid:.6g}"
-        return positive_room(name, self.room - v0, detail)
+        detail = f"‖v(0)‖ = {v0.mid:.6g}, the integral {self.integral_to_infinity.mid:.6g}"
+        return positive_room(name, self.integral_to_infinity - v0, detail)
 
     def claims(self, names: tuple[str, str, str], needs: list[Hypothesis], proof: str) -> list[Claim]:
         """Return the claims that positions spread at most to x_M and velocities match, at a rate and in the limit."""

@@ -72,7 +72,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     n, pairs = len(q), law.links(q)
     if components(n, pairs).max() > 0:
         return Certificate(-1.0, "the net is not connected")
-    weights = neighbourhoods(n, pairs)
+    weights = neighbourhood_sizes(n, pairs)
     half = np.sqrt(weights)
     symmetric = averaging_matrix(n, pairs) * half[:, None] / half[None, :]
     moduli = np.sort(np.abs(np.linalg.eigvalsh(0.5 * (symmetric + symmetric.T))))
@@ -93,7 +93,7 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
     return Certificate(float(np.clip(margin, -1.0, 1.0)), text, error)
 
 
-def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
+def neighbourhood_sizes(n: int, pairs: LinkArray) -> FloatArray:
     """Return the number of agents that each averages over, itself included."""
     return np.bincount(pairs.ravel(), minlength=n).astype(np.float64) + 1.0
 

@@ -7,7 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.classics.alignment_bounds import QUADRATURE, Decline
+from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is, positive_room
 from flockana.theorems.limits import limit_claim
@@ -25,12 +25,12 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     weight = seen.law.weight
-    psi = Decline(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
-    room = psi.beyond_all(x[0])
-    detail = f"w(0) = {w.mid[0]:.6g}, the integral {room.mid:.6g}"
-    slow = positive_room("w(0) < ∫λψ from x(0) on", room - w[0], detail)
-    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - room, detail)
-    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, room, needs, slow, fast)]
+    psi = AlignmentRate(weight, weight.strength * (1.0 if seen.law.mean else 2.0), 1.0)
+    rest = psi.beyond_enclosed(x[0])
+    detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
+    slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
+    fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
+    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, rest, needs, slow, fast)]
 
 
 def _states(seen: Observed) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
@@ -44,7 +44,7 @@ def _along(way: float, series: FloatArray, error: FloatArray) -> Enclosure:
 
 
 def _invariant(
-    seen: Observed, psi: Decline, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
+    seen: Observed, psi: AlignmentRate, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
 ) -> Claim:
     """Return the claim that w + ∫λψ is conserved."""
     start = float(x.mid[0])
@@ -64,16 +64,16 @@ def _invariant(
 
 
 def _sides(
-    psi: Decline,
+    psi: AlignmentRate,
     x: Enclosure,
     w: Enclosure,
-    room: Enclosure,
+    rest: Enclosure,
     needs: list[Hypothesis],
     slow: Hypothesis,
     fast: Hypothesis,
 ) -> list[Claim]:
     """Return the claims for both sides of the threshold; the claim for the other side is vacuous."""
-    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - room).mid)
+    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid)
     bounded = limit_claim(
         "bounded",
         [*needs, slow],
@@ -98,12 +98,13 @@ def _sides(
 
 THEOREM = Theorem(
     id="cucker-smale-pair",
-    title="Two agents on a line match below a critical relative speed, and part for ever above it",
+    title="Two agents on a line match velocities below a critical relative speed, and separate permanently above it",
     statement=(
-        "Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, "
-        "w + ∫λψ(s) ds from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by "
-        "n. If w(0) < ∫λψ from x(0) on they match, where the integral is w(0); if w(0) is more, as it can be for β > ½ "
-        "only, they part for ever, at w(0) less the integral or more: the condition of Ha and Liu cannot be left out."
+        "Of two agents on a line under the Cucker-Smale law, x apart along their relative velocity w > 0, w + ∫λψ(s) "
+        "ds from x(0) to x never changes; λψ is K(1 + s²/ℓ²)^-β, or twice that where no sum is divided by n. If w(0) "
+        "< ∫λψ from x(0) on, velocities match at the distance up to which the integral is w(0); if w(0) is more, as "
+        "it can be for β > ½ only, they separate permanently, at a relative speed of at least w(0) minus the "
+        "integral: the condition of Ha and Liu cannot be left out."
     ),
     source="Ours, on Cucker and Smale 2007 and Ha and Liu 2009",
     kind="trajectory",

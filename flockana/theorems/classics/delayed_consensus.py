@@ -80,7 +80,7 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
         off = max(off, abs(abs(root) - abs(consensus_root(largest, delay))) / largest if sign > 0 else 0.0)
         if sign * root.real / largest - sharp / largest < margin - error:
             margin, error = sign * root.real / largest, sharp / largest
-    words = "grows" if sign > 0 else "decays"
+    words, side = ("grows", "right") if sign > 0 else ("decays", "left")
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
     return spectral(
         name,
@@ -88,8 +88,10 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
         error,
         computed=listed,
         stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
-        detail=f"the rightmost root of {len(nets)} nets off the consensus is {margin:.3g} λ_n or more on that side"
-        f"{closed}",
+        detail=(
+            f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
+            f"the imaginary axis{closed}"
+        ),
     )
 
 
@@ -133,7 +135,7 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         computed=off,
         stated="the sum over the agents never changes, so that they agree on the average of the start",
         proof=_PROOF,
-        detail=f"the columns of L sum to 0, to {off:.1g} λ_n",
+        detail=f"the columns of L sum to 0, to within {off:.1g} λ_n",
     )
 
 
@@ -154,9 +156,9 @@ THEOREM = erratum(
     title="Consensus bears a delay below π/(2 λ_n), and none above",
     statement=(
         "Agents x' = -L x(t - τ) on a fixed, undirected, connected net agree on the average of their start, whatever "
-        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they swing at the "
-        "frequency λ_n. Held against the delay margin that the library finds for any flock, on nets whose spectrum is "
-        "known, and by the root itself just below and just above."
+        "it is, if and only if 0 <= τ < π/(2 λ_n), λ_n the largest eigenvalue of L; at π/(2 λ_n) they oscillate at "
+        "the frequency λ_n. Compared with the delay margin that the library finds for any flock, on nets whose "
+        "spectrum is known, and with the rightmost root just below and just above it."
     ),
     source="Olfati-Saber and Murray 2004, Theorem 10, in our words",
     check=_check,

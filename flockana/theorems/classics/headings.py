@@ -15,7 +15,7 @@ from flockana.theorems.classics.averaging import (
     Block,
     blocks,
     final_heading,
-    neighbourhoods,
+    neighbourhood_sizes,
     permanently_connected,
     permanently_separated,
 )
@@ -43,7 +43,7 @@ def _every_step(run: Trajectory) -> Hypothesis:
 
 def _at_all_later_times(windows: Any, connected: Certificate, parted: Certificate) -> Hypothesis:
     """Return the hypothesis of joint connectivity over all later windows: proved, disproved or assumed from the run."""
-    name = "the nets are jointly connected over contiguous bounded windows, for ever"
+    name = "the nets are jointly connected over contiguous bounded windows, at all later times"
     longest = max((stop - start for start, stop in windows), default=0)
     seen = f"{len(windows)} windows seen, of {longest} steps at most"
     if connected.certain:
@@ -96,7 +96,7 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = neighbourhoods(run.n, run.law.links(run.q[-1]))
+    weights = neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
     return limit_claim(
         "agreement",
         needs,

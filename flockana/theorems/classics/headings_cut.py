@@ -33,7 +33,7 @@ def _turned() -> Claim:
     )
 
 
-def _clear() -> Claim:
+def _away_from_cut() -> Claim:
     """Return the claim that the mean turns with the flock as long as no heading passes the direction of angle 0."""
     import sympy as sp
 
@@ -65,7 +65,7 @@ def _vectors() -> Claim:
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_turned(), _clear(), _vectors()]
+    return [_turned(), _away_from_cut(), _vectors()]
 
 
 THEOREM = erratum(
@@ -73,8 +73,8 @@ THEOREM = erratum(
     title="Mean headings depend on where angles are counted from",
     statement=(
         "With headings in [0, 2π) the mean of two that differ little across angle 0 points backwards: the linear rule "
-        "is not the same for a turned flock, as a rule of nearest neighbours should be. As long as no heading passes "
-        "angle 0 it is; Vicsek's mean of unit vectors always is."
+        "is not invariant under rotations of the flock, as a rule of nearest neighbours should be. It is invariant as "
+        "long as no heading passes angle 0; Vicsek's mean of unit vectors always is."
     ),
     source="ours, on Jadbabaie, Lin and Morse's averages of headings in [0, 2π)",
     check=_check,

@@ -81,12 +81,12 @@ THEOREM = Theorem(
     id="links-kept",
     title="A tension without bound at the range keeps the links of the start, and velocities agree",
     statement=(
-        "Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy "
-        "H = Σ ψ + ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the "
-        "length at which it alone has H(0), which is below r; if the links join all agents, they do so at all times, "
-        "and with c > 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded "
-        "at contact too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a "
-        "first-order rendezvous. Of both this is a part, in our words."
+        "Along u_i = -Σ_j ∇_i ψ + c Σ_j (p_j - p_i) over links, with ψ(s) = k s²/(r - s) and c >= 0, the energy H = Σ "
+        "ψ + ½ Σ‖p_i‖² never rises. So no link that is shorter than r at the start is ever longer than the length at "
+        "which it alone has H(0), which is below r; if the links join all agents, they do so at all times, and with c "
+        "> 0 all velocities tend to one. Zavlanos, Jadbabaie and Pappas have a potential that is unbounded at contact "
+        "too, so that neighbours do not collide, and add links with hysteresis; Ji and Egerstedt steer a first-order "
+        "rendezvous. This is a part of both results, in our words."
     ),
     source=(
         "ours, after Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that "

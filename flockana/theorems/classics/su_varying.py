@@ -38,7 +38,7 @@ def convergence_rate(gains: Gains) -> float:
     return 0.5 * c2 - sqrt(max(0.25 * c2 * c2 - c1, 0.0))
 
 
-def _only_told(run: Trajectory) -> Hypothesis:
+def _is_feedforward(run: Trajectory) -> Hypothesis:
     """Return the hypothesis that the law is Algorithm 2 with feedforward (not needed at constant velocity)."""
     name, law = "the law is Algorithm 2, with the leader's acceleration fed forward to all agents", run.law
     if type(law) is Algorithm2:
@@ -87,7 +87,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
+def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
     """Return the basin of the flock's shape; none is known for other pair laws."""
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
@@ -98,7 +98,7 @@ def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
 
 def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     run = observed.run
-    needs = [_all_alike(run), _only_told(run)]
+    needs = [_all_alike(run), _is_feedforward(run)]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
@@ -110,7 +110,7 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     below = below_multiple(seen.energy[0] - pairs.floor, pairs.c_star)
     return [*needs, below], [
         _centre(seen, gains, needs),
-        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _caught(seen, gains)),
+        comes_to_rest(seen, np.ones(run.n, dtype=bool), needs, "velocities", _shape_basin(seen, gains)),
         stays_within(seen, needs, name="distance", proof=PROOF),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]
@@ -118,13 +118,13 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
 
 THEOREM = Theorem(
     id="su-varying",
-    title="A virtual leader of varying velocity: the centre of mass converges, if all are told its acceleration",
+    title="A virtual leader of varying velocity: the centre of mass converges if all agents know its acceleration",
     statement=(
-        "All agents feel the leader with c1, c2 > 0, and are told its acceleration. Then q_c − q_r and p_c − p_r die "
-        "out exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a "
+        "All agents feel the leader with c1, c2 > 0, and know its acceleration. Then q_c − q_r and p_c − p_r decay "
+        "exponentially, at the rate of the roots of s² + c2 s + c1. Seen from the leader the flock is one with a "
         "leader at rest, so that also all velocities match the leader's, every agent stays within sqrt(2 Q(0)/c1) of "
-        "it, and none collide below c*; the positions of single agents do not converge to it. Algorithm 2 as it "
-        "stands, which is not told, leaves a lag."
+        "it, and none collide below c*; the positions of single agents do not converge to it. Algorithm 2 itself, "
+        "without the acceleration, leaves a lag."
     ),
     source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
     kind="trajectory",

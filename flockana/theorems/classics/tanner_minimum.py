@@ -56,12 +56,12 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "tanner-minimum",
     statement=(
-        "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of "
-        "all agents. Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and "
-        "√3/2 d apart, stay there for ever, and the potential of the one in the middle falls to either side. But that "
-        "state is unstable: at a minimum of the total each agent's own potential is least to second order, so that "
-        "the printed claim fails on a thin set of starts. With many links even a stable limit presses agents off the "
-        "minima of single pairs."
+        "The theorem on fixed networks says that the flock approaches a state that minimises the potentials of all "
+        "agents. Its proof shows that no force acts in the limit. Three agents at rest on a line, all joined and √3/2 "
+        "d apart, stay there, and the potential of the one in the middle falls to either side. But that state is "
+        "unstable: at a minimum of the total energy each agent's own potential is least to second order, so that the "
+        "printed claim fails for a thin set of starts. With many links agents are off the minima of single pairs even "
+        "in a stable limit."
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
     check=_check,

@@ -47,8 +47,8 @@ THEOREM = Theorem(
         "Let agents steer by u_i = -Σ (p_i - p_j) - Σ ∇V_ij over those nearer than R, V being unbounded at contact, "
         "with one minimum, and constant from R on, where its gradient may jump; solutions are Filippov's. If the net "
         "is connected at all times, velocities become the same, no two agents collide, and the flock tends to a state "
-        "in which no force acts. That it stays connected is certain if H(0) < (n - 1) V(R): a cut leaves n - 1 pairs "
-        "beyond R at least."
+        "in which no force acts. That it stays connected is certain if H(0) < (n - 1) V(R): in a disconnected net at "
+        "least n - 1 pairs are beyond R."
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on switching networks; the sufficient condition is ours",
     kind="trajectory",

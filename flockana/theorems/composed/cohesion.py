@@ -38,7 +38,7 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     error = seen.shape_error + seen.centre_error[:, None]
     at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
     most, path = at_samples.hi.copy(), run.path
-    there = np.zeros(3)  # as paths are, whatever the dimension
+    there = np.zeros(3)  # paths have three components in every dimension
     there[: run.m] = place
     off = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
     for k, h in enumerate(np.diff(path.t).tolist()):
@@ -88,10 +88,10 @@ THEOREM = Theorem(
     id="cohesion",
     title="Agents that a γ-agent pulls stay near it",
     statement=(
-        "Where no term adds energy, the potential of each agent's own pull is at most H(0) less the least energy of "
+        "Where no term adds energy, the potential of each agent's own pull is at most H(0) minus the least energy of "
         "all pairs: with a linear pull ‖q_i − q_r‖ <= sqrt(2 H(0)/c1γ_i) of a γ-agent at rest, or of the centre of "
-        "mass where one gain pulls all and the energy is that of the shape; with a bounded pull of length ℓ "
-        "sqrt(2 H(0)/c1γ_i + (H(0)/(c1γ_i ℓ))²)."
+        "mass where one gain pulls all and the energy is that of the shape; with a bounded pull of length ℓ sqrt(2 "
+        "H(0)/c1γ_i + (H(0)/(c1γ_i ℓ))²)."
     ),
     source="ours, on Olfati-Saber 2006, Theorem 3(i)",
     kind="trajectory",

@@ -66,7 +66,8 @@ THEOREM = erratum(
     "L1",
     statement=(
         "(7) already sums over neighbours and carries the direction; (9) multiplies by n_ij and sums again. A product "
-        "of two vectors is undefined; by components it depends on the axes. The scalar force once and n once is meant."
+        "of two vectors is undefined; by components it depends on the axes. The paper presumably means the scalar "
+        "force once and n once."
     ),
     source="Li, Yuan and Liu, (7) and (9)",
     check=_check,

@@ -45,8 +45,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "L2",
     statement=(
-        "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall into "
-        "each other. q_j - q_i is meant throughout."
+        "Three conventions for n are given; with q_i - q_j repulsion and attraction change places and agents fall "
+        "into each other. The paper presumably means q_j - q_i throughout."
     ),
     source="Li, Yuan and Liu, (6)-(8)",
     check=_check,

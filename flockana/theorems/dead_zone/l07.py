@@ -47,7 +47,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             escape=end.separation,
             stated="all velocities match",
-            detail=f"two agents that separate keep the velocity mismatch {end.drift:.4g} for ever",
+            detail=f"two agents that separate keep the velocity mismatch {end.drift:.4g} permanently",
         ),
         limit_claim("components", [], [settling(end)], detail="each of the two components is one agent"),
         of_map(

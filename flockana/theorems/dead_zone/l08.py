@@ -43,7 +43,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             _ROUNDING / pair.ramp,
             computed=contact,
             stated="r_b - δ",
-            detail=f"two agents rest at r_b - δ = {pair.d1:g} less {pair.d1 - contact:.2g}, on the ramp of repulsion",
+            detail=f"two agents rest {pair.d1 - contact:.2g} below r_b - δ = {pair.d1:g}, on the ramp of repulsion",
         ),
     ]
 

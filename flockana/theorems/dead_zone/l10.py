@@ -20,7 +20,7 @@ from flockana.theorems.theorem import Claim, Tolerances
 _TIMES = 2.0  # as much energy as can put the pair out of range
 
 
-def wild_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
+def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
     """Two agents in contact that leave each other with twice the energy that can put them out of range, much damped."""
     law = DeadZoneFlocking(DeadZoneInteraction(), k2=10.0)
     q = np.array([[0.0, 0.0], [law.interaction.d1, 0.0]])
@@ -34,7 +34,7 @@ def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
-def _excludes_nothing() -> bool | None:
+def _is_finite_apart() -> bool | None:
     """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0.
 
     None if sympy cannot tell.
@@ -51,12 +51,12 @@ def _excludes_nothing() -> bool | None:
 
 def _necessary() -> Claim:
     """The claim that the condition leaves some start out, by algebra."""
-    nothing, stated = _excludes_nothing(), "the condition leaves some start out"
+    nothing, stated = _is_finite_apart(), "the condition leaves some start out"
     if nothing is None:
-        return undecided("printed-necessary", "sympy cannot tell whether the potential is finite", stated=stated)
+        return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)
     detail = (
-        "a pair's potential is finite at every distance > 0: every start from distinct places meets it, so that as a "
-        "necessary condition it excludes nothing; no other one is stated"
+        "a pair's potential is finite at every distance > 0: every start from distinct positions meets the stated "
+        "condition, which as a necessary one excludes nothing; no other is stated"
     )
     return exact("printed-necessary", not nothing, stated=stated, detail=detail)
 
@@ -65,7 +65,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     """Check the paper's condition on a pair that separates, and an energy condition: sufficient, not necessary."""
     law, q, p = parting_pair()
     away = final_components(observed(law, q, p, (0.0, 10.0)), law)
-    wild, x, v = wild_pair()
+    wild, x, v = escaping_pair()
     share = energy_share(wild, x, v)
     later = observed(wild, x, v, (0.0, 10.0))
     kept = final_components(later, wild).members[0].bond
@@ -77,8 +77,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [],
             escape=away.separation,
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
-            detail=f"two agents satisfy them, at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: neither "
-            "cohesion nor one velocity (L4, L7)",
+            detail=(
+                f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
+                "neither stay together nor match velocities (L4, L7)"
+            ),
         ),
         _necessary(),
         limit_claim(
@@ -104,9 +106,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "L10",
     statement=(
-        "The conclusion has necessary and sufficient conditions for the particular case. The paper states one "
+        "The conclusion claims necessary and sufficient conditions for the particular case. The paper states one "
         "condition, in Theorem 1: velocity mismatch, inertias and energy are limited. It does not suffice, and every "
-        "start from distinct places meets it. H̄(0) < (n - 1) ψ̄(r) suffices for a connected flock, and is not necessary."
+        "start from distinct places meets it. H̄(0) < (n - 1) ψ̄(r) suffices for a connected flock, and is not "
+        "necessary."
     ),
     source="Li, Yuan and Liu, section VI",
     check=_check,

@@ -16,7 +16,7 @@ _NEXT = 1.5  # steps: samples of a map that are farther apart have states betwee
 
 
 @dataclass(frozen=True)
-class Entry:
+class RangeEntry:
     """The first pair that comes into range, and whether there may be others."""
 
     pair: tuple[int, int] | None
@@ -29,11 +29,11 @@ def thinned(run: Trajectory) -> bool:
     return isinstance(run.law, DiscreteLaw) and bool((np.diff(run.t) > _NEXT * run.law.dt).any())
 
 
-def first_entry(seen: Observed, r: float) -> Entry:
+def first_entry(seen: Observed, r: float) -> RangeEntry:
     """Return the first pair that comes into range in a run."""
     run = seen.run
     if seen.doubt or len(run.t) == 1:  # nothing was seen to happen
-        return Entry(None, None, True)
+        return RangeEntry(None, None, True)
     pairs = run.n * (run.n - 1) // 2
     was_out, unsure = np.zeros(pairs, dtype=np.bool_), np.zeros(pairs, dtype=np.bool_)
     noise = 16.0 * EPS * (float(np.abs(run.q).max()) + r)
@@ -41,8 +41,8 @@ def first_entry(seen: Observed, r: float) -> Entry:
         for k, q in enumerate(run.q):
             pair = follow_steps(q, r, noise, was_out, unsure)
             if pair[0] >= 0:
-                return Entry(pair, float(run.t[k]), True)
-        return Entry(None, None, thinned(run) or bool(unsure.any()))
+                return RangeEntry(pair, float(run.t[k]), True)
+        return RangeEntry(None, None, thinned(run) or bool(unsure.any()))
     t, q, p, u, slack = run.path  # its own steps too: an input that jumps at a switch has its other value beside it
     noise += 2.0 * float(slack.max()) if slack is not None else 0.0
     known = (noise, 2.0 * float(seen.between_error.max()), 2.0 * float(seen.between_speed_error.max()))
@@ -50,5 +50,5 @@ def first_entry(seen: Observed, r: float) -> Entry:
         start, end = (q[k], p[k], u[k]), (q[k + 1], p[k + 1], u[k + 1])
         pair = follow_pairs(float(t[k + 1] - t[k]), start, end, r, known, was_out, unsure)
         if pair[0] >= 0:
-            return Entry(pair, float(t[k + 1]), True)
-    return Entry(None, None, bool(unsure.any()))
+            return RangeEntry(pair, float(t[k + 1]), True)
+    return RangeEntry(None, None, bool(unsure.any()))

@@ -83,7 +83,7 @@ _SYMBOLS = {
 }
 
 
-def _never_more(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
+def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, float], most: int, what: str) -> Claim:
     """Return the claim that a whole number never exceeds a bound, at and between the samples."""
     t, between = part.seen.t[part.first :], counts[2]
     least, largest = (series[part.first :] for series in counts[:2])
@@ -108,7 +108,7 @@ def _connected(part: _Window) -> Claim:
     """Return the claim that the net is connected throughout, by links that are certain."""
     between, at = nets_between(part.seen), nets_at(part.seen)
     counts = at.components_least, at.components, float(between.components.max(initial=0.0))
-    return _never_more("flock", part, counts, 1, "components")
+    return _at_most("flock", part, counts, 1, "components")
 
 
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
@@ -117,7 +117,7 @@ def _giant(part: _Window, tolerances: Tolerances) -> Claim:
     between, at = nets_between(part.seen), nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
     counts = n - at.giant_most, n - at.giant, float(n - between.giant.min(initial=n))
-    return _never_more("giant", part, counts, n - fewest, "agents outside the giant component")
+    return _at_most("giant", part, counts, n - fewest, "agents outside the giant component")
 
 
 def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:

@@ -19,8 +19,8 @@ from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
-    by_fact,
     condition,
+    hypothesis_from_fact,
     law_with_common_gains,
     positive,
     smooth_pair,
@@ -49,7 +49,7 @@ def is_paper(seen: Observed) -> bool:
     return isinstance(seen.law.alpha, AlphaInteraction)
 
 
-def said_by(seen: Observed, claims: list[Claim]) -> list[Claim]:
+def attribute_claims(seen: Observed, claims: list[Claim]) -> list[Claim]:
     """Return claims as the paper's; under another pair law than the paper's, as flockana's extensions."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
@@ -63,7 +63,7 @@ def potential_needs(seen: Observed) -> list[Hypothesis]:
 
 def weight_inside(seen: Observed) -> list[Hypothesis]:
     """Return the hypothesis that all pairs in range match velocities, unless it is proved."""
-    inside = by_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
+    inside = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
     return [inside] if inside.status != "met" else []
 
 
@@ -211,10 +211,10 @@ THEOREM = Theorem(
     title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
     statement=(
         "Let ψ be C¹ on (0, r], constant from r on and at least L, a_ij >= 0, and E = H - c1α L n(n-1)/2. Under "
-        "Algorithm 2 with c1γ, c2γ > 0 R <= sqrt(2 E(0)/c1γ), velocities match, and forces tend to 0. So they do under "
-        "Algorithm 1 with c1α, c2α > 0, a_ij > 0 below r, in a flock that stays connected, as it does if E(0) < "
-        "(n-1) c1α (ψ(r) - L). At most E/c* pairs coincide at one time, c* = c1α (ψ(0) - L), and none ever do if E(0) "
-        "< c*, as where ψ is unbounded at contact."
+        "Algorithm 2 with c1γ, c2γ > 0 R <= sqrt(2 E(0)/c1γ), velocities match, and forces tend to 0. Velocities "
+        "match and forces tend to 0 also under Algorithm 1 with c1α, c2α > 0 and a_ij > 0 below r, in a flock that "
+        "stays connected, as it does if E(0) < (n-1) c1α (ψ(r) - L). At most E/c* pairs coincide at one time, c* = "
+        "c1α (ψ(0) - L), and none ever do if E(0) < c*, or if ψ is unbounded at contact."
     ),
     source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
     kind="trajectory",

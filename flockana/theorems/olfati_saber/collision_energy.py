@@ -42,11 +42,11 @@ THEOREM = Theorem(
     id="collision-energy",
     title="No collision below c*; above it there are some",
     statement=(
-        "The energy of Algorithms 1 and 2 in the moving frame never rises, and a coincident pair alone holds c* = "
-        "c1α ψ_α(0). So below c* no two agents ever meet, whether or not the flock stays together. The bound is sharp: "
-        "that none meet below 2 c* is false, as two agents show that approach head on. The "
-        "same holds of every composition whose terms add no energy, with the least energy of all other pairs taken off "
-        "H(0), and c* what a coincident pair has more than that."
+        "The energy of Algorithms 1 and 2 in the moving frame never rises, and a coincident pair alone holds c* = c1α "
+        "ψ_α(0). So below c* no two agents ever meet, whether or not the flock stays together. The bound is sharp: "
+        "two agents that approach head on can meet below 2 c*. The same holds for every composition whose terms add "
+        "no energy, if the least energy of all other pairs is subtracted from H(0) and c* is the excess of a "
+        "coincident pair over a pair's least energy."
     ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     kind="trajectory",

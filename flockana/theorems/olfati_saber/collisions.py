@@ -238,7 +238,8 @@ def _instant_text(together: int, allowed: float) -> str:
     """Return in words how many pairs may coincide at one time."""
     if not together:
         return "no two agents can coincide at any time"
-    return f"at most {together} pairs may coincide at one time; the energy allows {allowed:g} or more at every time"
+    pairs = "1 pair" if together == 1 else f"{together} pairs"
+    return f"at most {pairs} may coincide at one time; the energy allows {allowed:g} or more at every time"
 
 
 def _at_one_place(q: FloatArray) -> IndexArray:

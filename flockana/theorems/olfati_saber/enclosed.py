@@ -13,7 +13,7 @@ from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, down, up
 from flockana.theorems.claims import undecided, vacuous
 from flockana.theorems.from_tube import (
-    Enclosed,
+    TubeAndBasin,
     below,
     certain_links,
     converges,
@@ -86,7 +86,7 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     needs = [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]
     if unmet(needs):
         return needs, []
-    case, needs = Enclosed.of(tube, basin), [*needs, _stays_together(tube)]
+    case, needs = TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
     low, barrier, matched = _below_c_star(tube), _below_barrier(tube), "velocities match in the moving frame"
     whole = tube.status == "complete"
     matching: dict[str, Any] = {"name": "ii", "stated": "K̃ -> 0", "detail": matched}
@@ -100,7 +100,7 @@ def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     ]
 
 
-def _lattice(case: Enclosed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+def _lattice(case: TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
@@ -116,7 +116,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     """Check Theorem 3 for the starts of a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
-    case, whole = Enclosed.of(tube, basin), tube.status == "complete"
+    case, whole = TubeAndBasin.of(tube, basin), tube.status == "complete"
     claims = [
         _cohesive(case, needs),
         converges(
@@ -135,7 +135,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
             proof="convergence" if whole else None,
         ),
         in_the_limit(
-            Enclosed(tube, None, ""),  # a basin says nothing of other starts
+            TubeAndBasin(tube, None, ""),  # a basin says nothing of other starts
             needs,
             name="ii-semidefinite",
             stated="almost every start tends to an equilibrium with ∇²U_λ >= 0",
@@ -163,7 +163,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     ]
 
 
-def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
+def _cohesive(case: TubeAndBasin, needs: list[Hypothesis]) -> Claim:
     """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
     tube = case.tube
     if not tube.taken:
@@ -187,7 +187,7 @@ def _cohesive(case: Enclosed, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _few_pairs(case: Enclosed, repels: Hypothesis) -> Claim:
+def _few_pairs(case: TubeAndBasin, repels: Hypothesis) -> Claim:
     """Claim (iv) as printed, that with H(0) < (k+1) c* at most k pairs collide: certain where none does."""
     tube = case.tube
     with ctx.workprec(BITS):
@@ -201,7 +201,7 @@ def _few_pairs(case: Enclosed, repels: Hypothesis) -> Claim:
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check the energy of a collision for the starts of a tube."""
-    needs, case = [positive(tube, c1_alpha="c1α")], Enclosed.of(tube, basin)
+    needs, case = [positive(tube, c1_alpha="c1α")], TubeAndBasin.of(tube, basin)
     if unmet(needs):
         return needs, []
     bounds = {name: _below_c_star(tube, times) for name, times in _MULTIPLES.items()}

@@ -72,8 +72,8 @@ def cancelling(run: Trajectory) -> FloatArray:
     speed = lengths(p)
     size: FloatArray = law.gains.c2_beta * 2.0 * len(law.obstacles) * np.sum(speed**2, axis=1)
     if law.target is not None:
-        told = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
-        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*told, strict=True))
+        any_p_r = [(*law.target.state(t), law.target.rate(t)) for t in run.t.tolist()]
+        q_r, p_r, rate = (np.array(each)[:, None] for each in zip(*any_p_r, strict=True))
         size += np.max(law.gains.c2_gamma) * np.sum(speed * (speed + lengths(p_r)), axis=1)
         size += np.max(law.gains.c1_gamma) * np.sum(lengths(rate) * lengths(q - q_r), axis=1)
     return size
@@ -138,7 +138,7 @@ def never_rises(
         stop = seen.known_samples((speeds.max(axis=1).lo > 0.0) | (share.lo >= 0.0) | (np.arange(stop) < since))
         until = "" if stop == len(seen.t) else f"; known {seen.until(stop)}"
     if stop <= since:
-        return undecided(name, "the motion is not known well enough to tell the sign of dH/dt", needs, proof=proof)
+        return undecided(name, "the motion is not known well enough to determine the sign of dH/dt", needs, proof=proof)
     share = share[since:stop]
     worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
     return judged(
@@ -149,8 +149,10 @@ def never_rises(
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
         witness={"time": float(seen.t[since + worst])},
         proof=proof,
-        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; -rate is at least "
-        f"{share.mid.min():.2g} of the sum of its terms' sizes{until}",
+        detail=(
+            f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
+            f"{share.mid.min():.2g} of the sum of its terms' sizes{until}"
+        ),
     )
 
 
@@ -183,7 +185,7 @@ def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
     """Return the hypotheses under which no term of the law adds energy, in the energy's own frame."""
     law, needs = run.law, pairs_dissipate(run)
     if law.target is not None and not law.moving:
-        needs.append(target_rests(run.run, told=False))  # outside of the moving frame a moving γ-agent does work
+        needs.append(target_rests(run.run, any_p_r=False))  # outside of the moving frame a moving γ-agent does work
     if type(law) is Algorithm3 or law.obstacles:
         needs.append(stays_outside(run))
     if type(law) is Composition and law.thrust > 0.0:
@@ -250,9 +252,9 @@ THEOREM = Theorem(
         "dH/dt = -c2α pᵀL̂p under Algorithm 1, dH_λ/dt = -c2γ‖v‖² - c2α vᵀL̂v in the moving frame under Algorithm 2, "
         "and the form of Theorem 6, with the work of a moving γ-agent, under Algorithm 3: the closed form agrees with "
         "the energy of the integrated run. It is never positive under Algorithms 1 and 2, nor under Algorithm 3 with "
-        "a γ-agent at rest and all agents outside the obstacles. The same holds of every composition of their terms, "
-        "a consensus over a net of its own, a told acceleration and drag included; a thrust adds energy. Of a sum of "
-        "terms of your own the rates that they give are held against the energy of the run."
+        "a γ-agent at rest and all agents outside the obstacles. The same holds for every composition of their terms, "
+        "with a consensus over another net, a feedforward acceleration and drag; a thrust adds energy. For a sum of "
+        "your own terms, the rates that they return are compared with the energy of the run."
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
     kind="trajectory",

@@ -69,7 +69,7 @@ def _deviation(tube: Tube, window: range, bound: float) -> Claim:
         return (sums[0] / (2 * len(possible) + 1)).union(sums[1] / (2 * len(certain) + 1))
 
     highest, when = _highest(tube, window, value)
-    return _under("deviation", "Ẽ", highest, bound, when)
+    return _below("deviation", "Ẽ", highest, bound, when)
 
 
 def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
@@ -82,10 +82,10 @@ def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
         return sum((square(x - means[i % m]) for i, x in enumerate(p)), arb(0)) / (2 * n * units)
 
     highest, when = _highest(tube, window, value)
-    return _under("mismatch", "K̃", highest, bound, when)
+    return _below("mismatch", "K̃", highest, bound, when)
 
 
-def _under(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
+def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
     """Return the claim that the largest value of a quantity is below a bound."""
     top = float(highest.upper())
     detail = f"{symbol} <= {top:.4g} throughout, largest about t = {when:.4g}"

@@ -32,7 +32,7 @@ def _known(target: Target) -> bool:
     return type(target) in _CLOSED_FORMS or (type(target) is RescaledVelocity and _known(target.target))
 
 
-def _looked(run: Trajectory) -> FloatArray:
+def _sample_times(run: Trajectory) -> FloatArray:
     """Return the times at which the γ-agent is sampled."""
     if _known(run.law.target) or len(run.t) < 2:
         return run.t
@@ -48,28 +48,28 @@ def _between(t: FloatArray) -> FloatArray:
     return nodes
 
 
-def target_rests(run: Trajectory, *, told: bool) -> Hypothesis:
-    """The hypothesis that the γ-agent rests during the whole run; if `told`, with a constant p_r, else with p_r = 0."""
-    target, at = run.law.target, _looked(run)
+def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
+    """Return the hypothesis that the γ-agent rests in the whole run, with p_r = 0, or with `any_p_r` a constant p_r."""
+    target, at = run.law.target, _sample_times(run)
     times = np.concatenate([at, _between(at).ravel()])
     states = [target.state(float(time)) for time in times]
     q_r, p_r = (np.array(series) for series in zip(*states, strict=True))
     speed = run.scales.speed
-    way, change = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if told else 0.0)).max())
+    way, change = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if any_p_r else 0.0)).max())
     moves = way > 4.0 * EPS * float(np.abs(q_r).max()) or change > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
     status: HypothesisStatus = "unmet" if moves else "met" if _known(target) else "assumed"
     return Hypothesis(
-        "the γ-agent is static" if told else "the γ-agent is at rest, p_r = 0",
+        "the γ-agent is static" if any_p_r else "the γ-agent is at rest, p_r = 0",
         status,
         -max(way / run.scales.length, change / speed),
-        _describe_rest(moves, told, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
+        _describe_rest(moves, any_p_r, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
     )
 
 
-def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
+def _describe_rest(moves: bool, any_p_r: bool, p_r: FloatArray) -> str:
     if moves:
         outside = "it moves, which is outside the theorem"
-        return outside if told else "it moves, or reports a velocity: it does work on the flock, of either sign"
+        return outside if any_p_r else "it moves, or reports a velocity: it does work on the flock, of either sign"
     though = " though q_r does not move, as printed" if p_r.any() else ""
     return f"q_r is fixed, p_r = {p_r.tolist()}{though}"
 
@@ -92,7 +92,7 @@ class Slip:
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
     """Return the difference between a declared velocity and the one that the γ-agent's positions show."""
-    target, t = run.law.target, _looked(run)
+    target, t = run.law.target, _sample_times(run)
     h = np.diff(t)
     if h.size == 0:
         return Slip(0.0, float("inf"))
@@ -129,5 +129,5 @@ def _agrees(run: Trajectory, name: str, what: str, velocity: Callable[[float], F
     if difference.off + difference.error <= allowed:
         return Hypothesis(name, "met", -difference.off, error=difference.error)
     if difference.off - difference.error <= allowed:
-        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to tell", difference.error)
+        return Hypothesis(name, "assumed", -difference.off, "the samples are too sparse to decide", difference.error)
     return Hypothesis(name, "unmet", -difference.off, f"{what} is off by up to {difference.off:.3g}", difference.error)

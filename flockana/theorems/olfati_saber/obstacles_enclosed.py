@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 def _rests(tube: Tube) -> Hypothesis:
     """Return the hypothesis that the γ-agent is static."""
     moves = bool(tube.law.target.harmonic.terms[1].any())
-    detail = "it moves" if moves else f"q_r is fixed, p_r = {_told(tube).tolist()}"
+    detail = "it moves" if moves else f"q_r is fixed, p_r = {_declared_velocity(tube).tolist()}"
     return condition("the γ-agent is static", not moves, detail=detail)
 
 
-def _told(tube: Tube) -> FloatArray:
+def _declared_velocity(tube: Tube) -> FloatArray:
     """Return p_r, which is constant on a straight path."""
     terms = tube.law.target.harmonic.terms
-    told: FloatArray = terms[1] + terms[4]
-    return told
+    declared: FloatArray = terms[1] + terms[4]
+    return declared
 
 
 def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
@@ -46,7 +46,7 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         p = step.during[half:]
         pulls = [pull.power(p[i : i + m], p[i : i + m], Piece.CORE) for i in range(0, half, m)]
         slack.append(-sum(pulls, arb(0)))
-    if not _told(tube).any() or all(x >= 0 for x in slack):
+    if not _declared_velocity(tube).any() or all(x >= 0 for x in slack):
         return condition(name, True, detail="at all times of the tube"), 0
     doubtful = max(k for k, x in enumerate(slack) if not x >= 0)
     since = doubtful + 1
@@ -54,7 +54,7 @@ def _slow_enough(tube: Tube, flow: Flow) -> tuple[Hypothesis, int]:
         return condition(name, True, detail=f"certainly from t0 = {tube.t[since]:.6g} to the end of the tube"), since
     if any(x < 0 and tube.t[-1] - tube.t[k + 1] <= tube.law.scales.time for k, x in enumerate(slack)):
         return condition(name, False, detail=f"certainly broken about t = {tube.t[doubtful]:.6g}, near the end"), 0
-    return Hypothesis(name, "assumed", detail="the tube is too wide or too short to tell"), 0
+    return Hypothesis(name, "assumed", detail="the tube is too wide or too short to decide"), 0
 
 
 def _stays_outside(tube: Tube) -> Hypothesis:
@@ -76,7 +76,7 @@ def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) ->
 
     With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
     """
-    squares = not _told(tube).any() and needs[-1].status == "met"
+    squares = not _declared_velocity(tube).any() and needs[-1].status == "met"
     margin, highest, when = arb(1), arb(float("-inf")), tube.t[since]
     for k in range(since, len(tube.taken)):
         parts = powers_during(tube, flow, k)

@@ -13,11 +13,11 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
+    attribute_claims,
     bounded_at_contact,
     is_paper,
     never_meets,
     potential_needs,
-    said_by,
     stays_together,
     weight_inside,
 )
@@ -27,7 +27,7 @@ from flockana.theorems.olfati_saber.energy import proved
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
 
 
-def _barrier(seen: Observed) -> str | None:
+def _barrier_proof(seen: Observed) -> str | None:
     """The id of the proof of the barrier's bound, which counts up to 60 agents of the default law in the plane."""
     counted = seen.m == 2 and seen.n <= 61 and seen.law.alpha == AlphaInteraction()
     return proved(seen, "barrier") if counted else None
@@ -56,9 +56,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
-        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier(seen)),
+        no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
     ]
-    return [*needs, *bounded, low, barrier], said_by(seen, claims)
+    return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
 
 
 THEOREM = Theorem(
@@ -67,9 +67,9 @@ THEOREM = Theorem(
     statement=(
         "With c1α, c2α > 0, if every solution that starts in the level set H(x, v) <= c is a cohesive dynamic flock, "
         "(i) almost every solution converges to an equilibrium that is an α-lattice, (ii) velocities match in the "
-        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide. Ours: the hypothesis is met if H(0) < "
-        "(n-1) c1α ψ_α(r_α), as a cut leaves n - 1 pairs out of range at least; and (ii) and (iii) need no more of a "
-        "pair potential than `any-potential` asks."
+        "moving frame, and (iii) if c < c* = ψ_α(0), no two agents ever collide. Our addition: the hypothesis is met "
+        "if H(0) < (n-1) c1α ψ_α(r_α), as in a disconnected net at least n - 1 pairs are out of range; and (ii) and "
+        "(iii) hold for every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 1",
     kind="trajectory",

@@ -15,12 +15,12 @@ from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
+    attribute_claims,
     bounded_at_contact,
     cohesive,
     is_paper,
     never_meets,
     potential_needs,
-    said_by,
 )
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import (
@@ -79,7 +79,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
     given = [*needs, *bounded, consistent(seen.run), repels]
     if unmet([repels]):
-        return given, said_by(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
+        return given, attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
     barrier = below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
     few = [repels, *potential]
     claims += [  # (iv) needs gains >= 0 only, which every run has
@@ -88,7 +88,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         no_collision(seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else PROOF),
         no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
-    return [*given, none, barrier], said_by(seen, claims)
+    return [*given, none, barrier], attribute_claims(seen, claims)
 
 
 THEOREM = Theorem(
@@ -96,11 +96,11 @@ THEOREM = Theorem(
     title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
     statement=(
         "With c1γ, c2γ > 0 and finite K(v(0)), J(x(0)): (i) the group stays cohesive, (ii) almost every solution "
-        "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if "
-        "H_λ(0) < (k+1) c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time "
-        "more pairs can collide (erratum E13). Of (ii) it is proved that each solution converges to one equilibrium, "
-        "and almost each to one with ∇²U_λ >= 0; a strict minimum is certified by its basin. (i), (iii) and (iv) need "
-        "no more of a pair potential than `any-potential` asks."
+        "converges to a local minimum of U_λ (no lattice in general), (iii) velocities match, (iv) if H_λ(0) < (k+1) "
+        "c*, at most k distinct pairs can collide. (iv) holds per instant, and for k = 0; over time more pairs can "
+        "collide (erratum E13). Proved of (ii): each solution converges to one equilibrium, and almost every one to "
+        "an equilibrium with ∇²U_λ >= 0; a strict minimum is certified by its basin. (i), (iii) and (iv) hold for "
+        "every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 3",
     kind="trajectory",

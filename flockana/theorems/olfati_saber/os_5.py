@@ -73,7 +73,9 @@ class Net:
     @property
     def crossing_text(self) -> str:
         """Number of crossings in words."""
-        return f"{self.crossing_count or 'no'} pairs of {len(self.links)} links cross"
+        if not self.crossing_count:
+            return f"no two of {len(self.links)} links cross"
+        return f"{self.crossing_count} pairs of {len(self.links)} links cross"
 
 
 def _lattice_hypotheses(net: Net, tolerances: Tolerances) -> list[Hypothesis]:
@@ -98,7 +100,7 @@ def _dimension(name: str, holds: bool, net: Net) -> Hypothesis:
 
 def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     margin = net.closest - length / sqrt(2.0)
-    text = f"shortest distance {net.closest:.6g}, to exceed {length / sqrt(2.0):.6g}"
+    text = f"shortest distance {net.closest:.6g}; needed: more than {length / sqrt(2.0):.6g}"
     # what rounding decides is not taken for met
     return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
@@ -136,7 +138,9 @@ def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
     if not planar and len(net.links) <= _WITNESS_LIMIT:
         witness = kuratowski(net.n, net.links)
     bound = planar_bound(net.n)
-    subgraph = "" if witness is None else f", which holds a subdivided {witness.kind} of {len(witness.links)} links"
+    subgraph = (
+        "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
+    )
     return by_count(
         "i-graph",
         0 if planar else 1,
@@ -203,12 +207,12 @@ def _quantitative(net: Net) -> Claim:
     worst = int(failing[0]) if failing.size else int(np.argmin(slack))
     return by_count(
         name,
-        failing.size,  # each sign is certain: in whole numbers where floats cannot tell
+        failing.size,  # each sign is certain: in whole numbers where floats cannot decide
         computed=net.crossing_count,
         stated=stated,
         witness=net.agents(net.crossings[worst]),
         proof=_CROSSINGS,
-        detail=f"{net.crossing_text}; the nearest pairs are within ℓ/√2 by {slack[worst] / net.d:.3g} d or more",
+        detail=f"{net.crossing_text}; the nearest pairs are closer than ℓ/√2 by {slack[worst] / net.d:.3g} d or more",
     )
 
 

@@ -19,9 +19,9 @@ from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances
 
 def condition_76(run: Trajectory) -> FloatArray:
     """Return T(t) − (n/2) ⟨p_c(t), p_r(t)⟩ at each sample; condition (76) asks for >= 0."""
-    told = np.array([run.law.target.state(t)[1] for t in run.t])
+    any_p_r = np.array([run.law.target.state(t)[1] for t in run.t])
     kinetic = 0.5 * np.sum(run.p**2, axis=(1, 2))
-    slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, told)
+    slack: FloatArray = kinetic - 0.5 * np.einsum("tim,tm->t", run.p, any_p_r)
     return slack
 
 
@@ -32,10 +32,10 @@ def _condition(seen: Observed) -> tuple[Hypothesis, int]:
     decides, it is assumed to hold.
     """
     run, slack = seen.run, condition_76(seen.run)
-    told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
-    terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * lengths(run.p).sum(axis=1)
+    any_p_r = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
+    terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * any_p_r * lengths(run.p).sum(axis=1)
     off = seen.series(condition_76).half_width
-    rounding = np.where(told > 0.0, (run.n + 8) * EPS * terms + off, 0.0)
+    rounding = np.where(any_p_r > 0.0, (run.n + 8) * EPS * terms + off, 0.0)
     broken = np.flatnonzero(slack < -rounding)
     since = 0 if broken.size == 0 else int(broken[-1]) + 1
     name = "(n/2)⟨p_c, p_d⟩ <= T from some t0 on (76)"
@@ -58,7 +58,7 @@ def start_of_condition(seen: Observed) -> int:
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     run = seen.run
     slow_enough, since = _condition(seen)
-    needs = [common_gains(seen), target_rests(run, told=True), slow_enough, stays_outside(seen)]
+    needs = [common_gains(seen), target_rests(run, any_p_r=True), slow_enough, stays_outside(seen)]
     rate, proof = declared_rate_is_true(run), proved(seen, "theorem6")
     return [*needs, rate], [
         never_rises(seen, needs, since=since, proof=proof),
@@ -72,9 +72,9 @@ THEOREM = Theorem(
     statement=(
         "With one c1γ and c2γ for all agents, a static γ-agent, (q_r, p_r) = (q_d, p_d), and (n/2)⟨p_c, p_d⟩ <= T for "
         "t >= t0: dH/dt = -c2α pᵀL̂p + c2β ΣΣ b_ik ⟨p_i, p̂_ik - p_i⟩ - 2 c2γ (T - (n/2)⟨p_c, p_d⟩) <= 0 for t >= t0, "
-        "where H counts every pair once (erratum E2). The source leaves unsaid that the agents must be outside the "
-        "obstacles: inside a sphere the second term can be positive. The condition is found at the samples, and holds "
-        "to the end of the run only."
+        "where H counts every pair once (erratum E2). The source omits that the agents must be outside the obstacles: "
+        "inside a sphere the second term can be positive. The condition is checked at the samples, up to the end of "
+        "the run only."
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",

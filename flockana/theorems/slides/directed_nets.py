@@ -63,7 +63,9 @@ def _momentum() -> Claim:
         computed=total,
         stated="momentum is not conserved: Σ u_i ≠ 0 of a pair of which one sees the other",
         witness={"q": [0.0, 7.5], "u": u.ravel().tolist()},
-        detail=f"one of two agents 7.5 apart is drawn to the other, unanswered: Σ u_i = {float(u.sum()):.4g}",
+        detail=(
+            f"one of two agents 7.5 apart is attracted by the other, which does not react: Σ u_i = {float(u.sum()):.4g}"
+        ),
     )
 
 
@@ -108,8 +110,10 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own.mid[-1])},
-            detail=f"it goes from {size:.4g} to {float(own.mid[-1]):.2g}, and rises by "
-            f"{climbed.mid.max():.2g} at most on the way",
+            detail=(
+                f"this energy goes from {size:.4g} to {float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} "
+                "at most on the way"
+            ),
         ),
         judged(
             "leader",
@@ -127,10 +131,10 @@ THEOREM = erratum(
     "directed-nets",
     title="Directed nets: what holds of Algorithms 1 to 3 and what fails",
     statement=(
-        "Agents with ranges of their own, or a conic neighbourhood, make the net directed. With one range for all, all "
-        "round, the laws are Algorithms 1 to 3. Else action is not reaction: momentum is not conserved and H may rise. "
-        "An agent that sees one other alone, which is not accelerated, still loses c1α ψ_α + ½‖p_i − p_j‖², and "
-        "follows it."
+        "Agents with different ranges, or with a conic neighbourhood, make the net directed. With one range for all, "
+        "all round, the laws are Algorithms 1 to 3. Otherwise action is not reaction: momentum is not conserved and H "
+        "may rise. An agent that sees only one other agent, which is not accelerated, still loses c1α ψ_α + ½‖p_i − "
+        "p_j‖², and follows it."
     ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
     check=_check,

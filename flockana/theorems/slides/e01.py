@@ -26,7 +26,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             e1_identity(m=2).residual,
             stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p",
             disproof=PROOF,
-            detail="with the printed H a term -dV/dt is left over, and it has no sign",
+            detail="with the printed H a term -dV/dt remains, which has no definite sign",
         ),
         state_claim(e1_counterexample()),
         _rising_run(),

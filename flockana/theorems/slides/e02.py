@@ -29,7 +29,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             e2_identity(m=2).residual,
             stated=f"{stated} for V_α = Σ_i Σ_(j≠i) ψ_α",
             disproof=PROOF,
-            detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt is left over, and it has no sign",
+            detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt remains, which has no definite sign",
         ),
         state_claim(e2_counterexample()),
         _rising_run(),

@@ -170,10 +170,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "E3",
     statement=(
-        "Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. A strict "
-        "local minimum of V that is none, modulo rigid motions, attracts an open set of starts; Algorithm 2's λJ "
-        "strains every lattice. (Theorem 1 assumes in addition that all of Ω_c stays connected, which such starts do "
-        "not grant.)"
+        "Theorem 1(i) and the slides' summaries say that almost every solution converges to an α-lattice. But a "
+        "strict local minimum of V, modulo rigid motions, attracts an open set of starts even where it is not an "
+        "α-lattice; and Algorithm 2's λJ strains every lattice. (Theorem 1 assumes in addition that all of Ω_c stays "
+        "connected, which such starts do not guarantee.)"
     ),
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
     check=_check,

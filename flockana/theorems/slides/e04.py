@@ -128,7 +128,7 @@ def _together(alpha: AlphaInteraction) -> Claim:
         witness={"[n of a lattice below, least n without any state], by dimension": table},
         proof="any-potential",
         detail="the best lattices at rest are below this energy up to n = "
-        + ", ".join(f"{n} ({_SPACES[m]}; no state is from n = {none} on)" for m, (n, none) in table.items())
+        + ", ".join(f"{n} ({_SPACES[m]}; no state from n = {none} on)" for m, (n, none) in table.items())
         + f", by {min(rooms) / alpha.far_potential:.3g} ψ_α(r_α) at least, left for kinetic energy",
     )
 
@@ -142,7 +142,7 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
         "barrier",
         least,
         _error(alpha, max(_SIZES)),
-        computed={n: {"together": barrier.together, "ground": barrier.ground} for n, barrier in barriers.items()},
+        computed={n: {"together": barrier.together, "ground": barrier.lowest} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         witness="minimised from many starts, an upper bound; the margin is that of a lower bound, which counts pairs",
         detail=f"to bring two agents together takes {heights}, from the best lattice (c* = {alpha.c_star:.3f})",
@@ -159,9 +159,9 @@ THEOREM = erratum(
     statement=(
         "Theorem 1(iii) excludes collisions below c* = ψ_α(0). That is true, but each pair out of range adds ψ_α(r_α) "
         "to the energy: in the plane no α-lattice of more than 14 agents is below c*, and no state of 23 or more (18 "
-        "on a line, 26 in space). The barrier min{V : two agents coincide} is a certificate that does not go vacuous; "
-        "it is found numerically. The hypothesis of Theorem 1 on all solutions is met below (n-1) ψ_α(r_α): by "
-        "lattices of up to 3 agents on a line, 5 in the plane and 6 in space."
+        "on a line, 26 in space). The barrier min{V : two agents coincide} is a bound that does not become vacuous; "
+        "it is found numerically. The hypothesis of Theorem 1 on all solutions is met for energies below (n-1) "
+        "ψ_α(r_α): by lattices of up to 3 agents on a line, 5 in the plane and 6 in space."
     ),
     source="slides, Theorem 1(iii)",
     check=_check,

@@ -133,9 +133,9 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "E5",
     statement=(
-        "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A face-"
-        "centred cubic site and its twelve neighbours have 36 links, more than 3n - 6 = 33; eight sites with 17 links "
-        "are not planar either. All fragments of six sites are."
+        "Theorem 5(i) is printed as: the graph is planar for m = 2, 3. In space only the edges do not cross. A "
+        "face-centred cubic site and its twelve neighbours have 36 links, more than 3n - 6 = 33; eight sites with 17 "
+        "links are not planar either. All fragments of six sites are planar."
     ),
     source="Lecture slides, Theorem 5",
     check=_check,

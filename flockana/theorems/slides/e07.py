@@ -28,9 +28,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     printed, true = printed_edge_share(100, links(uneven, 1.5)), giant_share(uneven, 1.5)
     few, both = "components of 1, 1, 1, 1 and 96 agents", "five components of 20 agents"
     nodes, edges = giant_share(even, 1.5), printed_edge_share(100, links(even, 1.5))
-    text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, for the components are alike"
+    text = f"C* = {nodes:g}; the share of edges, {edges:g}, is the same here, as all components are alike"
     return [
-        _share("printed", printed, few, f"as printed, the share of edges in the giant component is {printed:g}"),
+        _share(
+            "printed",
+            printed,
+            few,
+            f"by the printed formula, the share of edges in the giant component, C* is {printed:g}, not 0.96",
+        ),
         _share("corrected", true, few, f"the share of nodes is {true:g}, the example's number"),
         _relative("connectivity-1", connectivity(uneven, 1.5), few),
         _relative("connectivity-2", connectivity(even, 1.5), both),

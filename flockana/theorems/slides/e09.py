@@ -66,7 +66,7 @@ def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
         computed=text,
         stated="0",
         witness={"u dt²": swept, "excess of one step of the map": measured},
-        detail=f"with the velocity of the {v} of the step, q moves {text} beyond q + p dt + ½ u dt²",
+        detail=f"with the velocity at the {v} of the step, the displacement exceeds p dt + ½ u dt² by {text}",
         **proof,
     )
 

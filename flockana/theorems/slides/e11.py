@@ -118,7 +118,7 @@ def _thresholds(law: Algorithm2) -> Claim:
         "threshold",
         at[:-1] - at[1:],
         computed={n: list(pair) for n, pair in brackets.items()},
-        detail=f"a hexagonal patch collapses from c1γ/c1α on: {table}",
+        detail=f"ratio c1γ/c1α from which on a hexagonal patch collapses: {table}",
         **about,
     )
 
@@ -128,7 +128,7 @@ THEOREM = Theorem(
     title=printed("E11"),
     statement=(
         "The sources take Algorithm 2 to yield a lattice. The γ-agent presses on every link: beyond a ratio c1γ/c1α "
-        "that falls with n, agents coincide for good, in a strict local minimum of U_λ."
+        "that falls with n, agents coincide permanently, in a strict local minimum of U_λ."
     ),
     source="slides, summary of Theorem 3; both student projects",
     kind="trajectory",

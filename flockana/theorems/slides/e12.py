@@ -26,12 +26,12 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     kind = f"{type(run.law).__name__}{', gains per agent' if not applies and type(run.law) is Algorithm2 else ''}"
     path, factor = path_and_factor(run.law.target) if applies else (None, 1.0)
     swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
-    told = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
+    detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
     drag = float(run.law.gains.c2_gamma) if applies else 0.0
     return [
         condition("Algorithm 2 is applied, one gain for all", applies, detail=kind),
-        condition("the γ-agent moves on a circle or a sine", swings, detail=told),
-        condition("its p_r is not dq_r/dt", factor != 1.0, detail=told),
+        condition("the γ-agent moves on a circle or a sine", swings, detail=detail),
+        condition("its p_r is not dq_r/dt", factor != 1.0, detail=detail),
         condition("c2γ > 0: the start is forgotten", drag > 0.0, drag),
     ]
 
@@ -61,9 +61,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     consistent = observed(replace(law, target=path), run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])))
     handed, true = measured_ratio(seen), measured_ratio(consistent)
     slow = omega**2 * (1.0 + 8.0 * EPS) < 2.0 * gains.c1_gamma  # then the true p_r makes the path larger
-    told = f"with the p_r that was handed over, {factor:g} dq_r/dt"
+    detail = f"with the p_r that was handed over, {factor:g} dq_r/dt"
     return needs, [
-        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, told),
+        _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
         _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
         judged(
             "printed",
@@ -83,10 +83,10 @@ THEOREM = Theorem(
     id="E12",
     title=printed("E12"),
     statement=(
-        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It lays the "
-        "sine to the reversal of the γ-agent's velocity (what it lays the circle to: E15). The cause of both is one: "
-        "the centre of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 "
-        "of dq_r/dt: at its gains the ratio is then 0.852, and 1.109 with the true p_r. So it is of the flow; the "
+        "The MSN project finds the flock's sine (case 3) and circle (case 4) smaller than the γ-agent's. It explains "
+        "the sine by the reversal of the γ-agent's velocity (for the circle see E15). Both have one cause: the centre "
+        "of mass is a linear filter of (q_r, p_r), and the project's p_r is per iteration, 0.009 of dq_r/dt. At its "
+        "gains the ratio is then 0.852; with the true p_r it is 1.109. These are the ratios of the flow; the "
         "project's own program, which moves one agent after another in place, gives 0.825 with 19 agents (E15)."
     ),
     source="MSN project, conclusion, cases 3 and 4",

@@ -94,8 +94,8 @@ THEOREM = erratum(
     "E14",
     statement=(
         "The slides rewrite u_i^g = Σ_j s_ij q_j − S_i q_i as S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻, the pull to the mean of positive "
-        "friends and the push from that of the negative ones. −S_i q_i is lost, and the force depends on the origin. "
-        "True is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i)."
+        "friends and the push from that of the negative ones. The term −S_i q_i is lost, and the force depends on the "
+        "origin. The correct form is S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i)."
     ),
     source="slides, Algorithm 1 against Reynolds' rules",
     check=_check,

@@ -29,7 +29,7 @@ _SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of the project's γ-agent
 _PROOF = "tracking-gain"
 _AWAY = 3.0  # radii from the centre of the circle to where a flock outside starts
 _PERIODS = 3.0  # at least: the fit takes the last whole ones of half a run
-_LASTING = 4.5  # time units at least, after half of which what is left of the start is e^-19 of it
+_LASTING = 4.5  # time units at least; after half of them the start has decayed to e^-19
 
 
 def circle_law(speed: float, factor: float) -> Algorithm2:
@@ -57,8 +57,8 @@ def _condition() -> Any:
 
     factor, w = sp.Symbol("k", real=True), sp.Symbol("w", nonnegative=True)
     c1, c2 = GAINS.c1_gamma, GAINS.c2_gamma
-    told = -(c1**2) * falling_condition(factor) - 2 * c1**2 * w - factor**2 * c2**2 * w**2
-    return sp.expand(gain_slope(factor, square=w) - told)
+    expected = -(c1**2) * falling_condition(factor) - 2 * c1**2 * w - factor**2 * c2**2 * w**2
+    return sp.expand(gain_slope(factor, square=w) - expected)
 
 
 def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
@@ -93,7 +93,10 @@ def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) 
         tolerances.agreement - off,
         computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=f"the ratio, inside or outside, at each speed, with either p_r, is off by {off.mid.max():.1g} at most",
+        detail=(
+            "the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
+            f"{off.mid.max():.1g} at most"
+        ),
     )
 
 
@@ -143,14 +146,17 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         *_printed(inside, outside, others),
         _agree([*ran, *true, outside], [*gains, home], tolerances),
         _falls("faster", ran, faster, "and its p_r per iteration", proof=_PROOF),
-        _falls("faster-as-run", mapped, "the same of the project's own map", "and the map, agent by agent in place,"),
+        _falls("faster-as-run", mapped, "the same for the project's own map", "and the map, agent by agent in place,"),
         _first_grows(true),
         equal(
             "condition",
             _condition(),
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
             proof=_PROOF,
-            detail=f"never for the true p_r; for the project's the left side is {margin:.3g} times the right",
+            detail=(
+                f"the condition never holds for the true p_r; for the project's the left side is {margin:.3g} times "
+                "the right"
+            ),
         ),
     ]
 
@@ -158,11 +164,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 THEOREM = erratum(
     "E15",
     statement=(
-        "The MSN project finds that the faster the γ-agent, the smaller the flock's circle: true of its program, with "
-        "its p_r per iteration. It lays the smaller circle of case 4 'most likely' to a flock that starts inside the "
-        "γ-agent's and to a speed just great enough to follow: the start is forgotten, and the circle is smaller at "
-        "every speed. With p_r = dq_r/dt it first grows with the speed, to 1.155 of the γ-agent's, whatever the gains, "
-        "as long as c2γ = 2√c1γ."
+        "The MSN project finds that the flock's circle is smaller if the γ-agent is faster, which is true of its "
+        "program, with its p_r per iteration. It explains the smaller circle of case 4 'most likely' by a start "
+        "inside the γ-agent's circle and a speed just great enough to follow. But the start is forgotten, and the "
+        "circle is smaller at every speed. With p_r = dq_r/dt it first grows with the speed, to 1.155 of the "
+        "γ-agent's, whatever the gains, as long as c2γ = 2√c1γ."
     ),
     source="MSN project, conclusion, case 4",
     check=_check,

@@ -26,7 +26,7 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 
 
 @lru_cache(maxsize=1)
-def _pressed() -> FloatArray:
+def _compressed_rest() -> FloatArray:
     """Return where a hexagonal patch of 61 agents rests at the project's coefficients."""
     return _rest(perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d), _RATIO)
 
@@ -62,7 +62,7 @@ def _pair_ratio(strain: float) -> float:
 def _check(tolerances: Tolerances) -> list[Claim]:
     """Flocks of 2 to 7 agents at c1γ = c1α, and 61 agents at the project's own coefficients."""
     strains = stacked([_least_strain(n, tolerances.contact) for n in _SIZES])
-    q = _pressed()
+    q = _compressed_rest()
     many = _measured(q, _RATIO, tolerances.contact)
     basin, pairs = attraction(pulled_law(_ALPHA, _RATIO), q, 0.0 * q).certificate, float(many.coincident)
     return [
@@ -79,7 +79,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "insufficient",
             Enclosure(pairs if basin.certain else 0.0, pairs, pairs) - 0.5,
             computed=many.coincident,
-            stated="at c1γ/c1α = 0.7 some of 61 agents coincide for good",
+            stated="at c1γ/c1α = 0.7 some of 61 agents coincide permanently",
             witness="a hexagonal patch relaxed by gradient flow",
             detail=f"at the project's 100 : 70, {many.coincident} pairs of 61 agents end in the same place (of its own "
             f"100 agents more: scenario msn-static), with curvature {many.curvature:.3g} of the largest: {basin.text}",
@@ -92,8 +92,8 @@ THEOREM = erratum(
     statement=(
         'The MSN project says that the α coefficients "must be greater than the gamma coefficients for algorithm 2 to '
         'work correctly" (Alpha Agent). Where they are not, no flock that was tried rests as a lattice. It does not '
-        "suffice: at the project's own 100 : 70 pairs of agents coincide for good in a flock of 61. What counts is the "
-        "ratio c1γ/c1α against a threshold that falls with n (E11)."
+        "suffice: at the project's own 100 : 70 pairs of agents coincide permanently in a flock of 61. What counts is "
+        "the ratio c1γ/c1α against a threshold that falls with n (E11)."
     ),
     source="MSN project, Alpha Agent and Gamma Agent",
     check=_check,

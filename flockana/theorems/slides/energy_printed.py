@@ -39,7 +39,7 @@ def _cancelling(run: Trajectory) -> FloatArray:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [target_rests(seen.run, told=False), stays_outside(seen)]
+    needs = [target_rests(seen.run, any_p_r=False), stays_outside(seen)]
     by_samples = run_claim(seen, pair_energy, f"{seen.n} agents", needs)
     if by_samples.status == "refuted":
         return needs, [by_samples]
@@ -51,7 +51,7 @@ THEOREM = Theorem(
     title="The energy of Algorithm 3 as printed never rises",
     statement=(
         "With a γ-agent at rest and all agents outside the obstacles, H with V_α = Σ_i Σ_(j≠i) ψ_α never rises. False "
-        "(E2): the sum counts every pair twice, and what it has too much has no sign."
+        "(E2): the sum counts every pair twice, and the rate of the surplus has no definite sign."
     ),
     source="slides, Algorithm 3",
     kind="trajectory",

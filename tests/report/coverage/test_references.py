@@ -43,13 +43,13 @@ def test_where_names_lead(kind, name, file):
         ("scenario", "paper-floking", "paper-flocking"),
         ("report", "msn-case1/fragment", "msn-case1/fragments"),
         ("theorem", "os-2", "did you mean 'os-"),
-        ("theorem", "E4", "The nearest of"),  # is an erratum
+        ("theorem", "E4", "nearest of"),  # is an erratum
         ("erratum", "E0", "E10"),
         ("erratum", "os-1", "E1"),  # is none
         ("claim", "os-3/iv-barier", "os-3/iv-barrier"),
         ("claim", "os-3", "os-3/iii"),
         ("proof", "sign_of_phi", "signs_of_phi"),
-        ("proof", "intervals", "The nearest of"),  # a module beside the proofs
+        ("proof", "intervals", "nearest of"),  # a module beside the proofs
         ("notebook", "99", "09"),
     ],
 )

@@ -45,7 +45,7 @@ def test_ten_minutes_decide_nothing_about_sooner_or_later(verdict_of):
 @pytest.mark.parametrize("gaps", [(4.0, 740.0, 1.0), (740.0, 4.0, 1.0), (740.0, 740.0, 6.0)])
 def test_growing_is_refuted_by_any_one_of_its_three_gaps(monkeypatch, gaps):
     monkeypatch.setattr(j16, "_last_gap", lambda growth, q, p: gaps[(0.0, 5.0, 10.0).index(growth)])
-    assert j16._lone().status == "refuted"
+    assert j16._growing_radii().status == "refuted"
 
 
 def test_the_mirror_image_of_an_agent_never_meets_it():

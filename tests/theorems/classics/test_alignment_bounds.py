@@ -11,16 +11,16 @@ import pytest
 import flockana as fl
 from flockana.interactions.weights import RationalWeight
 from flockana.laws.cucker_smale import spread
-from flockana.theorems.classics.alignment_bounds import QUADRATURE, Decline, Guarantee
+from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate, Guarantee
 from flockana.theorems.observed import Observed
 
 
 @pytest.mark.parametrize("start", [-2.0, 0.0, 0.7])
 def test_integrals_in_closed_form(start):
-    line = Decline(RationalWeight(decay=1.0, length=2.0), 3.0, 1.0)
+    line = AlignmentRate(RationalWeight(decay=1.0, length=2.0), 3.0, 1.0)
     assert line.between(start, 5.0) == pytest.approx(6.0 * (atan(2.5) - atan(start / 2.0)), rel=1e-12)
     assert line.beyond(start) == pytest.approx(6.0 * (pi / 2.0 - atan(start / 2.0)), rel=1e-12)
-    half = Decline(RationalWeight(decay=0.5), 1.0, 2.0)
+    half = AlignmentRate(RationalWeight(decay=0.5), 1.0, 2.0)
     assert half.between(start, 5.0) == pytest.approx(0.5 * (asinh(10.0) - asinh(2.0 * start)), rel=1e-12)
     assert half.beyond(start) == inf
 
@@ -28,12 +28,12 @@ def test_integrals_in_closed_form(start):
 @pytest.mark.parametrize("decay", [0.51, 0.8, 3.0])
 def test_the_tail_by_quadrature(decay):
     exact = mpmath.quad(lambda w: mpmath.cosh(w) ** (1 - 2 * mpmath.mpf(decay)), [asinh(2.0), 50, 2000, mpmath.inf])
-    assert Decline(RationalWeight(decay=decay), 1.0, 1.0).beyond(2.0) == pytest.approx(float(exact), rel=1e-9)
+    assert AlignmentRate(RationalWeight(decay=decay), 1.0, 1.0).beyond(2.0) == pytest.approx(float(exact), rel=1e-9)
 
 
 @pytest.mark.parametrize("decay", [0.0, 0.25, 0.5, 1.0])
 def test_the_bound_is_where_the_integral_is_the_speed(decay):
-    line = Decline(RationalWeight(decay=decay), 2.0, sqrt(2.0))
+    line = AlignmentRate(RationalWeight(decay=decay), 2.0, sqrt(2.0))
     speed = 0.9 * min(line.beyond(0.3), 4.0)
     assert line.between(0.3, line.reached(0.3, speed)) == pytest.approx(speed, rel=1e-11)
     assert line.reached(0.3, 0.0) == 0.3
@@ -43,7 +43,9 @@ def test_the_bound_is_where_the_integral_is_the_speed(decay):
 
 def test_a_flock_of_two_shows_that_the_larger_integral_is_sharp():
     """The threshold of two agents on a line, π/4 here, is that of φ(s) = λψ(√2 s), and above that as printed."""
-    sharp, printed = (Decline(RationalWeight(decay=1.0), 1.0, c).beyond(1.0 / sqrt(2.0)) for c in (sqrt(2.0), 2.0))
+    sharp, printed = (
+        AlignmentRate(RationalWeight(decay=1.0), 1.0, c).beyond(1.0 / sqrt(2.0)) for c in (sqrt(2.0), 2.0)
+    )
     assert sharp * sqrt(2.0) == pytest.approx(pi / 4.0, rel=1e-12)
     assert printed * sqrt(2.0) == pytest.approx((pi / 2.0 - atan(sqrt(2.0))) / sqrt(2.0), rel=1e-12)
 
@@ -117,7 +119,7 @@ def test_how_exactly_a_fall_is_known_far_from_rest():
     q, p = np.array([[0.0], [1.0]]), np.array([[0.0], [1.0]])
     run = fl.simulate(law, q, p + 1e6, (0.0, 2.0), t_eval=[0.0, 2.0])
     v0, v = spread(run.p)
-    phi, x0 = Decline(law.weight, 2.0, sqrt(2.0)), spread(run.q)[0]
+    phi, x0 = AlignmentRate(law.weight, 2.0, sqrt(2.0)), spread(run.q)[0]
     x_m = phi.reached(x0, v0)
     rate = phi(x_m)
     claim = Guarantee(Observed.alone(run), sqrt(2.0)).claims(("bounded", "rate", "flock"), [], "cucker-smale")[1]

@@ -11,7 +11,7 @@ from flockana.theorems.classics.averaging import (
     averaging_matrix,
     blocks,
     contraction,
-    neighbourhoods,
+    neighbourhood_sizes,
     permanently_connected,
     permanently_separated,
 )
@@ -38,7 +38,7 @@ def test_a_net_that_is_certified_stays_as_it_is():
         seen += 1
         run = simulate(LAW, q, LAW.velocities(heading), (0.0, 200.0))
         assert all(np.array_equal(LAW.links(x), LAW.links(q)) for x in run.q)
-        weights = neighbourhoods(len(q), LAW.links(q))
+        weights = neighbourhood_sizes(len(q), LAW.links(q))
         assert run.extra["heading"][-1] == pytest.approx(np.full(len(q), weights @ heading / weights.sum()), abs=1e-9)
     assert seen > 10
 
@@ -55,8 +55,8 @@ def test_the_bound_of_what_may_change_is_near_what_does():
 
 def test_a_net_that_averages_slowly_may_change_for_long():
     """A path of three, w = (2, 3, 2), ρ = ½: headings (δ, 0, −δ) move two neighbours by 0.2 √(1/2 + 1/3) δ at most."""
-    q, room = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), 0.3
-    limit = room / (0.05 * np.sqrt(1.0 / 2.0 + 1.0 / 3.0) * 2.0 / 0.5)
+    q, integral_to_infinity = np.array([[0.0, 0.0], [0.7, 0.0], [1.4, 0.0]]), 0.3
+    limit = integral_to_infinity / (0.05 * np.sqrt(1.0 / 2.0 + 1.0 / 3.0) * 2.0 / 0.5)
     for share in (0.98, 1.02):
         heading = 1.5 + share * limit * np.array([1.0, 0.0, -1.0])
         assert certain(permanently_connected(LAW, q, heading)) == (share < 1.0)

@@ -24,23 +24,23 @@ def pair(start, speed, *, mean=False, decay=1.0, way=1.0, far=0.0, until=0.1):
 @pytest.mark.parametrize("mean", [True, False])
 @pytest.mark.parametrize("start", [0.5, -2.0])
 def test_on_which_side_of_the_integral_the_speed_is(start, mean, way):
-    room = PSI[mean] * (pi / 2.0 - atan(start))
-    slow, _ = pair(start, 0.4 * room, mean=mean, way=way)
+    integral_to_infinity = PSI[mean] * (pi / 2.0 - atan(start))
+    slow, _ = pair(start, 0.4 * integral_to_infinity, mean=mean, way=way)
     bounded = slow.claim("bounded")
     assert slow.claim("parts").status == "vacuous"
     assert (bounded.status, bounded.proof) == ("verified", "cucker-smale")
-    assert bounded.needs[-1].margin == pytest.approx(0.6 * room, rel=1e-10)
-    assert bounded.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
-    end = tan(atan(start) + 0.4 * room / PSI[mean])
+    assert bounded.needs[-1].margin == pytest.approx(0.6 * integral_to_infinity, rel=1e-10)
+    assert bounded.needs[-1].error == pytest.approx(1e-11 * integral_to_infinity, rel=1e-3)
+    end = tan(atan(start) + 0.4 * integral_to_infinity / PSI[mean])
     assert f"x along w tends to {end:.6g}, " in bounded.detail
-    fast, run = pair(start, 1.5 * room, mean=mean, way=way)
+    fast, run = pair(start, 1.5 * integral_to_infinity, mean=mean, way=way)
     parts = fast.claim("parts")
     assert fast.claim("bounded").status == "vacuous"
     assert (parts.status, parts.proof) == ("verified", "cucker-smale")
-    assert parts.needs[-1].margin == pytest.approx(0.5 * room, rel=1e-10)
-    assert parts.needs[-1].error == pytest.approx(1e-11 * room, rel=1e-3)
+    assert parts.needs[-1].margin == pytest.approx(0.5 * integral_to_infinity, rel=1e-10)
+    assert parts.needs[-1].error == pytest.approx(1e-11 * integral_to_infinity, rel=1e-3)
     assert parts.computed == pytest.approx(way * float(run.p[-1, 1, 0] - run.p[-1, 0, 0]), rel=1e-7)
-    assert f"at the end and never below {0.5 * room:.6g}" in parts.detail
+    assert f"at the end and never below {0.5 * integral_to_infinity:.6g}" in parts.detail
 
 
 def test_at_the_integral_itself_it_is_open():

@@ -24,18 +24,18 @@ def motion(speed, closing=2.0, law=LAW):
 @pytest.mark.parametrize("share", [0.5, 0.99, 1.01, 2.0])
 def test_the_spread_of_velocities_against_the_integral(name, c, share):
     """∫φ from √2 on is λℓ/c (½π − atan(√2 c/ℓ)), with λ = 1.5 and ℓ = 2."""
-    room = 3.0 / c * (0.5 * pi - atan(c / sqrt(2.0)))
-    verdict = judged(name, motion(share * room / sqrt(2.0)))
+    integral_to_infinity = 3.0 / c * (0.5 * pi - atan(c / sqrt(2.0)))
+    verdict = judged(name, motion(share * integral_to_infinity / sqrt(2.0)))
     need = hypothesis(verdict, "∫φ")
     assert need.status == ("met" if share < 1.0 else "unmet")
-    assert need.margin == pytest.approx((1.0 - share) * room, rel=1e-9)
+    assert need.margin == pytest.approx((1.0 - share) * integral_to_infinity, rel=1e-9)
     assert [claim.name for claim in verdict.claims] == ["bounded", "rate", "flock"]
     if share > 1.0:
         assert set(statuses(verdict).values()) == {"vacuous"}
         assert verdict.claim("flock").detail.startswith("‖v(0)‖ < ∫φ from ‖x(0)‖ on does not hold: ‖v(0)‖ = ")
     else:
-        x_m = 2.0 / c * tan(atan(c / sqrt(2.0)) + share * room * c / 3.0)
-        widest = sqrt(2.0) + share * room * (1.0 - np.exp(-6.0)) / 2.0
+        x_m = 2.0 / c * tan(atan(c / sqrt(2.0)) + share * integral_to_infinity * c / 3.0)
+        widest = sqrt(2.0) + share * integral_to_infinity * (1.0 - np.exp(-6.0)) / 2.0
         assert verdict.claim("bounded").margin == pytest.approx(1.0 - widest / x_m, rel=1e-8)
         assert (verdict.claim("flock").status, verdict.claim("flock").margin) == ("verified", None)
         assert verdict.claim("flock").proof == "cucker-smale"

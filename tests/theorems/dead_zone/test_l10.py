@@ -5,12 +5,12 @@ import pytest
 
 from flockana.dynamics.simulate import simulate
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.dead_zone.l10 import energy_share, wild_pair
+from flockana.theorems.dead_zone.l10 import energy_share, escaping_pair
 
 
 def test_the_same_pair_without_damping_parts():
     """On a line and undamped the condition is both: 2 ψ̄(r) is enough to leave, less than ψ̄(r) is not."""
-    law, q, p = wild_pair()
+    law, q, p = escaping_pair()
     free = DeadZoneFlocking(law.interaction, k2=0.0)
     assert energy_share(free, q, p) == pytest.approx(2.0)
     assert np.ptp(simulate(free, q, p, (0.0, 20.0)).q[-1, :, 0]) > 50.0

@@ -40,8 +40,8 @@ MOVING = [
 def test_a_path_with_its_own_velocity_is_consistent_and_moves(target):
     assert consistent(run(target)).status == "met"
     assert declared_rate_is_true(run(target)).status == "met"
-    assert target_rests(run(target), told=True).status == "unmet"
-    assert target_rests(run(target), told=False).status == "unmet"
+    assert target_rests(run(target), any_p_r=True).status == "unmet"
+    assert target_rests(run(target), any_p_r=False).status == "unmet"
 
 
 def test_a_step_of_one_rounding_is_no_interval():
@@ -64,35 +64,41 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
 
 
 def test_rest_and_the_velocity_that_is_told_beside_it():
-    assert [target_rests(run(StaticTarget(HERE)), told=told).status for told in (True, False)] == ["met", "met"]
-    assert [target_rests(run(StaticTarget(HERE, AWAY)), told=told).status for told in (True, False)] == ["met", "unmet"]
-    assert target_rests(run(LinearTarget(HERE, (0.0, 0.0))), told=False).status == "met"
+    assert [target_rests(run(StaticTarget(HERE)), any_p_r=some).status for some in (True, False)] == [
+        "met",
+        "met",
+    ]
+    assert [target_rests(run(StaticTarget(HERE, AWAY)), any_p_r=some).status for some in (True, False)] == [
+        "met",
+        "unmet",
+    ]
+    assert target_rests(run(LinearTarget(HERE, (0.0, 0.0))), any_p_r=False).status == "met"
     assert consistent(run(StaticTarget(HERE, AWAY))).status == "unmet"
 
 
 def test_a_function_that_was_seen_at_rest_is_assumed_to_be():
-    found = target_rests(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), told=False)
+    found = target_rests(run(CallableTarget(lambda t: (HERE, (0.0, 0.0)))), any_p_r=False)
     assert found.status == "assumed"
     assert "as seen at 561 times" in found.detail  # 41 samples, 40 middles and six points in each of 80 halves
 
 
 def test_a_constant_that_only_rounding_moves_is_at_rest():
     noisy = CallableTarget(lambda t: ((5.0 * np.cos(t) ** 2 + 5.0 * np.sin(t) ** 2, 1.0), (0.0, 0.0)))
-    assert target_rests(run(noisy), told=False).status == "assumed"
+    assert target_rests(run(noisy), any_p_r=False).status == "assumed"
 
 
 @pytest.mark.parametrize("between", [0.02, 0.11])
 def test_a_jump_between_two_samples_is_seen(between):
     """At rest wherever one looks but for the jump: the difference of positions over that interval tells."""
     jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
-    assert target_rests(run(jumps), told=False).status == "unmet"
+    assert target_rests(run(jumps), any_p_r=False).status == "unmet"
     assert consistent(run(jumps)).status == "unmet"
 
 
 def test_a_motion_that_vanishes_at_every_sample_is_seen():
     h = 5.0 / 40.0
     between = CallableTarget(lambda t: ((np.sin(2.0 * np.pi * t / h), 0.0), (0.0, 0.0)))
-    assert target_rests(run(between), told=True).status == "unmet"
+    assert target_rests(run(between), any_p_r=True).status == "unmet"
 
 
 def test_samples_too_sparse_for_the_path_leave_it_open():
@@ -107,8 +113,8 @@ def test_units(target, scaling):
     for check in (
         consistent,
         declared_rate_is_true,
-        lambda each: target_rests(each, told=True),
-        lambda each: target_rests(each, told=False),
+        lambda each: target_rests(each, any_p_r=True),
+        lambda each: target_rests(each, any_p_r=False),
     ):
         assert check(one).status == check(two).status
 

@@ -136,7 +136,7 @@ def test_a_square_with_its_diagonals_is_the_limit_case_of_the_quantitative_form(
     claim = verdict.claim("extension-quantitative")
     assert statuses(verdict) == expected(extension_quantitative="verified")
     assert claim.margin == 1.0  # none of the pairs fails
-    assert "within ℓ/√2 by" in claim.detail
+    assert "closer than ℓ/√2 by" in claim.detail
     assert sorted(map(sorted, claim.witness)) == [[0, 3], [1, 2]]
     assert verdict.claim("i").computed == 1
 

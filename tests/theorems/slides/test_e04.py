@@ -57,7 +57,7 @@ def test_the_barrier_at_seven_is_a_count_of_links():
     found = collision_barrier(ALPHA, 7, starts=6)
     # a hexagon without one agent, its centre doubled: 9 + 5 links and the pair itself leave 6 pairs out of range
     assert found.together == pytest.approx(ALPHA.c_star + 6 * ALPHA.far_potential, abs=1e-8)
-    assert found.ground == pytest.approx((21 - harborth(7)) * ALPHA.far_potential, abs=1e-8)
+    assert found.lowest == pytest.approx((21 - harborth(7)) * ALPHA.far_potential, abs=1e-8)
     distances = np.linalg.norm(found.state[:, None] - found.state[None], axis=2)[np.triu_indices(7, 1)]
     assert np.sum(distances < 1e-7) == 1
     assert ALPHA.potential_energy(found.state) == pytest.approx(found.together, rel=1e-12)

@@ -116,7 +116,7 @@ def test_a_hexagon_collapses_between_three_and_five_times_the_gain():
         ({7: (3.9, 4.0), 19: (3.95, 4.1), 37: (0.52, 0.54)}, "inconclusive"),  # two brackets overlap
         ({7: (1.0, 1.1), 19: (3.95, 4.1), 37: (0.52, 0.54)}, "refuted"),
         ({7: (0.01, 4.0), 19: (0.01, 0.02), 37: (0.005, 0.009)}, "inconclusive"),  # one tells nothing
-        ("collapse, or no answer, at ratios down to 1e-6", "inconclusive"),
+        ("collapse, or no result, at all ratios down to 1e-6", "inconclusive"),
     ],
 )
 def test_brackets_that_do_not_lie_below_each_other(settled, brackets, found, status):
@@ -149,7 +149,7 @@ def test_a_try_that_fails_widens_the_bracket():
     low, high = threshold(moody, lowest=0.1, factor=1.3)
     assert low <= 0.5
     assert high >= 0.9
-    with pytest.raises(SolverError, match=r"collapse, or no answer, at ratios down to .*: expected no collapse"):
+    with pytest.raises(SolverError, match=r"collapse, or no result, at all ratios down to .*: expected no collapse"):
         threshold(lambda ratio: True)
     with pytest.raises(SolverError, match=r"no collapse at ratios up to"):
         threshold(lambda ratio: False)
