@@ -12,13 +12,7 @@ from flockana.base.errors import ArgumentError
 
 @cache
 def bibliography() -> Mapping[str, str]:
-    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package.
-
-    Examples
-    --------
-    >>> "olfati-saber-2006" in bibliography()
-    True
-    """
+    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package."""
     package = Path(__file__).parent.parent
     return {path.stem: path.read_text(encoding="utf-8").strip() for path in sorted(package.rglob("*.bib"))}
 

@@ -46,24 +46,14 @@ class AgentTerm(ABC):
 
 @dataclass(frozen=True)
 class Pull(AgentTerm):
-    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²).
+    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²)."""
 
-    Attributes
-    ----------
-    start, velocity, told : tuple of arb
-        q_r = start + velocity t, and p_r.
-    stiffness, damping : arb
-        c1γ and c2γ.
-    unit : arb, optional
-        ℓ; None for the linear pull.
-    """
-
-    start: tuple[arb, ...]
+    start: tuple[arb, ...]  # start, velocity, told: q_r = start + velocity t, and p_r
     velocity: tuple[arb, ...]
     told: tuple[arb, ...]
-    stiffness: arb
+    stiffness: arb  # stiffness, damping: c1γ and c2γ
     damping: arb
-    unit: arb | None = None
+    unit: arb | None = None  # ℓ; None for the linear pull
 
     def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
         """Return x − q_r."""

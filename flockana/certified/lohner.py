@@ -27,21 +27,11 @@ _VARIATION = 14  # order of the derivative of a step
 
 @dataclass(frozen=True)
 class StateSet:
-    """Set of states x̂ + C r₀ + B r.
+    """Set of states x̂ + C r₀ + B r."""
 
-    Attributes
-    ----------
-    centre : tuple of arb
-        x̂, exact.
-    c, b : arb_mat
-        C and B, exact.
-    start, error : tuple of arb
-        The boxes r₀ and r, about 0.
-    """
-
-    centre: tuple[arb, ...]
-    c: arb_mat
-    start: tuple[arb, ...]
+    centre: tuple[arb, ...]  # x̂, exact
+    c: arb_mat  # c, b: C and B, exact
+    start: tuple[arb, ...]  # start, error: The boxes r₀ and r, about 0
     b: arb_mat
     error: tuple[arb, ...]
 
@@ -61,30 +51,14 @@ class StateSet:
 
 
 class Step(NamedTuple):
-    """Proved enclosures of one step.
+    """Proved enclosures of one step."""
 
-    Attributes
-    ----------
-    after : StateSet
-        Holds the states at its end.
-    during : list of arb
-        Box that holds them from its begin to its end.
-    relative : list of list of arb
-        Of each pair, the box that holds q_j − q_i during it.
-    deviations : list of list of arb
-        Of each agent, the box that holds q_i − q_c during it.
-    added : float
-        The largest remainder, in units of length; of a velocity, what it goes in the law's own time.
-    blur : float
-        By what share the set may grow as the derivative of the step has a remainder.
-    """
-
-    after: StateSet
-    during: list[arb]
-    relative: list[list[arb]]
-    deviations: list[list[arb]]
-    added: float
-    blur: float
+    after: StateSet  # Holds the states at its end
+    during: list[arb]  # Box that holds them from its begin to its end
+    relative: list[list[arb]]  # Of each pair, the box that holds q_j − q_i during it
+    deviations: list[list[arb]]  # Of each agent, the box that holds q_i − q_c during it
+    added: float  # The largest remainder, in units of length; of a velocity, what it goes in the law's own time
+    blur: float  # By what share the set may grow as the derivative of the step has a remainder
 
 
 def variation_order(order: int) -> int:

@@ -23,22 +23,12 @@ from flockana.certified.series import PairNumbers, Piece
 
 @dataclass(frozen=True)
 class SphereTerm(AgentTerm):
-    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest.
+    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest."""
 
-    Attributes
-    ----------
-    beta : PairNumbers
-        The pair law of an agent and its β-agent.
-    centre, radius : tuple of arb, arb
-        y and R.
-    stiffness, damping : arb
-        c1β and c2β.
-    """
-
-    beta: PairNumbers
-    centre: tuple[arb, ...]
+    beta: PairNumbers  # The pair law of an agent and its β-agent
+    centre: tuple[arb, ...]  # centre, radius: y and R
     radius: arb
-    stiffness: arb
+    stiffness: arb  # stiffness, damping: c1β and c2β
     damping: arb
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:

@@ -99,13 +99,7 @@ def _stretch(
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
-    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near.
-
-    Examples
-    --------
-    >>> _nearest(0.0, 1.0, 9, np.array([0.0, 0.4, 2.5, 2.6, 9.4, 9.6])).tolist()
-    [0, 2, 3, 9]
-    """
+    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near."""
     k = np.maximum(np.ceil((keep - t0) / dt - 0.5), 0.0).astype(np.int64)
 
     def before(steps: IndexArray) -> npt.NDArray[np.bool_]:

@@ -53,13 +53,7 @@ def ensure_atol(name: str, value: Any) -> Atol:
 
 
 def options_in_units(options: Mapping[str, Any], length: float, time: float) -> dict[str, Any]:
-    """Return options of `simulate`, or the statistics of a run, in other units.
-
-    Examples
-    --------
-    >>> options_in_units({"rtol": 1e-8, "atol": (1.0, 1.0), "dt": 1.0}, 3.0, 2.0)
-    {'rtol': 1e-08, 'atol': (3.0, 1.5), 'dt': 2.0}
-    """
+    """Return options of `simulate`, or the statistics of a run, in other units."""
     speed = length / time
     factors = {"t_eval": time, "dt": time, "max_step": time, "atol": length}
     scaled = {key: times(value, factors[key]) if key in factors else value for key, value in options.items()}

@@ -42,15 +42,7 @@ class Descent(NamedTuple):
 
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
-    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> found = descend(Potential(Algorithm1()), np.array([[0.0], [6.5]]), 100)
-    >>> bool(abs(found.q[1, 0] - found.q[0, 0] - 7.0) < 1e-9), found.message
-    (True, 'Converged')
-    """
+    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way."""
     steps, message = 100 * max_iter, "Converged"
     best = relax(potential, q, steps, tol=_ROUGH)
     for heat in _HEATS if pairs_collapsed(potential, q, best) else ():

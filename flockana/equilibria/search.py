@@ -41,11 +41,6 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     """Return starts grown agent by agent at random free sites of a lattice, then perturbed.
 
     Of three random free places the one with the most neighbours is taken: compact patches, but not the same each time.
-
-    Examples
-    --------
-    >>> [start.shape for start in lattice_starts(5, 2, 7.0, 2)]
-    [(5, 2), (5, 2)]
     """
     rng = np.random.default_rng([n, m, seed, 1])
     basis = {

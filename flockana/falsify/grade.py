@@ -37,12 +37,6 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1.
-
-    Examples
-    --------
-    >>> shortfall([Hypothesis("a", "unmet", -3.0), Hypothesis("b", "unmet"), Hypothesis("c", "met", 1.0)])
-    1.75
-    """
+    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1."""
     unmet = [h.margin for h in hypotheses if h.status == "unmet"]
     return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet))

@@ -16,13 +16,7 @@ Formulas = tuple[tuple[str, str], ...]  # (q_r, p_r) along each axis
 
 @singledispatch
 def path(target: Target) -> Formulas | None:
-    """Return (q_r, p_r) along each axis as formulas in time; None without a known formula.
-
-    Examples
-    --------
-    >>> path(LinearTarget((200.0, 30.0), (5.0, 0.0)))
-    (('200.0+5.0*v_t', '5.0'), ('30.0+0.0*v_t', '0.0'))
-    """
+    """Return (q_r, p_r) along each axis as formulas in time; None without a known formula."""
     return None
 
 

@@ -26,12 +26,6 @@ class LinkKeeping(SumOfTerms):
 
     The tension is that of Ji and Egerstedt (2007), the second-order law that of Zavlanos, Jadbabaie and Pappas (2007).
     Both let links arise, with hysteresis; here the net is that of the start and does not change. H = Σ ψ + ½ Σ‖p_i‖².
-
-    Examples
-    --------
-    >>> law = LinkKeeping(((0, 1),), r=2.0)
-    >>> law.acceleration(0.0, [[0.0], [1.0], [5.0]], [[0.0], [0.0], [0.0]]).ravel().tolist()
-    [3.0, -3.0, 0.0]
     """
 
     links: tuple[tuple[int, int], ...]

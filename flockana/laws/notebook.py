@@ -114,13 +114,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
 
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
     wherever no pair is closer than `min_distance`.
-
-    Examples
-    --------
-    >>> q, p = [[0.0, 0.0], [0.04, 0.0]], [[0.0, 0.0], [0.0, 0.0]]
-    >>> pushed, plain = (law.acceleration(0.0, q, p)[1, 0] for law in (PushedAlgorithm1(), Algorithm1()))
-    >>> round(float(pushed / plain), 2)
-    9.92
     """
 
     min_distance: float = MIN_DISTANCE
@@ -137,15 +130,7 @@ class PushedAlgorithm1(_Push, Algorithm1):
 
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Push, Algorithm2):
-    """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> law = PushedAlgorithm2(target=StaticTarget((0.0,)))
-    >>> bool(law.acceleration(0.0, [[0.0], [0.04]], [[0.0], [0.0]])[0, 0] < 0.0)
-    True
-    """
+    """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push."""
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR

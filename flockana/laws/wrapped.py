@@ -24,29 +24,16 @@ _CHANNELS = 8  # kinds of random numbers
 
 
 class View(NamedTuple):
-    """States that agents know when they compute their inputs.
+    """States that agents know when they compute their inputs."""
 
-    Attributes
-    ----------
-    t : float
-        Time that they take it to be.
-    q, p : ndarray, shape (n, m)
-        Their own positions and velocities.
-    heard : (ndarray, ndarray), optional
-        Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or
-        (1, n, m) if all hear the same. By default `q` and `p`.
-    linked : ndarray of bool, shape (n, n), optional
-        Whether a listener hears a speaker; all by default.
-    both : bool
-        In the terms between agents their own state is that which is heard too.
-    """
-
-    t: float
-    q: FloatArray
+    t: float  # Time that they take it to be
+    q: FloatArray  # q, p: Their own positions and velocities
     p: FloatArray
+    # Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or (1, n,
+    # m) if all hear the same. By default `q` and `p`.
     heard: tuple[FloatArray, FloatArray] | None = None
-    linked: Any = None
-    both: bool = False
+    linked: Any = None  # Whether a listener hears a speaker; all by default
+    both: bool = False  # In the terms between agents their own state is that which is heard too
 
 
 class Step:

@@ -74,13 +74,7 @@ def receivers(n: int, edges: Edges) -> FloatArray:
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
-    """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m).
-
-    Examples
-    --------
-    >>> edge_vectors(np.array([[0.0], [3.0]]), ((0, 1),)).tolist()
-    [[-3.0]]
-    """
+    """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m)."""
     sender, receiver = _columns(edges)
     x: FloatArray = q[..., sender, :] - q[..., receiver, :]
     return x

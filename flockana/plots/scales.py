@@ -26,13 +26,7 @@ _OUTSIDE = 0.5  # pixels by which a tick may lie outside the axes, from rounding
 
 
 def plain(text: str) -> str:
-    r"""Return a typeset number as plain text.
-
-    Examples
-    --------
-    >>> plain(r"$\mathdefault{10^{-3}}$"), plain(r"$\times\mathdefault{10^{−12}}\mathdefault{}$"), plain("0.5")
-    ('10⁻³', '×10⁻¹²', '0.5')
-    """
+    r"""Return a typeset number as plain text."""
     if not text.startswith("$"):
         return text
     bare = text.strip("$").replace(r"\mathdefault", "").replace(r"\times", "×")

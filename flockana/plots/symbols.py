@@ -55,15 +55,7 @@ _ANY = re.compile("|".join(f"(?P<r{k}>{pattern})" for k, (pattern, _) in enumera
 
 
 def typeset(text: str) -> str:
-    r"""Return a label with its symbols in mathtext; existing mathtext is kept.
-
-    Examples
-    --------
-    >>> typeset("c1γ (1/time²)"), typeset("t (time)"), typeset("τ*, delay margin (time)")
-    ('$c_1^\\gamma$ (1/time$^2$)', '$t$ (time)', '$\\tau^*$, delay margin (time)')
-    >>> typeset("agents coincide"), typeset("$x_i$"), typeset("a run")
-    ('agents coincide', '$x_i$', 'a run')
-    """
+    r"""Return a label with its symbols in mathtext; existing mathtext is kept."""
     if "$" in text:
         return text
 

@@ -62,13 +62,7 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
 
 
 def report_folder(name: str | None) -> Path:
-    """Return the folder of a report; a partial report never replaces one on the whole catalogue.
-
-    Examples
-    --------
-    >>> report_folder(None).name
-    'report'
-    """
+    """Return the folder of a report; a partial report never replaces one on the whole catalogue."""
     return FOLDER if name is None or not _on_all(FOLDER) else FOLDER / name
 
 

@@ -69,13 +69,7 @@ def _first(references: Sequence[str]) -> str:
 def select(
     entries: Iterable[dict[str, Any]], words: Sequence[str] = (), *, source: str = "", status: str = ""
 ) -> list[dict[str, Any]]:
-    """Return the entries that contain all words, of one source, with one expected status.
-
-    Examples
-    --------
-    >>> [entry["name"] for entry in select(theorem_entries(), ["proximity"], source="tanner")]
-    ['tanner-switching']
-    """
+    """Return the entries that contain all words, of one source, with one expected status."""
     every = list(entries)
     sources = sorted({entry["source"] for entry in every})
     if source and not any(source.casefold() in known.casefold() for known in sources):

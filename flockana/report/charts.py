@@ -115,15 +115,7 @@ def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, flo
 
 
 def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Return round numbers between two as tick marks, with their texts.
-
-    Examples
-    --------
-    >>> _round(0.0, 60.0, 5)
-    [(0.0, '0'), (20.0, '20'), (40.0, '40'), (60.0, '60')]
-    >>> [text for _, text in _round(-3e-7, 2e-7, 4)], [text for _, text in _round(0.0, 1.0, 4)]
-    (['-2e-07', '0', '2e-07'], ['0.0', '0.5', '1.0'])
-    """
+    """Return round numbers between two as tick marks, with their texts."""
     if not high > low:
         return [(low, f"{low:.4g}")]
     raw = (high - low) / most

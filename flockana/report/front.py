@@ -41,13 +41,7 @@ def thumbnail(page: ScenarioPage) -> str:
 
 
 def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
-    """Return the findings whose verdicts are in the report and as expected.
-
-    Examples
-    --------
-    >>> front_findings([])
-    ()
-    """
+    """Return the findings whose verdicts are in the report and as expected."""
     by_name = {page.name: page for page in pages if isinstance(page, ScenarioPage)}
     found = []
     for scenario, theorem, text in FINDINGS:

@@ -114,13 +114,7 @@ def _put(places: list[_Place], around: FloatArray, size: FloatArray) -> None:
 def _intervals(
     wanted: list[tuple[tuple[int, int], float, float]], ratios: FloatArray, length: float
 ) -> list[tuple[float, float]]:
-    """Return where axes begin and end along one direction, as shares of the figure's length.
-
-    Examples
-    --------
-    >>> _intervals([((0, 0), 1.0 - _PAD, 0.0), ((1, 1), 0.0, 1.0 - _PAD)], np.ones(2), 4.1)[0][0] * 4.1
-    1.0
-    """
+    """Return where axes begin and end along one direction, as shares of the figure's length."""
     before, after = np.zeros(len(ratios)), np.zeros(len(ratios))
     for (first, last), left, right in wanted:
         before[first], after[last] = max(before[first], left), max(after[last], right)

@@ -23,15 +23,6 @@ class WholeTable(Table):
     """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
 
     Rich itself would cut numbers and names, or leave whole columns out.
-
-    Examples
-    --------
-    >>> table = WholeTable(column("claim"), column("margin", right=True), box=None)
-    >>> table.add_row("iv-printed", "1.411e+04")
-    >>> Console(width=12).print(table)
-    iv-printed
-      margin:
-      1.411e+04
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
@@ -116,13 +107,7 @@ def _broken(text: Text, room: int) -> Text:
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:
-    """Return a table with a line under its headings.
-
-    Examples
-    --------
-    >>> headed_table(column("mode"), column("frequency", right=True)).columns[1].justify
-    'right'
-    """
+    """Return a table with a line under its headings."""
     return WholeTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
@@ -133,13 +118,7 @@ def column(heading: str, *, right: bool = False, width: int | None = None, wraps
 
 
 def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
-    """Return a table of facts: name and value.
-
-    Examples
-    --------
-    >>> fact_table([("links", "12"), ("graph", "planar")]).row_count
-    2
-    """
+    """Return a table of facts: name and value."""
     columns = Column(no_wrap=True, style="bright_black"), Column(overflow="fold")
     table = WholeTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
     for name, value in facts:

@@ -23,13 +23,7 @@ _GAIN_OWNERS = {
 
 
 def show(value: Any) -> str:
-    """Return a claim's value as short text: numbers to four digits, long sequences by length.
-
-    Examples
-    --------
-    >>> show(1.23456789), show(None), show({"pair": (1, 2)}), show(np.arange(9))
-    ('1.235', '—', 'pair: (1, 2)', '9 values')
-    """
+    """Return a claim's value as short text: numbers to four digits, long sequences by length."""
     if value is None:
         return "—"
     if isinstance(value, np.generic):
@@ -92,16 +86,7 @@ def deciding_claim(verdict: Verdict) -> Claim | None:
 
 
 def parameters(law: Any) -> tuple[tuple[str, str], ...]:
-    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> [name for name, value in parameters(Algorithm1())]
-    ['law', 'alpha', 'gains']
-    >>> parameters(Algorithm1())[2][1]
-    'Gains(c1_alpha = 30, c2_alpha = 10.95)'
-    """
+    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out."""
     if not is_dataclass(law):
         return (("law", type(law).__name__),)
     items = ((f.name, getattr(law, f.name)) for f in fields(law))
@@ -120,13 +105,7 @@ def _describe(value: Any, law: Any) -> str:
 
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
-    """Return (name, value, meaning) of every threshold.
-
-    Examples
-    --------
-    >>> tolerance_rows(Tolerances())[0][:2]
-    ('energy', '1e-06')
-    """
+    """Return (name, value, meaning) of every threshold."""
     meanings = dict(re.findall(r"^(\w+) : float\n((?:[ ]{4}.+\n?)+)", getdoc(Tolerances) or "", re.MULTILINE))
     names = [f.name for f in fields(tolerances)]
     return tuple((n, show(getattr(tolerances, n)), " ".join(meanings.get(n, "").split())) for n in names)

@@ -41,13 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems by themselves.
-
-    Examples
-    --------
-    >>> plan("E8")
-    (Task(name='E8', fixed=True, seed=0, only=(), figures=True),)
-    """
+    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems by themselves."""
     if name in scenarios():
         return (Task(name, seed=seed, figures=figures),)
     if name is None:

@@ -38,16 +38,7 @@ ROTATIONS = ("apart", "neutral", "counted")
 
 @dataclass(frozen=True)
 class GainProblem:
-    """State matrix of the gain design problem, and its eigenvalues as functions of the gains.
-
-    Examples
-    --------
-    One agent, c1γ = 2 and c2γ = 3, has the roots −1 and −2:
-
-    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
-    >>> round(alone.abscissa(np.array([2.0, 3.0])), 12)
-    -1.0
-    """
+    """State matrix of the gain design problem, and its eigenvalues as functions of the gains."""
 
     stiffness: FloatArray  # shape (N, N): c1α ∇²V, or zero in the simplified form
     damping: FloatArray  # shape (N, N): c2α L̂

@@ -102,13 +102,7 @@ class Split(NamedTuple):
 
 
 def split(stiffness: Any, damping: Any, m: int) -> Split:
-    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do.
-
-    Examples
-    --------
-    >>> split(np.diag([2.0, 2.0]), np.zeros((2, 2)), 1).exact, split(np.diag([2.0, 1.0]), np.zeros((2, 2)), 1).exact
-    (True, False)
-    """
+    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
     unit = translations(stiffness.shape[0] // m, m)
     own, leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
@@ -141,16 +135,7 @@ class Invariant(NamedTuple):
 
 
 class SecondOrder:
-    """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration.
-
-    Examples
-    --------
-    >>> from scipy.sparse import csr_array
-    >>> spring = csr_array(np.array([[1.0, -1.0], [-1.0, 1.0]]))
-    >>> modes = SecondOrder(np.array([[0.0], [1.0]]), spring, 1.5 * spring).modes  # λ² + 3λ + 2 = 0
-    >>> [(mode.name, round(mode.decay_rate, 9)) for mode in modes]
-    [('breathing', 1.0), ('breathing', 2.0)]
-    """
+    """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration."""
 
     def __init__(self, q: FloatArray, stiffness: Any, damping: Any, *, zero: float = ZERO) -> None:
         self.q, self.stiffness, self.damping, self.zero = q, stiffness, damping, zero

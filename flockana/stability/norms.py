@@ -156,12 +156,6 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
     With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
     d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
     multiple of 1.
-
-    Examples
-    --------
-    >>> low, high = h2_bounds(law_blocks(Algorithm1(), [[0.0], [7.0]]))
-    >>> bool(abs(high / low - 1.0) < 1e-12)
-    True
     """
     ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))

@@ -31,15 +31,6 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
     ----------
     off : float
         By what share of its size the matrix itself may be off.
-
-    Examples
-    --------
-    >>> values, _, errors = eigen(np.array([[0.0, 1.0], [-1.0, 0.0]]))
-    >>> bool(np.all(np.abs(values.real) <= errors) and errors.max() < 1e-13)
-    True
-    >>> double = eigen(np.array([[1.0, 1.0], [0.0, 1.0]]))[2]
-    >>> bool(1e-8 < double.min() and double.max() < 1e-6)
-    True
     """
     from scipy.linalg import eig
     from scipy.linalg.lapack import dgebal
@@ -70,13 +61,7 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
-    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients.
-
-    Examples
-    --------
-    >>> root_error(-1.0, 2.0, 3.0, (1e-12, 0.0)), root_error(-1.0, 1.0, 2.0, (1e-12, 0.0))
-    (1e-12, 1e-06)
-    """
+    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients."""
     push, slope = errors[0] + abs(value) * errors[1], abs(2.0 * value + damping)
     double = float(np.sqrt(push))
     return min(push / slope, double) if slope > 0.0 else double
@@ -101,13 +86,7 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
 
 
 def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
-    """Return the order of eigenvalues by decay rate, then frequency, equal up to rounding.
-
-    Examples
-    --------
-    >>> slowest_first(np.array([-1.0 + 5.0j, -1.0 - 1e-16 + 2.0j, -0.5]), np.full(3, 1e-15))
-    [2, 1, 0]
-    """
+    """Return the order of eigenvalues by decay rate, then frequency, equal up to rounding."""
     order: list[int] = []
     for level in _levels(range(len(values)), -np.real(values), errors):
         for pair in _levels(level, np.abs(np.imag(values)), errors):

@@ -31,11 +31,6 @@ def copies_balance() -> Derivation:
 
 def copies_part() -> Derivation:
     """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation, whatever the number of copies.
-
-    Examples
-    --------
-    >>> copies_part().holds, copies_part().result
-    (True, Eq(Derivative(d(t), (t, 2)), (-b - k_2)*Derivative(d(t), t) + (-k - k_1)*d(t)))
     """
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3

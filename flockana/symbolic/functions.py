@@ -16,13 +16,7 @@ from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
 
 
 def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
-    """Return the half-cosine of the bump on h <= z <= 1.
-
-    Examples
-    --------
-    >>> taper(sp.Rational(3, 4), h=sp.Rational(1, 2))
-    1/2
-    """
+    """Return the half-cosine of the bump on h <= z <= 1."""
     return written(Taper(Place(z, h)))
 
 

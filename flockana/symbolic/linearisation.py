@@ -109,13 +109,6 @@ def turn(obstacle: GenericObstacle) -> sp.Matrix:
     """Return d(p_hat)/dq at fixed p: the turning rate of the β-agent's velocity.
 
     Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
-
-    Examples
-    --------
-    >>> turn(GenericObstacle("wall", 2))
-    Matrix([
-    [0, 0],
-    [0, 0]])
     """
     m, x, p = obstacle.m, obstacle.x, obstacle.p
     if obstacle.kind == "wall":

@@ -35,13 +35,7 @@ class Named(sp.Function):
 
 
 def written(expression: sp.Expr) -> sp.Expr:
-    """Return an expression with the printed formulas of its named functions.
-
-    Examples
-    --------
-    >>> written(Sigma1(sp.Rational(3, 4)))
-    3/5
-    """
+    """Return an expression with the printed formulas of its named functions."""
     return expression.replace(lambda node: isinstance(node, Named), lambda node: node.formula)
 
 

@@ -39,15 +39,7 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
-    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is.
-
-    Examples
-    --------
-    >>> reynolds_form().holds, reynolds_form(printed=True).holds
-    (True, False)
-    >>> reynolds_form(printed=True).residuals[0].subs(OWN, 0)
-    0
-    """
+    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is."""
     true, stated = gradient_part(), friends_form(printed=printed)
     moved = friends_form(printed=printed, shift=SHIFT)
     steps = (

@@ -60,13 +60,7 @@ def theorem6_identity(
     moving: bool = False,
     copies: sp.Expr = _ONE,
 ) -> EnergyIdentity:
-    """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6).
-
-    Examples
-    --------
-    >>> theorem6_identity(2).residual
-    0
-    """
+    """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6)."""
     pair = GenericPair(m)
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
     total = pair.tidy(
@@ -104,13 +98,7 @@ def theorem6_identity(
 
 
 def condition_76_residual(m: int = 2) -> sp.Expr:
-    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag.
-
-    Examples
-    --------
-    >>> condition_76_residual(3)
-    0
-    """
+    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag."""
     axes = range(1, m + 1)
     p_d = vector("p_d", m)
     drag = over_agents(sp.Add(*(P[I_, k] ** 2 - P[I_, k] * p_d[k - 1] for k in axes)))

@@ -101,10 +101,5 @@ def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square:
 
 def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) -> sp.Expr:
     """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with every omega iff it is >= 0 (erratum E15).
-
-    Examples
-    --------
-    >>> falling_condition(0, gains=GainSymbols(c1_gamma=4, c2_gamma=4))
-    8
     """
     return gains.c2_gamma**2 * (1 - exact("scale", scale) ** 2) - 2 * gains.c1_gamma

@@ -42,27 +42,13 @@ _GROWTH = 10.0  # factor by which the energy of a map of steps may rise
 
 @dataclass(frozen=True)
 class Basin:
-    """Basin of the strict minimum beside a state, with the state's energy above the minimum.
+    """Basin of the strict minimum beside a state, with the state's energy above the minimum."""
 
-    Attributes
-    ----------
-    excess : float
-        Bound of the energy above the minimum; ∞ where there is none.
-    barrier : float
-        Energy that the flock needs at least to leave; 0 where nothing is known.
-    distance : float
-        Bound δ of the distance to the minimum, over all coordinates; ∞ where there is none.
-    curvature : float
-        Least eigenvalue λ of ∇²U off the rigid motions, less its rounding.
-    stability : float
-        Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow.
-    """
-
-    excess: float = inf
-    barrier: float = 0.0
-    distance: float = inf
-    curvature: float = nan
-    stability: float = 1.0
+    excess: float = inf  # Bound of the energy above the minimum; ∞ where there is none
+    barrier: float = 0.0  # Energy that the flock needs at least to leave; 0 where nothing is known
+    distance: float = inf  # Bound δ of the distance to the minimum, over all coordinates; ∞ where there is none
+    curvature: float = nan  # Least eigenvalue λ of ∇²U off the rigid motions, less its rounding
+    stability: float = 1.0  # Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow
 
     @property
     def reach(self) -> float:
@@ -96,13 +82,7 @@ def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
 
 
 def kinetic(p: FloatArray, off: float = 0.0) -> float:
-    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added.
-
-    Examples
-    --------
-    >>> 1.0 <= kinetic(np.array([[1.0], [-1.0]])) < 1.0 + 1e-12
-    True
-    """
+    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added."""
     rounding = sqrt(p.size) * 8.0 * EPS * float(np.abs(p).max())
     return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding + off) ** 2
 

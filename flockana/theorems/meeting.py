@@ -15,18 +15,11 @@ from flockana.theorems.theorem import Hypothesis
 
 
 class Meeting(NamedTuple):
-    """Energies of a law's pairs, gain included.
+    """Energies of a law's pairs, gain included."""
 
-    Attributes
-    ----------
-    c_star : float
-        By how much a coincident pair has more than the least that a pair has; infinite of a singular potential.
-    floor : float
-        The least potential energy of all pairs together: their number times that of one.
-    """
-
+    # By how much a coincident pair has more than the least that a pair has; infinite of a singular potential
     c_star: float
-    floor: float
+    floor: float  # The least potential energy of all pairs together: their number times that of one
 
 
 def meeting(run: Trajectory | Observed) -> Meeting:

@@ -18,14 +18,7 @@ _HEADS = ("theorem", "status", "rigour", "decided by", "title")
 
 
 class Verdicts(tuple[Verdict, ...]):
-    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook.
-
-    Examples
-    --------
-    >>> print(Verdicts([verify("E8")]))
-    theorem  status     rigour  decided by  title
-    E8       ✗ refuted  smt     printed     Rank(A)/n is 1 on a connected net (as printed)
-    """
+    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook."""
 
     __slots__ = ()
 

@@ -109,14 +109,7 @@ class Leaders(Term):
 
 
 def known_path(leader: Any) -> Harmonic:
-    """Return the harmonic path of a leader; raise unless it reports its true velocity.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import LinearTarget
-    >>> known_path(LinearTarget((0.0,), (2.0,))).factor
-    1.0
-    """
+    """Return the harmonic path of a leader; raise unless it reports its true velocity."""
     path = leader.harmonic if isinstance(leader, Target) else None
     if path is None or path.factor != 1.0 or path.terms[4].any():
         raise ArgumentError(

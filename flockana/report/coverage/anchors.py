@@ -10,13 +10,7 @@ from flockana.scenarios.given import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
-    """Return the ids in the report by reference; a theorem checked on several runs leads to the first.
-
-    Examples
-    --------
-    >>> anchors([])
-    {}
-    """
+    """Return the ids in the report by reference; a theorem checked on several runs leads to the first."""
     found: dict[str, str] = {}
     for page in pages:
         run = isinstance(page, ScenarioPage)
@@ -35,26 +29,12 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
 
 
 def verdict_id(subject: str, theorem: str) -> str:
-    """Return the id of a verdict in the report.
-
-    Examples
-    --------
-    >>> verdict_id("fixed", "E1")
-    'fixed-E1'
-    >>> verdict_id("collapse", "E11")
-    'scenario-collapse--E11'
-    """
+    """Return the id of a verdict in the report."""
     if subject == "fixed":
         return f"fixed-{theorem}".replace(" ", "-")
     return f"{scenario_id(subject)}--{theorem}".replace(" ", "-")  # another's name may be this one's with a theorem's
 
 
 def scenario_id(name: str) -> str:
-    """Return the id of a scenario's section in the report.
-
-    Examples
-    --------
-    >>> scenario_id("statistics")
-    'scenario-statistics'
-    """
+    """Return the id of a scenario's section in the report."""
     return f"scenario-{name}"

@@ -23,13 +23,7 @@ _CHECKOUT = Path(__file__).resolve().parents[3]  # the folder that holds the pac
 
 @dataclass(frozen=True)
 class Reference:
-    """Reference to a name in flockana, with its kind.
-
-    Examples
-    --------
-    >>> locate(Reference("erratum", "E4"))
-    'flockana/theorems/slides/e04.py'
-    """
+    """Reference to a name in flockana, with its kind."""
 
     kind: str  # one of `KINDS`
     name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``

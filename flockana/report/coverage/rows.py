@@ -21,13 +21,7 @@ _MARK = "|"  # between columns; texts write a norm as ‖
 
 @dataclass(frozen=True)
 class Row:
-    """Item of a source with the references behind it.
-
-    Examples
-    --------
-    >>> Row("Theorem 1", "flocks of Algorithm 1", "held", (Reference("theorem", "os-1"),)).held_by[0].name
-    'os-1'
-    """
+    """Item of a source with the references behind it."""
 
     place: str  # where it stands in the source: section, slide, equation, figure, theorem
     what: str  # what it is, in our words
@@ -53,13 +47,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Source:
-    """Source with its coverage rows, in the source's order.
-
-    Examples
-    --------
-    >>> Source("jond-2025", "A paper", (Row("section 1", "related work", "prose", remark="no claim"),)).count("prose")
-    1
-    """
+    """Source with its coverage rows, in the source's order."""
 
     key: str
     title: str  # what it is
@@ -71,13 +59,7 @@ class Source:
 
 
 def coverage() -> tuple[Source, ...]:
-    """Return all coverage tables, the longest first, items without a source last.
-
-    Examples
-    --------
-    >>> [source.key for source in coverage()][-1]
-    'flockana'
-    """
+    """Return all coverage tables, the longest first, items without a source last."""
     tables = [read_table(path) for path in sorted(Path(__file__).parent.glob("*.csv"))]
     return tuple(sorted(tables, key=lambda source: (source.key == OURS, -len(source.rows))))
 
@@ -94,13 +76,7 @@ def read_table(path: str | os.PathLike[str]) -> Source:
 
 
 def faults(sources: Iterable[Source]) -> tuple[str, ...]:
-    """Return a line for each reference that leads nowhere, with its source and place.
-
-    Examples
-    --------
-    >>> faults([Source("a", "A", (Row("Fig. 1", "a run", "held", (Reference("theorem", "os-0"),)),))])[0][:40]
-    "a, Fig. 1: unknown theorem 'os-0'; did y"
-    """
+    """Return a line for each reference that leads nowhere, with its source and place."""
     found = []
     for source in sources:
         for row in source.rows:

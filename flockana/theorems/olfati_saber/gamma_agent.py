@@ -76,18 +76,10 @@ def _describe_rest(moves: bool, told: bool, p_r: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class Slip:
-    """Largest difference over a run between a declared velocity and the one that the positions show.
+    """Largest difference over a run between a declared velocity and the one that the positions show."""
 
-    Attributes
-    ----------
-    off : float
-        Largest mean difference over an interval.
-    error : float
-        Of the quadrature, and rounding.
-    """
-
-    off: float
-    error: float
+    off: float  # Largest mean difference over an interval
+    error: float  # Of the quadrature, and rounding
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:
