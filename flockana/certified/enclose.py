@@ -84,8 +84,6 @@ def enclose(
         Half-width of the set, in units of d, at which the tube counts as broken.
     steps : int
         At most so many.
-    progress : bool
-        Show a progress bar.
 
     Returns
     -------

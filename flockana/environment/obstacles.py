@@ -69,11 +69,6 @@ class Obstacle(ABC):
     def beta_agents(self, q: Any, p: Any) -> BetaAgents:
         """Return each agent's β-agent on this obstacle, near or far.
 
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities of the agents.
-
         Raises
         ------
         ArgumentError

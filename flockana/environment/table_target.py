@@ -27,10 +27,6 @@ class TableTarget(Target):
     ----------
     t : array_like, shape (T,)
         Times, rising, two or more.
-    q : array_like, shape (T, m)
-        Positions.
-    p : array_like, shape (T, m), optional
-        Velocities.
 
     Examples
     --------

@@ -82,8 +82,6 @@ class LinearTarget(Target):
     ----------
     q : array_like, shape (m,)
         Position at t = 0.
-    p : array_like, shape (m,)
-        Constant velocity.
 
     Examples
     --------
@@ -238,8 +236,6 @@ class RescaledVelocity(Target):
 
     Parameters
     ----------
-    target : Target
-        The path.
     factor : float
         1 gives the consistent target back, 0 a γ-agent that hides its velocity.
 

@@ -245,10 +245,6 @@ class ZoneFlocking(DiscreteLaw):
 
         Parameters
         ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; left as they are.
         memory : mapping of str to ndarray
             ``heading``, ``estimate`` and, if there are aliens, ``alien``; as `start` gives it.
         """

@@ -28,8 +28,6 @@ class Delayed(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that acts late.
     delay : float or array_like, shape (n, n)
         τ >= 0; or, of ``"neighbours"``, how late agent i hears agent j.
     late : {"all", "pairs", "neighbours"}

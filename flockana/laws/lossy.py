@@ -26,8 +26,6 @@ class Lossy(Wrapper):
         A law with a pair term.
     loss : float
         Probability, 0 <= loss <= 1.
-    seed : int
-        Of the losses.
 
     Raises
     ------

@@ -25,8 +25,6 @@ class Sampled(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that is sampled.
     period : float
         Time between two samples.
     offsets : array_like, shape (n,), optional

@@ -27,8 +27,6 @@ class Saturated(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law whose input is bounded.
     limit : float
         Largest acceleration, in length over time².
     by : {"length", "component"}

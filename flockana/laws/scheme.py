@@ -19,13 +19,6 @@ class Scheme(DiscreteLaw):
 
     A subclass gives f, or a step of its own.
 
-    Parameters
-    ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
-
     Raises
     ------
     ArgumentError

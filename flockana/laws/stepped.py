@@ -37,10 +37,6 @@ class Stepped(Scheme):
 
     Parameters
     ----------
-    law : Wrapper
-        The law that is stepped.
-    dt : float
-        Step.
     order : {1, 2, 4}
         Scheme.
     """

@@ -77,8 +77,6 @@ class Step:
 
         Parameters
         ----------
-        seed : int
-            Of the wrapper.
         channel : int
             Kind of number.
         shape : tuple of int

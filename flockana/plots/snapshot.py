@@ -189,8 +189,6 @@ def configuration(
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
-        Positions, m = 1, 2 or 3.
     p : array_like, shape (n, m), optional
         Velocities; without them agents are dots.
     d : float or array_like, shape (M,), optional
@@ -200,8 +198,6 @@ def configuration(
     edges : array_like of int, shape (M, 2), optional
         Links to draw in place of those within r, from the first agent to the second; one without its reverse has an
         arrowhead.
-    target : array_like, shape (m,), optional
-        Position of the γ-agent.
     obstacles : sequence of Obstacle
         Drawn in full, and kept in view where they are bounded.
     beta : BetaInteraction, optional

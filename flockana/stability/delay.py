@@ -101,8 +101,6 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
     ----------
     law : Law
         Algorithm 1 or 2, gains one for all or one per agent; with ``"all"`` any law that `linearise` takes.
-    q : array_like, shape (n, m)
-        Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
         Everything, an agent's own state included; the terms between agents, its own state in them included; or only
         what these terms hear of other agents.
@@ -184,8 +182,6 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
-    progress : bool
-        Show a progress bar on the terminal.
 
     Examples
     --------

@@ -49,8 +49,6 @@ class MapMode:
         Displacements of the agents (of a map of headings: turns), of unit length together.
     name : str
         As of a `Mode`; numbers count from the slowest.
-    dt : float
-        Step.
     error : float
         Largest rounding error of the multiplier.
 
@@ -98,8 +96,6 @@ class MapLinearisation:
         The map.
     q, p : ndarray, shape (n, m)
         Positions and velocities, all agents with the velocity of the frame.
-    t : float
-        Time.
     residual : float
         Distance from a fixed motion, relative to the law's forces (of headings: in radians).
     A, B : ndarray, shapes (N, N) and (N, F)

@@ -38,8 +38,6 @@ def judged(
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     margin : Enclosure
         At least 0 where the claim holds: a number, or one for each instant.
     needs : iterable of Hypothesis
@@ -351,8 +349,6 @@ def erratum(
 
     Parameters
     ----------
-    name : str
-        Its id.
     title, statement, source : str
         As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
     check : callable

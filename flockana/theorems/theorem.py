@@ -29,8 +29,6 @@ class Hypothesis:
 
     Parameters
     ----------
-    name : str
-        The condition.
     status : {"met", "unmet", "assumed"}
         ``"assumed"`` where it quantifies over more than one run can show.
     margin : float, optional
@@ -200,11 +198,6 @@ class Verdict:
     def claim(self, name: str) -> Claim:
         """The claim of that name.
 
-        Parameters
-        ----------
-        name : str
-            Such as ``"iii"``.
-
         Raises
         ------
         KeyError
@@ -252,8 +245,6 @@ class Theorem:
     ----------
     id : str
         Such as ``"os-1"``.
-    title : str
-        One line.
     statement : str
         What it says, in our words.
     source : str
