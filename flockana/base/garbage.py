@@ -13,17 +13,7 @@ and again, as by default after hundreds, takes a tenth of a short command."""
 
 @contextmanager
 def relaxed_gc() -> Iterator[None]:
-    """Collect garbage after a hundred thousand new objects instead of after hundreds.
-
-    Examples
-    --------
-    >>> before = gc.get_threshold()
-    >>> with relaxed_gc():
-    ...     gc.get_threshold()[0]
-    100000
-    >>> gc.get_threshold() == before
-    True
-    """
+    """Collect garbage after a hundred thousand new objects instead of after hundreds."""
     before = gc.get_threshold()
     gc.set_threshold(SELDOM)
     try:

@@ -22,20 +22,6 @@ def ensure_consistent(item: Any) -> None:
 
     A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
     that changes the former alone would be integrated without the change. So would a method set on an instance.
-
-    Examples
-    --------
-    >>> class Law:
-    ...     derives = {"flow": ("acceleration",)}
-    ...     def flow(self): ...
-    ...     def acceleration(self): ...
-    >>> class Noisy(Law):
-    ...     __module__ = "mine"
-    ...     def acceleration(self): ...
-    >>> ensure_consistent(Law())
-    >>> ensure_consistent(Noisy())
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: Noisy defines acceleration, but not flow, from which it follows: ...
     """
     kind = type(item)
     derives: Mapping[str, tuple[str, ...]] = getattr(kind, "derives", {})

@@ -101,12 +101,6 @@ def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[
 
 
 def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block of steps.
-
-    Examples
-    --------
-    >>> _among(np.array([0.0, 1.0, 3.0]), np.array([1.0, 2.0])).tolist()
-    [False, True, False]
-    """
+    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block."""
     nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
     return np.asarray(nearest == times)

@@ -38,13 +38,7 @@ class Control(NamedTuple):
 
 
 def ensure_atol(name: str, value: Any) -> Atol:
-    """Return an absolute tolerance: a length, a pair (length, speed), or None.
-
-    Examples
-    --------
-    >>> ensure_atol("atol", [1e-9, 1e-8])
-    (1e-09, 1e-08)
-    """
+    """Return an absolute tolerance: a length, a pair (length, speed), or None."""
     if value is None or np.ndim(value) == 0:
         return None if value is None else ensure_positive(name, value)
     if np.shape(value) != (2,):

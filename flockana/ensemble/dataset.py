@@ -97,13 +97,7 @@ def to_dataset(
 
 
 def metric_name(name: str) -> str:
-    """Return the variable name of a measure, or of the function in ``"module:function"``.
-
-    Examples
-    --------
-    >>> metric_name("strain"), metric_name("my.module:spread")
-    ('strain', 'spread')
-    """
+    """Return the variable name of a measure, or of the function in ``"module:function"``."""
     return name.rpartition(":")[2]
 
 

@@ -44,14 +44,7 @@ def unguarded_line() -> int | None:
 
 
 def is_guarded(source: str, line: int) -> bool:
-    r"""Return whether a line lies under an ``if`` that asks for ``__name__``.
-
-    Examples
-    --------
-    >>> text = 'import os\nif __name__ == "__main__":\n    os.getpid()\n'
-    >>> is_guarded(text, 3), is_guarded(text, 1)
-    (True, False)
-    """
+    r"""Return whether a line lies under an ``if`` that asks for ``__name__``."""
     return any(
         isinstance(node, ast.If)
         and node.lineno <= line <= (node.end_lineno or node.lineno)

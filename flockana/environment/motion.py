@@ -93,12 +93,7 @@ def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) 
 
 
 def ensure_force(force: Any) -> None:
-    """Raise unless a force can be called.
-
-    Examples
-    --------
-    >>> ensure_force(Spring((0.0,), 1.0))
-    """
+    """Raise unless a force can be called."""
     if not callable(force):
         raise ArgumentError(f"force = {force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
 

@@ -53,13 +53,7 @@ def pair_term(pair: PairInteraction, m: int) -> ca.Function:
 
 
 def dead_zone_gradient(delta: sp.Matrix, pair: DeadZoneInteraction) -> sp.Matrix:
-    """Return F(‖Δ‖) Δ/‖Δ‖ with a pair law's numbers inserted.
-
-    Examples
-    --------
-    >>> [float(x) for x in dead_zone_gradient(sp.Matrix([8, 0]), DeadZoneInteraction(k1=0.5))]
-    [4.0, 0.0]
-    """
+    """Return F(‖Δ‖) Δ/‖Δ‖ with a pair law's numbers inserted."""
     names = {"d_1": "d1", "d_2": "d2", "r": "r", "r_d": "r_d", "k_r": "k_r", "k_delta": "k_delta"}
     names |= {"k_1": "k1", "eta": "eta"}
     rho = sp.sqrt(delta.dot(delta))

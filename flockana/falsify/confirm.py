@@ -65,14 +65,7 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
 
 
 def tightened_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method.
-
-    Examples
-    --------
-    >>> options = tightened_options({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
-    >>> sorted(options), round(options["rtol"], 14)
-    (['rtol', 't_eval'], 1e-11)
-    """
+    """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method."""
     finer = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
     if finer.get("method") == "RK4":
         del finer["method"]

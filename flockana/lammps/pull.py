@@ -70,19 +70,7 @@ def _line(q: float, p: float) -> str:
 
 
 def pull_commands(term: Navigation) -> list[str] | None:
-    """Return commands that add the term to the forces, or None without a formula.
-
-    Examples
-    --------
-    >>> from flockana.interactions import Gains
-    >>> for line in pull_commands(Navigation(StaticTarget((5.0,)), Gains(c1_gamma=2.0, c2_gamma=3.0))):
-    ...     print(line)
-    variable target_x equal 5.0
-    variable target_vx equal 0.0
-    variable pull_x atom "-2.0*(x-v_target_x)+3.0*v_target_vx"
-    fix drag all viscous 3.0
-    fix pull all addforce v_pull_x 0.0 0.0
-    """
+    """Return commands that add the term to the forces, or None without a formula."""
     formulas, gains = path(term.target), term.gains
     if formulas is None or gains.per_agent:
         return None

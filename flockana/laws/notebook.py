@@ -44,14 +44,7 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 
 @dataclass(frozen=True)
 class PushTerm(Term):
-    """Term of the push near contact, which is not a gradient and has no energy.
-
-    Examples
-    --------
-    >>> u, q = np.zeros((2, 1)), np.array([[0.0], [0.04]])
-    >>> PushTerm(AlphaInteraction(), 1.0, 0.05, 10.0).act(0.0, q, 0.0 * q, u), bool(u[0, 0] < 0.0)
-    (0.0, True)
-    """
+    """Term of the push near contact, which is not a gradient and has no energy."""
 
     alpha: AlphaInteraction
     stiffness: float

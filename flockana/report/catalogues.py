@@ -84,14 +84,7 @@ def select(
 
 
 def short_list(entries: Sequence[dict[str, Any]]) -> str:
-    """Return a line for each entry, grouped by source.
-
-    Examples
-    --------
-    >>> print(short_list([{"name": "os-1", "title": "Algorithm 1", "source": "Olfati-Saber 2006"}]))
-    Olfati-Saber 2006
-      os-1  Algorithm 1
-    """
+    """Return a line for each entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
     for source in dict.fromkeys(entry["source"] for entry in entries):
         own = (entry for entry in entries if entry["source"] == source)

@@ -136,15 +136,7 @@ def _decades(low: float, high: float) -> list[tuple[float, str]]:
 
 
 def _path(x: FloatArray, y: FloatArray) -> str:
-    """Return points as SVG path data in whole numbers, broken where they are not finite.
-
-    Examples
-    --------
-    >>> _path(np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, np.nan, 3.0]))
-    'M0 0L1 1M3 3'
-    >>> _path(np.arange(4.0), np.array([5.0, 5.0, 5.0, 7.0]))
-    'M0 5L2 5L3 7'
-    """
+    """Return points as SVG path data in whole numbers, broken where they are not finite."""
     text: list[str] = []
     heights = [round(v) if np.isfinite(v) else None for v in y.tolist()]
     pen = "M"

@@ -44,15 +44,7 @@ def show(value: Any) -> str:
 
 
 def markup(value: Any) -> Markup:
-    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings.
-
-    Examples
-    --------
-    >>> markup({"pair": (1, 2)})
-    Markup('pair: (1, 2)')
-    >>> markup({"a": {"b": 1.0}})
-    Markup('<details class="values"><summary>1 entry</summary><dl><dt>a</dt><dd>b: 1</dd></dl></details>')
-    """
+    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings."""
     if not isinstance(value, Mapping) or (len(value) <= _LONGEST and not any(map(_deep, value.values()))):
         return escape(show(value))
     rows = Markup("").join(Markup("<dt>{}</dt><dd>{}</dd>").format(key, markup(item)) for key, item in value.items())
@@ -65,13 +57,7 @@ def _deep(value: Any) -> bool:
 
 
 def source_name(key: str) -> str:
-    """Return a key of the bibliography as a readable name.
-
-    Examples
-    --------
-    >>> source_name("olfati-saber-2006"), source_name("msn-2013")
-    ('Olfati-Saber 2006', 'MSN 2013')
-    """
+    """Return a key of the bibliography as a readable name."""
     *words, year = key.split("-") if key[-1:].isdigit() else (*key.split("-"), "")
     return f"{'-'.join(word.upper() if word in ('msn', 'ode') else word.capitalize() for word in words)} {year}".strip()
 

@@ -32,13 +32,7 @@ _FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: 
 def describe_choices(
     law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False
 ) -> str:
-    """Return a description of every parameter not printed in the paper.
-
-    Examples
-    --------
-    >>> describe_choices(DeadZoneFlocking(), 40.0, 200.0)[:34]
-    'Ours: r_b = 8 (d1 = 3.5, d2 = 12.5'
-    """
+    """Return a description of every parameter not printed in the paper."""
     pair = law.interaction
     ramp = (
         f"a ramp of width {pair.ramp:g} in place of the jumps beside the dead zone"

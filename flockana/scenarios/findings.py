@@ -51,13 +51,7 @@ def finding(
 def limit_report(
     name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
 ) -> Claim:
-    """Return a report on a limit: verified by a certificate, else open, never refuted.
-
-    Examples
-    --------
-    >>> limit_report("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
-    'inconclusive'
-    """
+    """Return a report on a limit: verified by a certificate, else open, never refuted."""
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
 
 

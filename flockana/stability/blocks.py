@@ -105,14 +105,7 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
 
 
 def is_pairs_and_pull(law: Any) -> bool:
-    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> is_pairs_and_pull(Algorithm1())
-    True
-    """
+    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2."""
     terms = getattr(law, "terms", ())
     linear = (isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
     return bool(terms) and all(linear)

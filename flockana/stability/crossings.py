@@ -50,20 +50,6 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
 
     |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
     Stiffness up to `neutral` is 0.
-
-    Examples
-    --------
-    x'' = −x'(t − τ) crosses at π/2:
-
-    >>> one, zero = np.ones((1, 1)), np.zeros((1, 1))
-    >>> modal_crossing((zero, zero, zero, one), 0.0)
-    Crossing(delay=1.5707963267948966, frequency=1.0, least=1.5707963267948966)
-
-    A balanced directed cycle of three, p' = −L p(t − τ), has λ = (3 ± j√3)/2 and (π/2 − π/6)/√3:
-
-    >>> cycle = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
-    >>> round(modal_crossing((0 * cycle, 0 * cycle, 0 * cycle, cycle), 0.0).delay, 4)
-    0.6046
     """
     values = _common_modes(four)
     if values is None:
@@ -230,14 +216,6 @@ def least_crossing(
 
     The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are needed.
     `advance` is called with the share of the frequencies that is done.
-
-    Examples
-    --------
-    >>> turn = np.array([[0.8, -0.6], [0.6, 0.8]])
-    >>> prompt, late = np.diag([3.0, 1.0]), turn @ np.diag([2.0, 0.5]) @ turn.T
-    >>> found = least_crossing((prompt, np.eye(2), late, np.zeros((2, 2))), 0.0, 4.0)
-    >>> bool(0.0 < found.least <= found.delay <= 1.00001 * found.least)
-    True
     """
     best, todo, left = Crossing(inf, float("nan"), inf), [(low, high)], MOST
     while todo:

@@ -218,15 +218,7 @@ class MapLinearisation:
 def stepped_equation(
     stiffness: Any, damping: Any, dt: float, factor: float, m: int, *, in_place: bool = False
 ) -> tuple[Any, Any]:
-    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse.
-
-    Examples
-    --------
-    >>> from scipy.sparse import csr_array
-    >>> one = csr_array(np.array([[2.0]]))
-    >>> [part.toarray().tolist() for part in stepped_equation(one, one, 0.5, 1.0, 1)]
-    [[[2.0]], [[3.0]]]
-    """
+    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse."""
     k, d = stiffness.tocsr(), damping + factor * dt * stiffness
     if not in_place:
         return k, d

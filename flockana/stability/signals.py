@@ -25,13 +25,7 @@ def labels(name: str, n: int, m: int) -> list[str]:
 
 
 def axes_of(name: str, m: int) -> list[str]:
-    """Names of the components of one vector.
-
-    Examples
-    --------
-    >>> axes_of("qc", 2)
-    ['qc_x', 'qc_y']
-    """
+    """Names of the components of one vector."""
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 

@@ -47,7 +47,7 @@ def position_form(m: int = 2) -> dict[str, sp.Matrix]:
 
 
 def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
-    """Return cohesion (14), alignment (15) and separation (19) of a pair with unit weights, from bearing and distance."""
+    """Return cohesion (14), alignment (15) and separation (19) of a pair of unit weights, from bearing and distance."""
     d, b, d_rate, b_rate = bearing(m)
     return {"cohesion": d * b, "alignment": d * b_rate + d_rate * b, "separation": (d - C) * b}
 

@@ -30,7 +30,7 @@ def copies_balance() -> Derivation:
 
 
 def copies_part() -> Derivation:
-    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation, whatever the number of copies."""
+    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3
     pulled = {

@@ -130,13 +130,7 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
 
 @dataclass(frozen=True)
 class Braking:
-    """Effect of an obstacle on the kinetic energy, <p, p_hat - p>, and its sign.
-
-    Examples
-    --------
-    >>> derive_braking("sphere").holds
-    True
-    """
+    """Effect of an obstacle on the kinetic energy, <p, p_hat - p>, and its sign."""
 
     kind: str
     residual: sp.Expr  # <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0

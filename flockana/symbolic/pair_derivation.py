@@ -38,13 +38,7 @@ def _along(potential: sp.Expr, at: sp.Expr, y: sp.Symbol, square: sp.Symbol) -> 
 
 
 def alpha_steps() -> tuple[Step, ...]:
-    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
-
-    Examples
-    --------
-    >>> len(alpha_steps())
-    2
-    """
+    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
     return (
         Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z)),
         Step("and its adjacency", adjacency(Z)),

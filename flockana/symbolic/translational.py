@@ -100,5 +100,5 @@ def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square:
 
 
 def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) -> sp.Expr:
-    """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with every omega iff it is >= 0 (erratum E15)."""
+    """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with omega iff it is >= 0 (erratum E15)."""
     return gains.c2_gamma**2 * (1 - exact("scale", scale) ** 2) - 2 * gains.c1_gamma

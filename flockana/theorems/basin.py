@@ -88,13 +88,7 @@ def kinetic(p: FloatArray, off: float = 0.0) -> float:
 
 
 def gyration(q: FloatArray) -> float:
-    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line.
-
-    Examples
-    --------
-    >>> gyration(np.array([[-1.0, 0.0], [1.0, 0.0]]))
-    1.4142135623730951
-    """
+    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line."""
     x, m = moving_frame(q), q.shape[1]
     turns = []
     for a in range(m):

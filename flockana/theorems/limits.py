@@ -83,14 +83,6 @@ def without_assumed(needs: Iterable[Hypothesis], make: Callable[[list[Hypothesis
     """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
 
     A certificate of the limit itself does not rest on what is only assumed; a refutation would.
-
-    Examples
-    --------
-    >>> needs = [Hypothesis("all solutions stay together", "assumed")]
-    >>> without_assumed(needs, lambda given: limit_claim("i", given, [Certificate(0.5, "a basin")])).status
-    'verified'
-    >>> without_assumed(needs, lambda given: limit_claim("i", given, escape=Certificate(0.5, "parted"))).status
-    'inconclusive'
     """
     needs = list(needs)
     sure = make([need for need in needs if need.status != "assumed"])

@@ -76,11 +76,6 @@ def deepest_of(pair: PairInteraction) -> float:
     """Return the size of a pair's potential: c* of the paper's, else the largest at 0, d and the range.
 
     A potential that has no bound at 0 counts by what it is at a tenth of d.
-
-    Examples
-    --------
-    >>> deepest_of(AlphaInteraction()) == AlphaInteraction().c_star
-    True
     """
     if isinstance(pair, AlphaInteraction):
         return float(pair.c_star)
@@ -90,15 +85,7 @@ def deepest_of(pair: PairInteraction) -> float:
 
 
 def energy_rounding(run: Trajectory) -> FloatArray:
-    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm1, simulate
-    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> bool(energy_rounding(run).max() < 1e-9)
-    True
-    """
+    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size."""
     energy = run.energy()
     if isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition):
         return energy_error(run.law, run.q, run.p, energy)

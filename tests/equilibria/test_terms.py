@@ -14,7 +14,7 @@ from flockana.equilibria import program as program_module
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
-from flockana.equilibria.terms import obstacle_term, pair_term
+from flockana.equilibria.terms import dead_zone_gradient, obstacle_term, pair_term
 from flockana.equilibria.translate import to_casadi
 from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction
 from flockana.laws.algorithm3 import Algorithm3
@@ -145,3 +145,7 @@ def test_the_generated_gradient_and_hessian_are_those_of_the_kernels(s):
 def test_a_pair_law_without_symbols_is_refused():
     with pytest.raises(ArgumentError, match="no other has a symbolic form"):
         pair_term(BetaInteraction(), 2)
+
+
+def test_the_gradient_of_a_pair_within_the_dead_zone_is_the_linear_pull():
+    assert list(dead_zone_gradient(sp.Matrix([8, 0]), DeadZoneInteraction(k1=0.5))) == [4.0, 0.0]

@@ -27,13 +27,6 @@ class TargetFeedforward(Term):
 
     It moves the centre of mass alone: its power is 0 under an energy in the moving frame, and Σ⟨p_i, d²q_r/dt²⟩ under
     one in the given frame.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import CircleTarget
-    >>> circle, u = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi), np.zeros((1, 2))
-    >>> TargetFeedforward(circle, True).act(0.0, 0.0 * u, 0.0 * u, u), u.tolist()
-    (0.0, [[-2.0, 0.0]])
     """
 
     target: Target

@@ -99,13 +99,7 @@ def neighbourhoods(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
-    """Return the weighted mean heading that a constant connected net preserves and tends to.
-
-    Examples
-    --------
-    >>> final_heading(np.array([0.0, 1.0]), np.array([1.0, 3.0]))
-    0.75
-    """
+    """Return the weighted mean heading that a constant connected net preserves and tends to."""
     return float(weights @ heading / weights.sum())
 
 
