@@ -63,10 +63,8 @@ def _real(value: Any) -> Any:
 
 
 def real_array(value: Any) -> FloatArray:
-    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert.
-
-    Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
-    """
+    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert."""
+    # Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
     array = np.asarray(_real(value))
     if array.dtype.kind == "O":
         array = np.array([float(_real(one)) for one in array.ravel()]).reshape(array.shape)

@@ -27,10 +27,8 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 
 
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
-    """Return the file behind a path, links followed; raise if it is something that must not be replaced.
-
-    A device or a pipe is left alone, and so is a link: what it points to is written.
-    """
+    """Return the file behind a path, links followed; raise if it is something that must not be replaced."""
+    # A device or a pipe is left alone, and so is a link: what it points to is written.
     given = ensure_path(path, action="write", remedy=remedy)
     target = Path(os.path.realpath(given))
     try:
@@ -93,10 +91,8 @@ def write_atomic(
 
 
 def read_text_file(path: Any) -> str:
-    """Return the UTF-8 text of a regular file; raise on devices and on huge files.
-
-    What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
-    """
+    """Return the UTF-8 text of a regular file; raise on devices and on huge files."""
+    # What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
     source = ensure_path(path)
     try:
         if source.exists() and not source.is_file():

@@ -23,8 +23,6 @@ def relaxed_gc() -> Iterator[None]:
 
 
 def freeze_gc() -> None:
-    """Exclude all present objects from garbage collection, in a process that is about to end.
-
-    Else Python would look through everything that was imported twice more: a tenth of a short command.
-    """
+    """Exclude all present objects from garbage collection, in a process that is about to end."""
+    # Else Python would look through everything that was imported twice more: a tenth of a short command.
     gc.freeze()

@@ -40,10 +40,8 @@ _PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequen
 
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Decorate a function so that it refuses, by name, an argument of another class than its annotation.
-
-    Annotations are read as text, so that no library is imported for a check.
-    """
+    """Decorate a function so that it refuses, by name, an argument of another class than its annotation."""
+    # Annotations are read as text, so that no library is imported for a check.
     called = inspect.signature(function)
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}

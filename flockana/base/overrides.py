@@ -18,11 +18,9 @@ def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool
 
 
 def ensure_consistent(item: Any) -> None:
-    """Raise if a law overrides a public method whose counterpart for integrators it keeps.
-
-    A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's class
-    that changes the former alone would be integrated without the change. So would a method set on an instance.
-    """
+    """Raise if a law overrides a public method whose counterpart for integrators it keeps."""
+    # A class of the library says in ``derives`` which public methods follow from which one that is asked: a user's
+    # class that changes the former alone would be integrated without the change. So would a method set on an instance.
     kind = type(item)
     derives: Mapping[str, tuple[str, ...]] = getattr(kind, "derives", {})
     for source, derived in derives.items():

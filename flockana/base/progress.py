@@ -16,13 +16,10 @@ _BASIS = 0.1  # of the total: what is done from which on the time left is told
 def progress_bar(
     total: float, *, enabled: bool = True, counted: bool = True, steady: bool = False
 ) -> Iterator[Callable[[float, str], None]]:
-    """Show a progress bar; yield a function that reports progress and a text.
-
-    Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute.
-
-    `counted` shows both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate,
-    for work of which each part takes about as long.
-    """
+    """Show a progress bar; yield a function that reports progress and a text."""
+    # Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute. `counted` shows
+    # both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate, for work of
+    # which each part takes about as long.
     from flockana.base.checks import ensure_flag  # and numpy, which to list needs not
 
     console = _console() if ensure_flag("progress", enabled) else None

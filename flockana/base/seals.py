@@ -55,11 +55,9 @@ def without_digest(data: Mapping[str, Any], *, keys: Collection[str] | None = No
 
 
 def checksum(value: Any) -> str:
-    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their code.
-
-    Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
-    field that takes no part in comparisons counts for nothing.
-    """
+    """Return the SHA-256 of a value: numbers bit by bit, objects field by field, functions by their code."""
+    # Sequences of numbers count as the array of them, so that an object that went through a file keeps its checksum; a
+    # field that takes no part in comparisons counts for nothing.
     total = hashlib.sha256()
     _feed(total, value, ())
     return total.hexdigest()

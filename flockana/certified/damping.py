@@ -20,10 +20,8 @@ _DIGITS = 4
 
 
 def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -> tuple[fmpq, fmpq]:
-    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up.
-
-    So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
-    """
+    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up."""
+    # So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
     away = ball(reach)
     weakest = {pair: u.weight(square(length + away)).lower() for pair, length in lengths.items()}
     strongest = {pair: u.weight(square((length - away).max(arb(0)))) for pair, length in lengths.items()}

@@ -60,10 +60,8 @@ def _pairs(q: Any) -> list[tuple[Any, Any]]:
 
 
 def _shortest_bound(alpha: Any) -> fmpq | None:
-    """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none.
-
-    ψ_α falls up to d_α, so that it holds below any length at which it holds.
-    """
+    """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none."""
+    # ψ_α falls up to d_α, so that it holds below any length at which it holds.
     pair, low, high = PairNumbers.of_alpha(alpha), fmpq(0), exact(alpha.d)
     if not pair.c_star > pair.far:
         return None

@@ -89,10 +89,8 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
-    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long.
-
-    x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
-    """
+    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long."""
+    # x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
     span, box = _interval(h), before.hull
     during = _picard(flow, t, span, box)
     if during is None:
@@ -111,11 +109,9 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
 def _enclosed(
     flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
 ) -> tuple[list[arb], list[arb]] | None:
-    """Return the box of the solutions during a step and the remainder at its end, if proved.
-
-    If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
-    would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
-    """
+    """Return the box of the solutions during a step and the remainder at its end, if proved."""
+    # If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
+    # would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
     growth = _first_growth(reach, h)
     for _ in range(_INFLATIONS):
         box = [x + arb(0, g) for x, g in zip(reach, growth, strict=True)]
@@ -158,12 +154,10 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
 def _variation(
     flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
 ) -> tuple[arb_mat, arb_mat]:
-    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder.
-
-    At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest row
-    sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the identity
-    by more than e^{Lh} − 1.
-    """
+    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder."""
+    # At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest
+    # row sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the
+    # identity by more than e^{Lh} − 1.
     span = _interval(h)
     polynomial = flow.variation(t, path, order - 1, pieces)
     there = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
@@ -191,11 +185,9 @@ def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) 
 
 
 def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
-    """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set.
-
-    Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it does
-    not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
-    """
+    """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set."""
+    # Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it
+    # does not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
     size, widest = len(widths), max(widths)
     weights = np.repeat((1.0, 1.0 / pace), size // 2)[:, None]
     edges = weights * np.array([[float(x.mid()) for x in row] for row in b.tolist()])

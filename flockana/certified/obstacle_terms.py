@@ -75,10 +75,8 @@ class SphereTerm(AgentTerm):
         return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables.
-
-        With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
-        """
+        """Return the derivatives of the force by position and velocity, two tables."""
+        # With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         s2, mu, free = square(clearance), self.radius / distance, clearance / distance

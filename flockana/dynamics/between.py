@@ -146,10 +146,8 @@ class Recorder:
         return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
     def _keep_to_memory(self) -> None:
-        """Drop every other step if there are too many, and free their memory.
-
-        Where a step is left out, no sample may come between its neighbours any more.
-        """
+        """Drop every other step if there are too many, and free their memory."""
+        # Where a step is left out, no sample may come between its neighbours any more.
         if self._held <= self.most or not self._samples:
             return
         self._put_together()

@@ -28,11 +28,9 @@ def discrete(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Samples]:
-    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there.
-
-    Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
-    times to keep the nearest steps are given, each once: between its steps a map has no state.
-    """
+    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
+    # Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
+    # times to keep the nearest steps are given, each once: between its steps a map has no state.
     q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
     steps, wanted = count_steps(*t_span, dt, np.floor), wanted_steps(law, t_span, keep)
     if wanted is None or 0 in wanted:

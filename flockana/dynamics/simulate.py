@@ -207,10 +207,8 @@ def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, 
 
 
 def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> Iterator[float]:
-    """Yield times at which steps of at most dt end.
-
-    The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
-    """
+    """Yield times at which steps of at most dt end."""
+    # The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
     if keep is None:
         yield from (t_span[0] + k * dt for k in range(count_steps(*t_span, dt)))
         yield t_span[1]

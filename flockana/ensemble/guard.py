@@ -15,10 +15,8 @@ GUARD = 'if __name__ == "__main__":'
 
 
 def can_start_processes(request: Any) -> bool:
-    """Return whether processes can make the runs; warn and return False if this process must.
-
-    A started process imports the script that called. Without a guard that would run it again.
-    """
+    """Return whether processes can make the runs; warn and return False if this process must."""
+    # A started process imports the script that called. Without a guard that would run it again.
     if (line := unguarded_line()) is not None:
         _warn(f"line {line} of the script is not under `{GUARD}`, so the runs are made in this process, one by one")
         return False

@@ -104,10 +104,8 @@ def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
 
 
 def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray, bool]:
-    """Minimise by Newton's method, with moduli of eigenvalues where the Hessian is not positive.
-
-    A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
-    """
+    """Minimise by Newton's method, with moduli of eigenvalues where the Hessian is not positive."""
+    # A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
     length, scale = potential.pair.length, potential.force_scale
     trust, force = 0.1 * length, potential.force(q)
     for _ in range(steps):
@@ -129,10 +127,8 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
 
 
 def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any, near: float) -> bool:
-    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end.
-
-    The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
-    """
+    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end."""
+    # The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
     if _largest(force) <= near:
         return _largest(after) < _largest(force)
     promised = float(np.vdot(force, step)) - 0.5 * float(step.ravel() @ (hessian @ step.ravel()))

@@ -208,10 +208,8 @@ def _matrix(rows: Any, columns: Any, values: Any, shape: tuple[int, int]) -> Any
 
 
 def _scatter(n: int, m: int, i: Any, j: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Any]:
-    """Return rows and columns of the upper triangle, and the matrix from block entries to them.
-
-    A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
-    """
+    """Return rows and columns of the upper triangle, and the matrix from block entries to them."""
+    # A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
     k, own = np.arange(i.size), np.arange(n)
     placed = [
         (i, i, k, 1.0),

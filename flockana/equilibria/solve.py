@@ -260,11 +260,9 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Minimise in a box about the start, then about each solution, until the box is not active.
-
-    The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
-    directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
-    """
+    """Minimise in a box about the start, then about each solution, until the box is not active."""
+    # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
+    # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.program import Program
 
     (n, m), escapes = q.shape, 0

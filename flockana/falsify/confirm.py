@@ -44,10 +44,8 @@ class Case(Protocol):
 
 
 def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
-    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too.
-
-    A map has no tolerance: its verdict stays as it is.
-    """
+    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too."""
+    # A map has no tolerance: its verdict stays as it is.
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
     run = simulate(case.law, case.q0, case.p0, case.t_span, **tightened_options(case.options))

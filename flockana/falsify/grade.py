@@ -19,10 +19,8 @@ _LEAD = 1e-3  # of a surrogate: less than a step of any count, so it orders only
 
 
 def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float | None = None) -> float:
-    """Return a number for a claim on a run: the lower, the nearer the run comes to refuting the claim.
-
-    A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
-    """
+    """Return a number for a claim on a run: the lower, the nearer the run comes to refuting the claim."""
+    # A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
     margin = float("nan") if claim.margin is None else float(claim.margin)
     aid = 0.0 if lead is None else _LEAD * lead
     if claim.status == "vacuous":

@@ -180,11 +180,9 @@ def _planar(n: int, links: LinkArray) -> bool:
 
 
 def _embeds(links: LinkArray) -> bool:
-    """Return whether a rotation system of links is found and is a planar embedding.
-
-    Euler's formula proves it, however the order came about: over the connected components agents − links + faces falls
-    short of two each by twice the number of handles.
-    """
+    """Return whether a rotation system of links is found and is a planar embedding."""
+    # Euler's formula proves it, however the order came about: over the connected components agents − links + faces
+    # falls short of two each by twice the number of handles.
     agents, numbers = np.unique(links, return_inverse=True)
     pairs = numbers.reshape(-1, 2).astype(np.int32)
     found = embedding(len(agents), pairs)

@@ -94,11 +94,9 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
 
 
 def printed_edge_share(n: int, pairs: LinkArray) -> float:
-    """Return C* = |E(Γ*)|/|E(G)| as the slides print it: share of *links* in the largest component (E7).
-
-    With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
-    for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
-    """
+    """Return C* = |E(Γ*)|/|E(G)| as the slides print it: share of *links* in the largest component (E7)."""
+    # With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96 for
+    # components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)
     if len(pairs) == 0:

@@ -43,11 +43,9 @@ def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
 
 
 def out_tree_root(n: int, edges: Edges) -> int | None:
-    """Return the root of a rooted out-tree, or None for any other graph.
-
-    Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
-    "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
-    """
+    """Return the root of a rooted out-tree, or None for any other graph."""
+    # Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
+    # "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
     seen = np.bincount([i for _, i in edges], minlength=n)
     if len(edges) != n - 1 or seen.max() > 1 or not is_connected(n, edges):
         return None  # n − 1 edges, each to another agent, connected: no room for a cycle

@@ -63,10 +63,8 @@ def _root(leader: list[int], i: int) -> int:
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
-    """Return windows of a run's samples over which its nets are jointly connected.
-
-    A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
-    """
+    """Return windows of a run's samples over which its nets are jointly connected."""
+    # A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
     own = getattr(run.law, "links", None)

@@ -260,10 +260,8 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
-    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1.
-
-    Where agents have many, links are thin, and those near d lie above the others.
-    """
+    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1."""
+    # Where agents have many, links are thin, and those near d lie above the others.
     if len(pairs) == 0:
         return
     few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)

@@ -96,12 +96,10 @@ def write_report(
     flocks: LinearisedFlocks = NO_FLOCKS,
     of: str | None = None,
 ) -> Path:
-    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
-
-    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
-    part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
-    None for the whole catalogue.
-    """
+    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole."""
+    # A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
+    # part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
+    # None for the whole catalogue.
     folder = ensure_directory(directory)
     if of is not None and _on_all(folder):
         folder = ensure_directory(folder / of)

@@ -30,11 +30,9 @@ class _Place:
 
 
 def place_axes(figure: Any, renderer: Any, scales: Scales) -> None:
-    """Place the axes of a grid in the room that their texts leave, by the grid's ratios.
-
-    They are measured where usual margins would put them, then where that puts them, until that is room enough:
-    numbers depend on the size of axes, and what a wide legend takes beside them does.
-    """
+    """Place the axes of a grid in the room that their texts leave, by the grid's ratios."""
+    # They are measured where usual margins would put them, then where that puts them, until that is room enough:
+    # numbers depend on the size of axes, and what a wide legend takes beside them does.
     places = [_place(ax) for ax in figure.axes]
     if not places:
         return

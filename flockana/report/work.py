@@ -100,10 +100,8 @@ def check_all(
     jobs: int = 1,
     watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None,
 ) -> Iterator[Done]:
-    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C.
-
-    A task that ends its process (for want of memory, say) is named in an error, when all others are done.
-    """
+    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C."""
+    # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     if not tasks:
         return
     lost: list[str] = []
@@ -116,11 +114,9 @@ def check_all(
 
 
 def _begun_apart(tasks: Sequence[Work]) -> list[Work]:
-    """Return tasks in the order of execution: one flow first, then maps, then the others.
-
-    Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
-    the other the loops of maps, and seldom wait for each other (`flockana.jit`).
-    """
+    """Return tasks in the order of execution: one flow first, then maps, then the others."""
+    # Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
+    # the other the loops of maps, and seldom wait for each other (`flockana.jit`).
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())
     of_maps = {subject for subject in subjects if isinstance(scenario(subject).law, DiscreteLaw)}
     maps = [task for task in tasks if _subject(task) in of_maps]

@@ -35,10 +35,8 @@ def finding(
     error: float | None = None,
     witness: Any = None,
 ) -> Claim:
-    """Return a claim judged by its margin alone.
-
-    A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
-    """
+    """Return a claim judged by its margin alone."""
+    # A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
     if error is None:
         counted = margin != 0.0 and float(2.0 * margin).is_integer()
         size = abs(computed) if isinstance(computed, float | int) else 0.0

@@ -46,11 +46,9 @@ class Crossing(NamedTuple):
 
 
 def modal_crossing(four: Four, neutral: float) -> Crossing | None:
-    """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes.
-
-    |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
-    Stiffness up to `neutral` is 0.
-    """
+    """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
+    # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
+    # Stiffness up to `neutral` is 0.
     values = _common_modes(four)
     if values is None:
         return _triangular_crossing(four)
@@ -193,11 +191,9 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
 
 
 def _free(at: _Spectrum, angle: float) -> float:
-    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle.
-
-    Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less than
-    s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
-    """
+    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle."""
+    # Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less
+    # than s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
     gaps = _distances(at, 1.0 / tan(0.5 * angle) if angle < 2.0 * pi else -inf)
     if not np.isfinite(at.first).all() or gaps.min() <= 0.0:
         return 0.0
@@ -212,11 +208,9 @@ def _free(at: _Spectrum, angle: float) -> float:
 def least_crossing(
     four: Four, low: float, high: float, advance: Callable[[float], object] = lambda _: None
 ) -> Crossing:
-    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular.
-
-    The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are needed.
-    `advance` is called with the share of the frequencies that is done.
-    """
+    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular."""
+    # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
+    # needed. `advance` is called with the share of the frequencies that is done.
     best, todo, left = Crossing(inf, float("nan"), inf), [(low, high)], MOST
     while todo:
         a, b = todo.pop()

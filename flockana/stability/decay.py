@@ -90,11 +90,9 @@ def slowest_seen(flock: Linearisation) -> Mode:
 
 @check_kinds
 def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
-    """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one.
-
-    K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
-    periods, and exact for a pure mode.
-    """
+    """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one."""
+    # K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
+    # periods, and exact for a pure mode.
     mode = slowest_seen(flock)
     size = ensure_positive("amplitude", amplitude) * _length(flock)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate

@@ -238,10 +238,8 @@ def _strong_parts(system: DelaySystem) -> Iterator[DelaySystem]:
 
 
 def _stable(system: DelaySystem) -> bool:
-    """Return whether every root without delay decays beyond rounding, neutral roots excepted.
-
-    These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
-    """
+    """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
+    # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     found = []
     for part in _strong_parts(system):
         (k0, d0), (k1, d1) = part.prompt, part.late

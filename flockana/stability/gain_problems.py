@@ -70,10 +70,8 @@ class GainProblem:
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n).
-
-        dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
-        """
+        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n)."""
+        # dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
         from scipy.linalg import eig
 
         values, left, right = eig(self.matrix(gains), left=True, right=True)  # type: ignore[misc]

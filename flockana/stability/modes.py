@@ -202,11 +202,9 @@ class SecondOrder:
 
     @cached_property
     def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
-        """Return eigenvalues, displacements and rounding errors of the remaining modes.
-
-        Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
-        the user's choice of a time unit.
-        """
+        """Return eigenvalues, displacements and rounding errors of the remaining modes."""
+        # Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
+        # the user's choice of a time unit.
         left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
         left[:size] /= pace
         apart, turn = left.shape[1], _turn(left)
@@ -296,10 +294,8 @@ class SecondOrder:
 
 
 def _turn(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
-    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right.
-
-    Q is never formed: a few reflections cost a few passes over what they act on.
-    """
+    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right."""
+    # Q is never formed: a few reflections cost a few passes over what they act on.
     from scipy.linalg.lapack import dgeqrf, dormqr
 
     if not basis.shape[1]:

@@ -48,10 +48,8 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
-    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one.
-
-    Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
-    """
+    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one."""
+    # Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     from scipy.spatial import cKDTree
 
     plane = np.column_stack([values.real, values.imag])
@@ -68,11 +66,9 @@ def root_error(value: complex, stiffness: float, damping: float, errors: tuple[f
 
 
 def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: ComplexArray) -> FloatArray:
-    """Return error bounds of roots λ of (λ² + λD + K) v = 0, from rounding and residuals; D and K symmetric.
-
-    To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
-    square root of the push.
-    """
+    """Return error bounds of roots λ of (λ² + λD + K) v = 0, from rounding and residuals; D and K symmetric."""
+    # To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
+    # square root of the push.
     rows = [float(abs(matrix).sum(axis=1).max()) for matrix in (stiffness, damping)]
     errors = np.empty(len(values))
     for k, value in enumerate(values.tolist()):

@@ -159,11 +159,9 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
 
 
 def map_system(law: MSNDiscretisation) -> StateSpace:
-    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`.
-
-    Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
-    agents obeys no equation of its own.
-    """
+    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`."""
+    # Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
+    # agents obeys no equation of its own.
     import control
 
     if not isinstance(law, MSNDiscretisation) or law.target is None:

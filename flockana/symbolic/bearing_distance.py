@@ -68,10 +68,8 @@ def derive_equivalence(m: int = 2) -> Derivation:
 
 
 def estimate_gap() -> sp.Expr:
-    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation.
-
-    (17) adds δ u^aux, the input without the global speed term u^ga, so that Remark 3's equivalence fails (J8).
-    """
+    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation."""
+    # (17) adds δ u^aux, the input without the global speed term u^ga, so that Remark 3's equivalence fails (J8).
     aux = sp.Symbol("u^aux", real=True)
     drive = GAIN * (SPEED * sp.sign(OWN) - OWN)
     return sp.factor(sp.expand(OWN + STEP * (aux + drive) - (OWN + STEP * aux)), STEP, GAIN)
@@ -104,10 +102,8 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, w
 def rest_distance(
     *, separation: sp.Expr = GAIN, cohesion: sp.Expr | None = None, repulsion: sp.Expr | None = None
 ) -> sp.Expr:
-    """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15).
-
-    Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
-    """
+    """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15)."""
+    # Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
     d = sp.Symbol("d", positive=True)
     pull = (sp.Symbol("g", positive=True) if cohesion is None else exact("cohesion", cohesion)) * d
     (distance,) = sp.solve(sp.Eq(exact("separation", separation) * (d - C) + pull, 0), d)

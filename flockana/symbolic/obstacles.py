@@ -102,12 +102,10 @@ class GenericObstacle:
 
 
 def derive_envelope(kind: str, m: int = 2) -> Derivation:
-    """Derive that the gradient of psi_beta needs no derivative of q_hat, and that p_hat is the rate of q_hat.
-
-    With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
-    surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
-    obstacle too, except at a sphere's centre, where q_hat does not exist.
-    """
+    """Derive that the gradient of psi_beta needs no derivative of q_hat, and that p_hat is the rate of q_hat."""
+    # With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
+    # surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
+    # obstacle too, except at a sphere's centre, where q_hat does not exist.
     generic = GenericObstacle(kind, m)
     gap, jacobian = generic.gap, generic.derivative
     squared = HALF * gap.dot(gap)

@@ -25,11 +25,9 @@ def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-.
-
-    S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
-    means.
-    """
+    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-."""
+    # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
+    # means.
     total = sp.S.Zero
     for part in _PARTS:
         stress = _over(STRESS[_J], part)

@@ -91,10 +91,8 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
 
 
 def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return A^s = D^T D_in W^s and A^a = D^T D_in W^a of the edge dynamics x'' = -A^a x' - A^s x.
-
-    On a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its mean.
-    """
+    """Return A^s = D^T D_in W^s and A^a = D^T D_in W^a of the edge dynamics x'' = -A^a x' - A^s x."""
+    # On a rooted tree every agent but the root has one edge, so W^a = I; elsewhere an agent's edges share its mean.
     D, D_in = incidence_matrix(edges), receiver_matrix(edges)
     shares = sp.diag(*(sp.Rational(1, sum(i == head for _, head in edges)) for _, i in edges))
     return D.T * D_in * _weights("w", edges), D.T * D_in * shares

@@ -116,10 +116,8 @@ def e2_identity(m: int = 2) -> EnergyIdentity:
 
 
 def e2_counterexample() -> RisingEnergy:
-    """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises.
-
-    The gamma-agent rests at the origin; no obstacle is near.
-    """
+    """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises."""
+    # The gamma-agent rests at the origin; no obstacle is near.
     alpha = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)
     q, p = (sp.Integer(0), sp.Integer(2)), (sp.Integer(0), -sp.Rational(1, 5))

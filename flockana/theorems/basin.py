@@ -113,11 +113,9 @@ def barrier(
     *,
     off: float = 0.0,
 ) -> tuple[float, float]:
-    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none.
-
-    A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
-    with L = 0 they were no better.
-    """
+    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none."""
+    # A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when
+    # even with L = 0 they were no better.
     best, constant = 0.0, inf
     for window in sorted(windows, reverse=True):
         reach = window - distance
@@ -142,12 +140,10 @@ def excess(
 
 
 def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
-    """Return a Lipschitz constant L of ∇²U from bounds T of the pair potentials' third derivatives.
-
-    A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length by
-    at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T,
-    which is at most the largest sum of the weights at both ends of a link.
-    """
+    """Return a Lipschitz constant L of ∇²U from bounds T of the pair potentials' third derivatives."""
+    # A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length
+    # by at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted
+    # by T, which is at most the largest sum of the weights at both ends of a link.
     if not len(pairs):
         return 0.0
     ends = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)

@@ -303,11 +303,9 @@ def _resting_on(claim: Claim, need: Hypothesis) -> Claim:
 
 
 def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
-    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs.
-
-    For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
-    made from enclosures of its parts instead.
-    """
+    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs."""
+    # For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
+    # made from enclosures of its parts instead.
     best, *others = (check(run) for run in (seen.run, seen.other, *seen.allowed))
     if best.margin is None or best.status not in ("verified", "refuted"):
         return best

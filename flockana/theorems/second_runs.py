@@ -89,10 +89,8 @@ def _longest_step(run: Trajectory) -> float | None:
 
 
 def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float | None) -> Trajectory:
-    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor.
-
-    A run with a fixed step is followed by an adaptive method.
-    """
+    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor."""
+    # A run with a fixed step is followed by an adaptive method.
     stats, span = run.stats, (float(times[0]), float(times[-1]))
     options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
     if "rtol" in stats:

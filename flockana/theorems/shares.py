@@ -17,10 +17,8 @@ INTERVAL_ERROR = 1e-9  # of the ends of an interval, which are quantiles of a be
 
 
 def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float]:
-    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`.
-
-    Outcomes that are undecided count against the lower end and for the upper one.
-    """
+    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`."""
+    # Outcomes that are undecided count against the lower end and for the upper one.
     low, _ = clopper_pearson(count, size, level=CONFIDENCE)
     _, high = clopper_pearson(count + undecided, size, level=CONFIDENCE)
     return float(low), float(high)

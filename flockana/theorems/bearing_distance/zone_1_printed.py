@@ -59,10 +59,8 @@ def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
 
 
 def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that A_cl is Hurwitz along the run, which holds if every edge is longer than desired.
-
-    det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
-    """
+    """Return the claim that A_cl is Hurwitz along the run, which holds if every edge is longer than desired."""
+    # det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     at = case.lengths(seen.run.q) / case.rho
     sampled = (case.edges_of(seen.run.q, seen.shape_error) / case.rho - 1.0).worst
     k = int(np.argmin(at.min(axis=1)))

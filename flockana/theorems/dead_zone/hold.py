@@ -101,11 +101,9 @@ def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:
-    """Return an upper bound of each pair potential's third derivative, over lengths within the slack.
-
-    It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
-    makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
-    """
+    """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
+    # It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
+    # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
     third, pair = np.zeros(lengths.shape), law.interaction
     zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
     for zone in np.unique(zones):

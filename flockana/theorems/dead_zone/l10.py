@@ -35,10 +35,8 @@ def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
 
 
 def _excludes_nothing() -> bool | None:
-    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0.
-
-    None if sympy cannot tell.
-    """
+    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0."""
+    # None if sympy cannot tell.
     import sympy as sp
 
     from flockana.symbolic.dead_zone import ETA_POSITIVE, K_DELTA, K_R, repulsive_primitive

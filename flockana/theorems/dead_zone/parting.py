@@ -159,10 +159,8 @@ class Components:
 
     @cached_property
     def separation(self) -> Certificate:
-        """Certificate that no two components ever meet, and that their centres move apart without bound.
-
-        The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
-        """
+        """Certificate that no two components ever meet, and that their centres move apart without bound."""
+        # The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         if self.count == 1:
             return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed

@@ -92,10 +92,8 @@ def never_meets(seen: Observed) -> Hypothesis:
 
 
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
-    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away.
-
-    ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
-    """
+    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away."""
+    # ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
     pairs, far = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
     if n > 1 and not isinstance(law.alpha, AlphaInteraction):
         return far * pairs

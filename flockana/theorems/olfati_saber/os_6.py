@@ -26,11 +26,9 @@ def condition_76(run: Trajectory) -> FloatArray:
 
 
 def _condition(seen: Observed) -> tuple[Hypothesis, int]:
-    """Return condition (76), and the first sample from which it holds to the end.
-
-    It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
-    decides, it is assumed to hold.
-    """
+    """Return condition (76), and the first sample from which it holds to the end."""
+    # It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
+    # decides, it is assumed to hold.
     run, slack = seen.run, condition_76(seen.run)
     told = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
     terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * told * lengths(run.p).sum(axis=1)
