@@ -6,6 +6,7 @@ the side that is safe.
 
 from __future__ import annotations
 
+from itertools import combinations
 from math import ceil, floor
 from typing import Any
 
@@ -40,7 +41,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
     with ctx.workprec(BITS):
         s2 = (
             sum((square(arb(float(a)) - arb(float(b))) for a, b in zip(x, y, strict=True)), arb(0))
-            for x, y in _pairs(q)
+            for x, y in combinations(q, 2)
         )
         return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
@@ -53,10 +54,6 @@ def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
             return None
         bonds = n - 2 if m == 1 else harborth(n - 1)
         return (n * (n - 1) // 2 - bonds) * PairNumbers.of_alpha(alpha).far
-
-
-def _pairs(q: Any) -> list[tuple[Any, Any]]:
-    return [(q[i], q[j]) for i in range(len(q)) for j in range(i + 1, len(q))]
 
 
 def _shortest_bound(alpha: Any) -> fmpq | None:

@@ -165,7 +165,9 @@ def _judged(request: Request, job: Job, item: Scenario, run: Trajectory) -> Reco
         for verdict in verdicts
         for claim in verdict.claims
     }
-    metrics = {name: float(_measure(name)(run)) for name in request.metrics}
+    metrics = {
+        name: float((resolve(name) if ":" in name else measures()[name].number)(run)) for name in request.metrics
+    }
     statuses: dict[str, str] = {verdict.theorem: verdict.status for verdict in verdicts}
     return Record(job, COMPLETE, "", statuses, claims, metrics, _stats(run))
 
@@ -179,10 +181,6 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)
-
-
-def _measure(name: str) -> Callable[[Trajectory], float]:
-    return resolve(name) if ":" in name else measures()[name].number
 
 
 def _number(value: Any) -> float | None:

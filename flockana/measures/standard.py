@@ -18,10 +18,6 @@ def _mismatch(flock: Flock) -> FloatArray:
     return mismatch
 
 
-def _component_count(run: Any) -> int:
-    return int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1
-
-
 def _strain(run: Any) -> float:
     d, r = run.law.lattice
     lengths = link_lengths(run.q[-1], links(run.q[-1], r))
@@ -53,7 +49,7 @@ MEASURES = (
     Measure(
         "components",
         "components of the net",
-        of_run=_component_count,
+        of_run=lambda run: int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1,
         of_run_text="components of the net at the end",
         defined=has_range,
     ),

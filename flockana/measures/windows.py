@@ -71,17 +71,12 @@ def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
 
 
-def _gives_links(law: Any) -> bool:
-    """Return whether the law gives its own links, so that no neighbour search is needed."""
-    return hasattr(law, "links")
-
-
 MEASURES = (
     Measure(
         "joint_windows",
         "windows of time over which the net is jointly connected",
         of_run=lambda run: len(windows_of(run)),
         of_run_text="contiguous windows of samples, each with a connected union of its nets",
-        defined=_gives_links,
+        defined=lambda law: hasattr(law, "links"),
     ),
 )

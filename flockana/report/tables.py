@@ -35,7 +35,10 @@ class WholeTable(Table):
             if spare >= 0 or each.no_wrap:
                 continue
             cells = [heads[k], *(row[k] for row in rows)]
-            widest = max(_clamped(each, cell.cell_len if "\n" not in cell else _lines(cell)) for cell in cells)
+            widest = max(
+                _clamped(each, cell.cell_len if "\n" not in cell else max(line.cell_len for line in cell.split()))
+                for cell in cells
+            )
             least = max(min(widest, _LEAST), *map(_longest_piece, cells))
             rooms[k] = max(least, widest + spare)
             spare += widest - rooms[k]
@@ -66,10 +69,6 @@ class WholeTable(Table):
 
 def _text(console: Console, cell: RenderableType) -> Text:
     return cell if isinstance(cell, Text) else console.render_str(str(cell), highlight=False)
-
-
-def _lines(text: Text) -> int:
-    return max(line.cell_len for line in text.split())
 
 
 def _clamped(each: Column, width: int) -> int:

@@ -50,10 +50,6 @@ def _only_told(run: Trajectory) -> Hypothesis:
     return condition(name, known, detail=", ".join(term.__name__ for term in terms))
 
 
-def _all_alike(run: Trajectory) -> Hypothesis:
-    return condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
-
-
 def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Return q_c − q_r and p_c − p_r of a run in its leader's frame, and the closed form, (T, 2 m)."""
     found = np.concatenate([run.q.mean(axis=1), run.p.mean(axis=1)], axis=1)
@@ -98,7 +94,10 @@ def _caught(seen: Observed, gains: Gains) -> list[Certificate]:
 
 def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     run = observed.run
-    needs = [_all_alike(run), _only_told(run)]
+    needs = [
+        condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent),
+        _only_told(run),
+    ]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
