@@ -7,7 +7,7 @@ from collections.abc import Callable
 from html import escape
 from io import StringIO
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
