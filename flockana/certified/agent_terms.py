@@ -64,8 +64,7 @@ class Pull(AgentTerm):
         squares = list(map(square, away))
         return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
 
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
         away = self._away(t, x)
         if self.unit is not None:
             slant = self._slant(away, self.unit)
@@ -73,8 +72,7 @@ class Pull(AgentTerm):
         told = zip(away, v, self.told, strict=True)
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in told]
 
-    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables."""
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:  # noqa: D102
         m = len(x)
         drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
         if self.unit is None:

@@ -66,8 +66,7 @@ class SphereTerm(AgentTerm):
             adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
         return -self.damping * adjacency * (clearance / distance * across + square(radial))
 
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)

@@ -30,8 +30,7 @@ class LargeLandscape(Landscape):
         return self._extremes[0]
 
     @cached_property
-    def vectors(self) -> FloatArray:
-        """Eigenvectors of `values`, as columns."""
+    def vectors(self) -> FloatArray:  # noqa: D102
         return self._extremes[1]
 
     @cached_property

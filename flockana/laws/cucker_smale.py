@@ -54,8 +54,7 @@ class CuckerSmale(SumOfTerms):
         return Scales(self.weight.length, 1.0 / self.weight.strength)
 
     @property
-    def moving(self) -> bool:
-        """True: the law's energy is that in the frame of the centre of mass."""
+    def moving(self) -> bool:  # noqa: D102
         return True
 
     @cached_property

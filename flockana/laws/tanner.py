@@ -162,54 +162,22 @@ class ProximityFlocking(SwitchedLaw):
         pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
         return pieces
 
-    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow` with every pair held within R or beyond.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Where each pair is held.
-        """
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_held(pieces, len(q)), u)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         return self.piece_flow(self.pieces(q), t, q, p)
 
-    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """Return how far each pair is inside its piece.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Where each pair is held.
-        """
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:  # noqa: D102
         inside = self.r - _distances(q)
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
 
-    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """Return the other piece for every pair with a negative margin.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Before.
-        margins : Margins
-            At the switch.
-        """
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
         after: Pieces = np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
         return after
 
-    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Return the pair that both sides drive back, if several switch at once; else None.
-
-        Parameters
-        ----------
-        before, after : ndarray of int8
-            Pieces on the two sides.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities at the switch.
-        """
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
         rows, columns = np.triu_indices(len(q), 1)
         old, new = (self.piece_flow(side, t, q, p)[0] for side in (before, after))
         for k in np.flatnonzero(before != after):

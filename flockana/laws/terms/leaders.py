@@ -102,8 +102,7 @@ class Leaders(Term):
         pins = block_diagonal(self._pins[:, :, None] * np.eye(m))
         return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Return the second derivative of `energy`."""
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
         blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
         return blocks
 
