@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from flockana.report.coverage.references import is_erratum
 from flockana.report.pages import Page, ScenarioPage
 from flockana.scenarios.given import SOURCE
 
@@ -38,3 +37,8 @@ def verdict_id(subject: str, theorem: str) -> str:
 def scenario_id(name: str) -> str:
     """Return the id of a scenario's section in the report."""
     return f"scenario-{name}"
+
+
+def is_erratum(name: str) -> bool:
+    """Return whether an id is an erratum's: those begin with a capital letter."""
+    return name[:1].isupper()
