@@ -1,7 +1,5 @@
 """Validation of arguments at the public entry points, before any work starts."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Collection

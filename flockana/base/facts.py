@@ -1,7 +1,5 @@
 """Facts about a function over its whole range: proved, disproved by a counterexample, or assumed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """Consistency of overridden methods with class attributes that describe them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from types import FunctionType

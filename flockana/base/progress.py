@@ -1,7 +1,5 @@
 """Progress bars on a terminal or in a notebook; elsewhere a line every minute."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Bibliography: BibTeX entries of the sources of laws and theorems."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path

@@ -6,8 +6,6 @@ fields, set by the function that computes it (`sealed`). Whatever rests on such 
 (`with_digest`), or the seal of the object in it. Both guard against accidents, not against an adversary.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import marshal

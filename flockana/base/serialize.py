@@ -5,8 +5,6 @@ named a module are read the same way. A user's class is named with its module, w
 is read.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping

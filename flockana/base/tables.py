@@ -1,7 +1,5 @@
 """Tables as HTML for a notebook and as LaTeX for a paper."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence

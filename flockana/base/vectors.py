@@ -1,7 +1,5 @@
 """Fast norms and means of many short vectors, where numpy reduces slowly."""
 
-from __future__ import annotations
-
 from math import frexp, ldexp
 
 import numpy as np

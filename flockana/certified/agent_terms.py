@@ -1,7 +1,5 @@
 """Forces on single agents in balls and series (Arb): the pull to a γ-agent on a straight path."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Numbers are exact: decimals as text, computed positions in hexadecimal. A name o
 `flockana.certified.basin` it is; what no machine checks stands in the file.
 """
 
-from __future__ import annotations
-
 import json
 from importlib.metadata import version
 from pathlib import Path

@@ -3,8 +3,6 @@
 Nothing of the prover but the scalar functions of `intervals`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations

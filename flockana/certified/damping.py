@@ -5,8 +5,6 @@ least that of the net with every pair at its longest, and none is above twice th
 its shortest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from flint import arb, arb_mat, fmpq

@@ -1,7 +1,5 @@
 """`enclose`: rigorous enclosure of a run, step by step."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

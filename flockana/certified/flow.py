@@ -5,8 +5,6 @@ number holds for a ball (`arb`: an enclosure over all states in a box, also acro
 only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations

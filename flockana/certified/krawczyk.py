@@ -3,8 +3,6 @@
 Floating point only proposes, an inverse or eigenvectors; what is concluded holds whatever it proposed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

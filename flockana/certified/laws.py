@@ -1,7 +1,5 @@
 """Laws that `enclose` supports, as right-hand sides in balls."""
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any, cast
 

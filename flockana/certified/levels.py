@@ -4,8 +4,6 @@ The counting is that of `flockana.equilibria.barrier`, with every length and lev
 the side that is safe.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 from math import ceil, floor
 from typing import Any

@@ -19,8 +19,6 @@ inequality leaves X = θλ/2 + c − αλ/2ε for κM/2 + ατ/2, and the third 
 is (√(μM) + α)²/4X at least, where τ = 2X/(√(μM) + α) and κ = τ√(μ/M). What it then leaves falls in α, and is bisected.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ With a = (x − y)/‖x − y‖ and the clearance c = ‖x − y‖ − R the �
 (it depends on c² and on c a only), h d_β and d_β are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt

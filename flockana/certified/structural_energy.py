@@ -1,7 +1,5 @@
 """Structural energy of Algorithms 1 and 2 in the moving frame, in balls."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import combinations
 from typing import Any

@@ -1,7 +1,5 @@
 """Energy of Algorithm 3 with a γ-agent at rest, in balls, and the integral of its rate along a tube."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Laws that are compiled together with the integrator: many steps in one call (`flockana.kernels.advance`)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

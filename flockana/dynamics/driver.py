@@ -4,8 +4,6 @@ Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any la
 (`flockana.dynamics.solvers`). Beside the state, ∫ dH/dt is integrated as one more variable.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

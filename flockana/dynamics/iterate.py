@@ -1,7 +1,5 @@
 """The steps of a map."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np

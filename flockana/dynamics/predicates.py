@@ -4,8 +4,6 @@ A run is known at its samples; between them only distances are bounded (`Traject
 and go between samples, so predicates about nets speak of the sampled times.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Beside the state, ∫ dH/dt is integrated as one more variable, so that every ru
 of the energy balance is `Trajectory.energy_residual`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Laws with jumps: the first time within a step at which a pair leaves its smooth piece is located."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator
 

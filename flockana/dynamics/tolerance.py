@@ -1,7 +1,5 @@
 """Absolute tolerances of the adaptive solvers: multiples of the law's own scales, never below what rounding allows."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

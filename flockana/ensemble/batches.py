@@ -4,8 +4,6 @@ Nothing is decided by which comes first, so results do not depend on who works. 
 (for want of memory, say) is found by trying those under suspicion one at a time; all others are worked on again.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future

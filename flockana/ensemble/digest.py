@@ -7,8 +7,6 @@ What only shows numbers (plots, reports, commands) and how runs are distributed 
 docstring keeps a store, and a changed kernel does not.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import json

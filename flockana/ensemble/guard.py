@@ -1,7 +1,5 @@
 """Check that worker processes can be started without running the user's script again."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import pickle

@@ -1,7 +1,5 @@
 """Execution of an ensemble's runs on workers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 

@@ -3,8 +3,6 @@
 No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from math import inf, isfinite

@@ -10,8 +10,6 @@ function, with a second one for Jacobians at moving agents (see `flockana.kernel
 as it is.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """γ-agent from a table of times and positions, such as a recorded leader."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

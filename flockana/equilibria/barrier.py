@@ -3,8 +3,6 @@
 All energies here are those of V, to be multiplied by c1α.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 

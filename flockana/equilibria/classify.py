@@ -1,7 +1,5 @@
 """Classification of critical points by the Hessian's spectrum off the rigid motions."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np

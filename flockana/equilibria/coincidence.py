@@ -1,7 +1,5 @@
 """Least number of agents of a strict minimum of V with coincident agents."""
 
-from __future__ import annotations
-
 from math import ceil
 
 import numpy as np

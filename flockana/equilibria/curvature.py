@@ -13,8 +13,6 @@ go at r the force vanishes as (r − x)², so a solver that has taken it down to
 stiffness of that size, of either side's sign. No number with a unit enters, and none that fits one law only.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any, NamedTuple

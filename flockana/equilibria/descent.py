@@ -6,8 +6,6 @@ downhill at once stays in a poor one. So a flock whose neighbours parted on the 
 neighbours is left alone: then the minimum is the one that belongs to the start.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any, NamedTuple
 

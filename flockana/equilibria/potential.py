@@ -1,7 +1,5 @@
 """Potential of a law that is a sum of terms: value, force, stiffness, symmetries."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

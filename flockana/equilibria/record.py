@@ -1,7 +1,5 @@
 """Equilibria as JSON files, checked against recomputed properties when read."""
 
-from __future__ import annotations
-
 import json
 from importlib.resources import files
 from math import isclose

@@ -1,7 +1,5 @@
 """Resting states of laws without a potential, by Newton's method on the forces."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Distinct equilibria from many starts, random discs and lattice patches, minimised in parallel, ranked by energy."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field

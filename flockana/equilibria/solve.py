@@ -1,7 +1,5 @@
 """Equilibria of laws with a potential, by IPOPT, damped motion with Newton steps, or a root-finder."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import sqrt

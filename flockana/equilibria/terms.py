@@ -4,8 +4,6 @@
 and so are the Hessians that CasADi derives from them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Translation of sympy expressions to CasADi, so that the solver uses the derived expressions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import reduce
 from typing import Any

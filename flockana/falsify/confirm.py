@@ -1,7 +1,5 @@
 """Confirmation of counterexamples by a second run with a thousandth of the tolerance."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol

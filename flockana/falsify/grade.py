@@ -5,8 +5,6 @@ that leaves the hypotheses is led back by how far they are missed, and comes to 
 whose numbers contradict a proof is no counterexample, and its margin leads no search.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import isnan
 

@@ -1,7 +1,5 @@
 """The dead-zone pair law: repulsion near, attraction far, no force between."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

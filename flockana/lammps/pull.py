@@ -1,7 +1,5 @@
 """Pull to a γ-agent in LAMMPS: variables of each agent added to its force, and viscous drag."""
 
-from __future__ import annotations
-
 from functools import singledispatch
 
 from flockana.environment.target import Target

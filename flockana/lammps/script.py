@@ -1,7 +1,5 @@
 """LAMMPS input script, data file and notes on untranslated parts of a law."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -4,8 +4,6 @@
 With as many points in the file as in the style, and the parameter RSQ, it takes the file's values as they are.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

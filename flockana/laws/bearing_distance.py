@@ -5,8 +5,6 @@ recommended one and the default, the last is the letter of the paper (`ZoneFlock
 edges there are two letters: (8) names the closest point, (21) sums over all edges, and each goes with its form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache

@@ -1,7 +1,5 @@
 """The law of Cucker and Smale: velocity consensus of all agents, weighted by distance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

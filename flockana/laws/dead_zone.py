@@ -1,7 +1,5 @@
 """The dead-zone law of Li, Yuan and Liu: a flock held by forces that act only off a band of distances."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A law whose agents act on the past."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """Flocking that keeps its links: a potential without bound at the range, after Ji and Egerstedt and Zavlanos et al."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A law whose messages between agents are lost at random."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

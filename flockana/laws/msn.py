@@ -1,7 +1,5 @@
 """The MSN project's discretisation of Algorithms 1 and 2, which is a map of its own rather than an integrator."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar

@@ -4,8 +4,6 @@ The notebook multiplies q_j − q_i by 10 where it is shorter than 0.05, after t
 keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then jumps at that distance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Algorithms 1 and 2 of Olfati-Saber (2006), in one, two and three dimensions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A law whose input is computed at sampling instants and held between them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

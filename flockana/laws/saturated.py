@@ -1,7 +1,5 @@
 """A law whose actuators have a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar

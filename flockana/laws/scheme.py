@@ -1,7 +1,5 @@
 """Schemes that step a continuous law by a fixed step: what they have in common."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """Steps of a wrapped law: Euler-Maruyama, a weak scheme of order 2, and Runge-Kutta of order 4 over the past."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass

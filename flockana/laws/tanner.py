@@ -1,7 +1,5 @@
 """The laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a net, fixed or of proximity."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -6,8 +6,6 @@ above its tangent plane at any point: over the hull that plane is least at a con
 from below. Halving an interval makes the bound as tight as one likes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf

@@ -1,7 +1,5 @@
 """The share of a flock that follows its leader."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Moving frame of the flock's centre of mass."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -5,8 +5,6 @@ them (`flockana.kernels.paths` says when that is): those of the solver's own ste
 not. So a run keeps the steps between its samples (`flockana.dynamics.between`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

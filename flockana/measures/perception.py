@@ -1,7 +1,5 @@
 """Directed perception graphs, where an edge (j, i) means that i perceives j: trees and matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

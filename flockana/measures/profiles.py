@@ -1,7 +1,5 @@
 """Quantiles of all pair distances over time, for any number of agents."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Measures defined for any flock: of its net, its extent and its velocities."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

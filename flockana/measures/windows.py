@@ -1,7 +1,5 @@
 """Joint connectivity: time windows over which the nets, taken together, connect all agents."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

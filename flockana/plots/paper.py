@@ -1,7 +1,5 @@
 """Figures for a paper: the columns of journals, and files with fonts that publishers take."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any

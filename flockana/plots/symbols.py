@@ -1,7 +1,5 @@
 """Typesetting of symbols in labels, legends and titles as mathtext."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Write the report: one HTML page that needs no network (JavaScript only to play), and the verdicts as JSON."""
 
-from __future__ import annotations
-
 import json
 import os
 import platform

@@ -1,7 +1,5 @@
 """Catalogues as terminal tables and plain data; nothing here draws, solves or integrates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

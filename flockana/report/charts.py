@@ -1,7 +1,5 @@
 """Curves over time as SVG in the page's own colours: written as text, in a hundredth of the time of a drawn figure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape

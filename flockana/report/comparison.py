@@ -1,7 +1,5 @@
 """The report's section on one start under many laws: what each theorem promises, and what happened."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Findings that stand first in the report: plain sentences, each on a verdict of the catalogue."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from typing import NamedTuple

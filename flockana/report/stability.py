@@ -1,7 +1,5 @@
 """The report's section on linearised stability."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi

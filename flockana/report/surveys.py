@@ -1,7 +1,5 @@
 """Runs of scenarios from many seeds, for the report's shares: planned, sent and made in batches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from flockana.base.errors import ArgumentError

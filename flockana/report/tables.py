@@ -1,7 +1,5 @@
 """Terminal tables: headed tables and tables of facts, as blocks on narrow terminals."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from copy import copy

@@ -1,7 +1,5 @@
 """Values as short text, for the page and for the terminal."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass

@@ -1,7 +1,5 @@
 """Dead-zone paper's simulation with the missing parameters chosen, and runs at the limits of its claims."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

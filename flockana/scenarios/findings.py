@@ -1,7 +1,5 @@
 """Building blocks of scenario reports: claims judged by margins, and component counts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any

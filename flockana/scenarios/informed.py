@@ -1,7 +1,5 @@
 """Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi
 

@@ -1,7 +1,5 @@
 """Scenarios of the R² notebook, with its tenfold push below 0.05 as an option."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

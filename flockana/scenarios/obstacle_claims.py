@@ -1,7 +1,5 @@
 """Claims of sources about flocks among obstacles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf
 

@@ -4,8 +4,6 @@ A further law is one more `Entry` of `ENTRIES`: its name, how it is built for th
 its runs, and what that promises in a few words.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Lazy starts, computed on first access: listing scenarios needs only their sizes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

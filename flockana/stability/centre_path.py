@@ -1,7 +1,5 @@
 """The centre of mass behind a γ-agent on a line, a sine or a circle, in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

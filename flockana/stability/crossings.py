@@ -10,8 +10,6 @@ matrix (A + B)(μ − W), in the eigenvectors of W at ω, is diagonally dominant
 short against the eigenvalues' distances from the real axis. So no band is narrow enough to be missed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf, pi, sqrt, tan
 from typing import Any, NamedTuple

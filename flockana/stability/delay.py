@@ -6,8 +6,6 @@ only what it hears of other agents ("neighbours": it knows its own state at once
 itself are prompt).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf, nan, pi

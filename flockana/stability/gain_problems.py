@@ -13,8 +13,6 @@ so that the speed of turning is still to die out, as it is in a flock at rest; a
 and speed alike: what is rated is the flock's shape and its centre, and nothing of how it turns.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any

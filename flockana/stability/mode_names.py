@@ -1,7 +1,5 @@
 """Names of modes: translation, rotation, breathing, or a number."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

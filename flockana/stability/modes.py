@@ -5,8 +5,6 @@ it moves by itself. Both are taken out exactly, by the left eigenvectors, before
 comes out as 0, and a double one does not smear over ±√(rounding).
 """
 
-from __future__ import annotations
-
 from cmath import sqrt
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

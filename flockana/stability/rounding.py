@@ -8,8 +8,6 @@ No eigenvalue of an N x N matrix moves by more than (2 ‖A‖)^(1 − 1/N) ‖�
 eigenvectors say: of a few coalesced roots that bound is the better one where rounding was kind and left them close.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

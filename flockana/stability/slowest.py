@@ -1,7 +1,5 @@
 """The slowest modes of a large flock: sparse shift-invert about zero, with zero modes set apart."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

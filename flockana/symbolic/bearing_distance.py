@@ -4,8 +4,6 @@ Equation numbers are those of Jond's paper. A sum over a zone is a sum of these 
 weights where the behaviour is a mean, so that a pair shows the equality of the two forms for every number of agents.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension

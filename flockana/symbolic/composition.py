@@ -3,8 +3,6 @@
 Three agents show every kind of pair, and a pull on one, two or all of them, so the identities are those of every n.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp

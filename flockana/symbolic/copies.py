@@ -1,7 +1,5 @@
 """Agents that follow copies of a γ-agent with dynamics: energy balance, and separation of the copies."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step

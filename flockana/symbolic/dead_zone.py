@@ -1,7 +1,5 @@
 """The dead-zone pair law of Li, Yuan and Liu in sympy: force, potential in closed form, jumps, saturated energy."""
 
-from __future__ import annotations
-
 import sympy as sp
 from sympy.core.function import UndefinedFunction
 

@@ -4,8 +4,6 @@ Intervals are halved until an enclosure decides. What decides is the number of i
 answer is the same on every machine.
 """
 
-from __future__ import annotations
-
 import heapq
 from collections.abc import Callable
 from itertools import count

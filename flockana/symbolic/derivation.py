@@ -1,7 +1,5 @@
 """Derivations: steps of text, equation and condition, LaTeX output, and computed residuals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import sympy as sp

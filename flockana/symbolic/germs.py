@@ -1,7 +1,5 @@
 """Leading behaviour of a formula just above a point: a power of the distance times an enclosed factor."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any, NamedTuple
 

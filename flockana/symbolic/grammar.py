@@ -4,8 +4,6 @@ Known are names, numbers, + - * / ** and brackets, comparisons with the distance
 and the functions in `FUNCTIONS`. Nothing is evaluated as Python, and nothing that is written small can grow large.
 """
 
-from __future__ import annotations
-
 import ast
 import operator
 from collections.abc import Callable, Mapping

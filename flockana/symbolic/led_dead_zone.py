@@ -1,7 +1,5 @@
 """The dead-zone law with leaders in sympy: its energy in their frames, written out for a small flock."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp

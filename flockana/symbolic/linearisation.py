@@ -4,8 +4,6 @@ u_i is a sum over the other agents, one own term and a sum over obstacles, so it
 blocks for every n. The action functions and weights stay generic: φ' and a' are functions of the σ-distance.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy as sp

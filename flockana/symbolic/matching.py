@@ -1,7 +1,5 @@
 """Energy balance of velocity consensus with any weight of the distance and any pair potential."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp

@@ -5,8 +5,6 @@ Where a law is composed of `Named` functions, generated code calls these by name
 floating point computes.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.norms import sigma_1, sigma_norm

@@ -4,8 +4,6 @@ The normal of a wall is any nonzero vector here, the centre and radius of a sphe
 q = y + x, with y a point of the wall or the centre. What is computed is rational in x and, at a sphere, |x|.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

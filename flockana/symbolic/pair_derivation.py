@@ -1,7 +1,5 @@
 """Derivation of potential, force, weight and adjacency from a pair law's formula, step by step."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step

@@ -4,8 +4,6 @@ A formula is in the distance s or in the σ-norm z = (√(1 + εs²) − 1)/ε. 
 between two cuts it is smooth, and sympy derives there, in y = s² or y = z, what the sums over pairs need.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Parameters of the formulas as frozen bundles: symbols by default, exact numbers where given."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Source of compiled scalar functions from sympy expressions, with common subexpressions shared."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 

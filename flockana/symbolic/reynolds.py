@@ -1,7 +1,5 @@
 """Reynolds' rules in Algorithm 1, and erratum E14: the slides lose the term -S_i q_i."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step

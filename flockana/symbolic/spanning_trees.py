@@ -5,8 +5,6 @@ x = (-D^T (x) I) p the minimal model reads u = -D_in W^s D^T p - D_in W^a D^T v,
 one component of space where the equations are the same in each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import prod
 

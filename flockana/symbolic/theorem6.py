@@ -4,8 +4,6 @@ As for Algorithms 1 and 2, H and the u_i are sums: over pairs, over agents with 
 obstacles. One generic term of each kind gives dH/dt for every n and any number of obstacles.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

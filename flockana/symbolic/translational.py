@@ -1,7 +1,5 @@
 """Transfer functions of the centre of mass under Algorithm 2: a linear second-order system."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.pair import own_force

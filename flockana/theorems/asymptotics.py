@@ -1,7 +1,5 @@
 """Claims about limits that several theorems share: velocities match, the flock ends as a lattice."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import sqrt
 

@@ -20,8 +20,6 @@ No tolerance enters: the flock's own scales come in through λ, L and the barrie
 its Hessian and the third derivatives of its pair potential, is in `olfati_saber.attraction` and `dead_zone.hold`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf, nan, sqrt

@@ -4,8 +4,6 @@ A claim about a run holds if a margin, an enclosure over time, is nowhere negati
 decides instead, and the numbers stand beside it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any

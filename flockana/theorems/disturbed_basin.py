@@ -1,7 +1,5 @@
 """Input-to-state stability: a bounded disturbance leaves a flock near its certified equilibrium."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 

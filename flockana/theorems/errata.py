@@ -1,7 +1,5 @@
 """Errata of the sources: what each prints and what is right, with the status of both."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """How much faster a flock settles with gains for each agent."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

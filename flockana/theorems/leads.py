@@ -1,7 +1,5 @@
 """Surrogate objectives for counterexample searches where a claim's margin has no slope."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 import numpy as np

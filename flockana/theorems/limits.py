@@ -5,8 +5,6 @@ A claim about t → ∞ is verified by a certificate alone: a state in the basin
 later times, such as two groups that part. A run that decays is evidence, which the text tells, and decides nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from math import isnan

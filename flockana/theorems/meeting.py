@@ -1,7 +1,5 @@
 """Energy needed for two agents to meet: c1α ψ_α(0) under the paper's pair law, whose potential is never negative."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ differs between the solution and states at the ends of the enclosure. Limits are
 whole enclosure lies in a basin. Without a law, definitions about samples are judged alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any

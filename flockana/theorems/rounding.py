@@ -5,8 +5,6 @@ of two numbers by ε times the larger of the two. Nothing here says how far the 
 tighter run tells.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any
 

@@ -6,8 +6,6 @@ w²/ℓ + c at most where the distance is ℓ. Control polygons of the paths bou
 allowance for the paths' own error (`flockana.kernels.paths`) is added.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any

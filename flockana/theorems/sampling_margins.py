@@ -1,7 +1,5 @@
 """Distance of the sources' time steps from instability."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -5,8 +5,6 @@ same method its steps are bounded by a part of the first's longest, so that the 
 by a formula also by what the formula's slopes ask for where pairs come by, so that it leaps over no feature.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, NamedTuple
 

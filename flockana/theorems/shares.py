@@ -1,7 +1,5 @@
 """Claims about the share of random starts for which something holds, with exact confidence intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace

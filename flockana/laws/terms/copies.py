@@ -1,7 +1,5 @@
 """Navigational feedback to copies of the γ-agent, one for each agent."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Feedforward of the γ-agent's acceleration to every agent, needed to follow a varying velocity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Coupling to leaders: velocity matching within each leader's group, and pinned agents."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, sin

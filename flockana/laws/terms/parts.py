@@ -1,7 +1,5 @@
 """Terms of Algorithms 1 to 3 and of compositions, and the frame of their energy."""
 
-from __future__ import annotations
-
 from flockana.environment.beta import ObstacleField
 from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction

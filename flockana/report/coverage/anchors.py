@@ -1,7 +1,5 @@
 """Anchors of references in a report: scenarios, verdicts and source reports."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from flockana.report.pages import Page, ScenarioPage

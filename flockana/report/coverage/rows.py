@@ -1,7 +1,5 @@
 """Coverage tables: one row for each item of a source, with what in flockana covers it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Erratum J11: the minimal model's two runs of 60 agents are said to align and to hold together."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum J16: in a box fragments need not reunite, and growing radii find one flockmate, not the flock."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Random starts of ten agents as in section 5.1 of the bearing-distance paper, and runs from twenty of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The spectrum of the minimal model on a frozen tree at equilibrium, compared with the stated one within rounding."""
 
-from __future__ import annotations
-
 from math import nan, sqrt
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Theorem 1 of the bearing-distance paper as it can be corrected: edges of a tree take their desired lengths."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses

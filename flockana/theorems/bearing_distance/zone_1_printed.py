@@ -1,7 +1,5 @@
 """Theorem 1 of the bearing-distance paper as printed: that the edges of a spanning tree vanish (false)."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

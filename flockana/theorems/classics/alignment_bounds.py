@@ -4,8 +4,6 @@ With y = c s/ℓ and y = sinh w the integral of φ(s) = λ (1 + (c s/ℓ)²)^−
 is as smooth at all distances.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import asinh, cosh, inf

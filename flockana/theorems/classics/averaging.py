@@ -1,7 +1,5 @@
 """Certificates for averaged headings: permanent nets, permanent separation, contraction."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf

@@ -1,7 +1,5 @@
 """Two agents of the Cucker-Smale law on a line: an invariant decides which pairs match and which separate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.cucker_smale import CuckerSmale

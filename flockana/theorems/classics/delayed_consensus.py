@@ -1,7 +1,5 @@
 """Olfati-Saber and Murray: consensus tolerates a delay up to π/(2 λ_n), compared with the library's delay margin."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import pi

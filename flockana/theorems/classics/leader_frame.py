@@ -1,7 +1,5 @@
 """Run in the frame of its virtual leader: informed agents, lasting links, velocities that decay."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise

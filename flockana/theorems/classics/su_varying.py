@@ -1,7 +1,5 @@
 """Su, Wang and Lin (2009): a virtual leader of varying velocity, with acceleration feedforward."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import sqrt
 

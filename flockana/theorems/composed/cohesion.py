@@ -1,7 +1,5 @@
 """An agent that a γ-agent pulls stays near it, under every composition whose energy never rises."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

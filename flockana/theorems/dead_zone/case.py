@@ -1,7 +1,5 @@
 """The dead-zone law of a run, and hypotheses and claims that both forms of the dead-zone theorem have."""
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

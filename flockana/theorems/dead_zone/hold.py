@@ -11,8 +11,6 @@ never grows to more than six times itself on the way (measured, at random Λ and
 allowed there.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

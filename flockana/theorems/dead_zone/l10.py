@@ -1,7 +1,5 @@
 """Erratum L10: the conclusion's necessary and sufficient conditions, of which the paper states none."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

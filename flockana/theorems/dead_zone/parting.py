@@ -16,8 +16,6 @@ Two components never meet if their centres, at constant velocities, never come c
 is not held this is said of the flow from its last state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

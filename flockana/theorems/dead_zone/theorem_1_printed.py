@@ -1,7 +1,5 @@
 """Theorem 1 of the dead-zone paper as printed: one flock within r, an energy that falls, one velocity, no collision."""
 
-from __future__ import annotations
-
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
 from flockana.theorems.claims import counted

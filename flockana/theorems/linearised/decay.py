@@ -1,7 +1,5 @@
 """Predictions of the linearisation for a flock near its equilibrium, compared with nonlinear runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt

@@ -1,7 +1,5 @@
 """Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import floor
 

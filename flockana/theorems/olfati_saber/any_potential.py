@@ -4,8 +4,6 @@ They ask for a potential that is C¹ up to its range and at least L, and an adja
 said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import inf, sqrt
 

@@ -3,8 +3,6 @@
 The argument is that of `flockana.theorems.basin`, in the moving frame, with U the structural potential.
 """
 
-from __future__ import annotations
-
 from math import inf, pi, sqrt
 
 import numpy as np

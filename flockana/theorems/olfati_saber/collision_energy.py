@@ -1,7 +1,5 @@
 """Energy of a collision: below c* none is possible, below 2 c* one may happen."""
 
-from __future__ import annotations
-
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2

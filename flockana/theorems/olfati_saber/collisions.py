@@ -5,8 +5,6 @@ that stays positive excludes it; two agents that stand to each other's left and 
 ever leaves, certainly met; in between it is open. In the plane a numerical run never shows a contact, only nearness.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any

@@ -6,8 +6,6 @@ differs. A function cannot be seen everywhere: of a target of a user's own each 
 interval, and rest that was seen is assumed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt

@@ -1,7 +1,5 @@
 """Theorem 3 of Olfati-Saber (2006): Algorithm 2 keeps the flock together."""
 
-from __future__ import annotations
-
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2

@@ -1,7 +1,5 @@
 """Theorem 6 of Olfati-Saber (2006): under Algorithm 3 with a static γ-agent the energy stops rising."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Claims about an energy that a source prints wrongly (E1, E2): by algebra, at an exact state, along a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """E4: H < c* excludes collisions, but for large flocks no state is below c*; a barrier without this defect."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np
