@@ -59,6 +59,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
 
     references = ("li-dead-zone",)
+    moving = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.interaction, DeadZoneInteraction):
@@ -84,10 +85,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def terms(self) -> tuple[Term, ...]:
         """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling by k₂ pᵀL̂p (see L5)."""
         return (PairTerm(self.interaction, 1.0, self.k2),)
-
-    @property
-    def moving(self) -> bool:  # noqa: D102
-        return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
         """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""

@@ -50,6 +50,7 @@ class FixedNetFlocking(Law):
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
     references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+    splits = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "edges", _edges(self.edges))
@@ -60,10 +61,6 @@ class FixedNetFlocking(Law):
     def scales(self) -> Scales:
         """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
-
-    @property
-    def splits(self) -> bool:  # noqa: D102
-        return True
 
     @cached_property
     def _ends(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
@@ -125,6 +122,8 @@ class ProximityFlocking(SwitchedLaw):
 
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k2": (0, -1)}
     references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+    splits = True
+    located = True  # the force always jumps
 
     def __post_init__(self) -> None:
         _ensure_potential(self.potential)
@@ -136,15 +135,6 @@ class ProximityFlocking(SwitchedLaw):
     def scales(self) -> Scales:
         """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
-
-    @property
-    def splits(self) -> bool:  # noqa: D102
-        return True
-
-    @property
-    def located(self) -> bool:
-        """True: the force always jumps."""
-        return True
 
     @property
     def surfaces(self) -> tuple[float, ...]:

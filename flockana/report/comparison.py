@@ -37,11 +37,7 @@ class ComparisonSection:
 
     rows: tuple[Row, ...]  # one for each law
     pictures: tuple[Picture, ...]  # paths side by side, and velocity diameters
-
-    @property
-    def name(self) -> str:
-        """Return the name of the task that makes the section."""
-        return MANY_LAWS
+    name = MANY_LAWS  # of the task that makes the section
 
 
 @cache

@@ -53,11 +53,7 @@ class LinearisedFlocks:
     poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
     control: tuple[Picture, ...]  # step response, root locus and norms
     downloads: tuple[Download, ...]  # state spaces
-
-    @property
-    def name(self) -> str:
-        """Return the name of the task that makes the section."""
-        return LINEARISED
+    name = LINEARISED  # of the task that makes the section
 
 
 NO_FLOCKS = LinearisedFlocks((), (), ())

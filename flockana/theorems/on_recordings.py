@@ -39,11 +39,7 @@ class ObservedRecording(Observed):
     """The law's solution from a recorded start, with enclosures that hold the recording; `given` is the recording."""
 
     place: float = 0.0  # accuracy of the last positions
-
-    @property
-    def begins_exactly(self) -> bool:
-        """Never: the recorded start is known to its accuracy."""
-        return False
+    begins_exactly = False  # the recorded start is known to its accuracy
 
     @property
     def accuracy_of_end(self) -> float:
