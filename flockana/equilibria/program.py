@@ -50,7 +50,7 @@ class _Derivatives(ca.Callback):
 
     def __init__(self, program: Program) -> None:
         ca.Callback.__init__(self)
-        self._program, self._at = program, _upper_triangle(*program.shape, program.pairs)
+        self._program, self._at = program, _upper_triangle(program.shape, program.pairs)
         self._pattern = ca.Sparsity.triplet(program.size, program.size, *(each.tolist() for each in self._at))
         self.construct("derivatives", {})
 
@@ -164,9 +164,9 @@ class Program:
         return self._solvers[tol, max_iter]
 
 
-def _upper_triangle(n: int, m: int, pairs: LinkArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def _upper_triangle(shape: tuple[int, int], pairs: LinkArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """Return rows and columns of the Hessian's upper triangle, column by column, as CasADi stores them."""
-    agents, (i, j) = np.arange(n), pairs.T.astype(np.int64)
+    (n, m), (i, j), agents = shape, pairs.T.astype(np.int64), np.arange(shape[0])
     a, b = np.append(np.minimum(i, j), agents)[:, None, None], np.append(np.maximum(i, j), agents)[:, None, None]
     row, column = np.broadcast_arrays(m * a + np.arange(m)[:, None], m * b + np.arange(m))
     entries = np.unique((column * (n * m) + row)[row <= column])
