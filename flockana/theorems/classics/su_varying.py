@@ -16,7 +16,7 @@ from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is_or_composed, positive
+from flockana.theorems.hypotheses import condition, law_is, positive
 from flockana.theorems.limits import Certificate
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.observed import Observed
@@ -125,7 +125,7 @@ THEOREM = Theorem(
     ),
     source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
     kind="trajectory",
-    law=law_is_or_composed("Algorithm 2", Algorithm2),
+    law=law_is("Algorithm 2", Algorithm2, composed=True),
     check=_check,
     claims=CLAIMS,
     references=("su-2009", "olfati-saber-2006"),

@@ -19,7 +19,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     by_fact,
     condition,
-    law_with_common_gains,
+    law_is,
     positive,
     smooth_pair,
     weight_nonnegative,
@@ -214,7 +214,7 @@ THEOREM = Theorem(
     ),
     source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
     kind="trajectory",
-    law=law_with_common_gains("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True),
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
     references=("olfati-saber-2006", "flockana"),

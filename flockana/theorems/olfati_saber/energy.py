@@ -17,7 +17,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair, weight_nonnegative
+from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
@@ -196,7 +196,7 @@ def is_own(law: Any) -> bool:
 def _law(seen: Observed) -> Hypothesis:
     """The hypothesis that the law is a sum of terms that give their energy and its rate."""
     if not is_own(seen.law):
-        return law_is_or_composed("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3)(seen)
+        return law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3, composed=True)(seen)
     terms = ", ".join(type(term).__name__ for term in seen.law.terms)
     return condition("the law is a sum of terms", True, detail=f"{type(seen.law).__name__}: {terms}")
 

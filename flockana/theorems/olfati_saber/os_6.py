@@ -7,7 +7,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import common_gains, law_with_common_gains
+from flockana.theorems.hypotheses import common_gains, law_is
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
@@ -74,7 +74,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",
-    law=law_with_common_gains("Algorithm 3", Algorithm3),
+    law=law_is("Algorithm 3", Algorithm3, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_6", "obstacles_enclosed"),
     claims=("rate", "balance"),
