@@ -1,7 +1,5 @@
 """Exact confidence intervals of a probability from a count of successes (Clopper and Pearson)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

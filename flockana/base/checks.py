@@ -1,7 +1,5 @@
 """Validation of arguments at the public entry points, before any work starts."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Collection
@@ -63,18 +61,8 @@ def _real(value: Any) -> Any:
 
 
 def real_array(value: Any) -> FloatArray:
-    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert.
-
-    Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
-
-    Examples
-    --------
-    >>> real_array([1, 2.5])
-    array([1. , 2.5])
-    >>> real_array(["1", "2.5"])
-    Traceback (most recent call last):
-    TypeError: <U3 are no real numbers
-    """
+    """Return a contiguous float64 array of real numbers; raise on what numpy would merely convert."""
+    # Texts, truth values, times, masked entries and complex numbers are refused rather than turned into numbers.
     array = np.asarray(_real(value))
     if array.dtype.kind == "O":
         array = np.array([float(_real(one)) for one in array.ravel()]).reshape(array.shape)
@@ -115,14 +103,7 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def ensure_kind(name: str, value: Any, kind: type | str, example: str) -> None:
-    """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library.
-
-    Examples
-    --------
-    >>> ensure_kind("system", None, "StateSpace", "a control.StateSpace")
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: system = None: expected a control.StateSpace
-    """
+    """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library."""
     names = {each.__name__ for each in type(value).__mro__}
     if not (kind in names if isinstance(kind, str) else isinstance(value, kind)):
         raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")

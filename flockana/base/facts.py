@@ -1,7 +1,5 @@
 """Facts about a function over its whole range: proved, disproved by a counterexample, or assumed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -34,30 +32,14 @@ def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
 
 @dataclass(frozen=True)
 class PairFacts:
-    """Facts about a pair law over all distances up to its range.
+    """Facts about a pair law over all distances up to its range."""
 
-    Attributes
-    ----------
-    smooth : Fact
-        ψ is C¹ on (0, r], its force vanishes at the range, and so does the adjacency, which is continuous.
-    weight : Fact
-        The adjacency is nowhere negative.
-    inside : Fact
-        The adjacency is positive at every distance below the range.
-    least : tuple of float
-        Bounds of the least potential of a pair, far ones included.
-    contact : tuple of float
-        Bounds of the limit of the potential where two agents meet; infinite at a barrier.
-    least_weight : tuple of float
-        Bounds of the least adjacency within the range.
-    """
-
-    smooth: Fact
-    weight: Fact
-    inside: Fact
-    least: tuple[float, float]
-    contact: tuple[float, float]
-    least_weight: tuple[float, float]
+    smooth: Fact  # ψ is C¹ on (0, r], its force vanishes at the range, and so does the adjacency, which is continuous
+    weight: Fact  # The adjacency is nowhere negative
+    inside: Fact  # The adjacency is positive at every distance below the range
+    least: tuple[float, float]  # Bounds of the least potential of a pair, far ones included
+    contact: tuple[float, float]  # Bounds of the limit of the potential where two agents meet; infinite at a barrier
+    least_weight: tuple[float, float]  # Bounds of the least adjacency within the range
 
     @property
     def faults(self) -> tuple[str, ...]:

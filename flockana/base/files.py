@@ -1,7 +1,5 @@
 """Atomic file writes and path checks."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Iterator
@@ -27,16 +25,8 @@ def ensure_path(path: Any, *, action: str = "read", remedy: str = "choose anothe
 
 
 def ensure_target(path: Any, *, remedy: str = "choose another file") -> Path:
-    """Return the file behind a path, links followed; raise if it is something that must not be replaced.
-
-    A device or a pipe is left alone, and so is a link: what it points to is written.
-
-    Examples
-    --------
-    >>> ensure_target(os.devnull)
-    Traceback (most recent call last):
-    flockana.base.errors.FileError: cannot write ...: it is no regular file; choose another file
-    """
+    """Return the file behind a path, links followed; raise if it is something that must not be replaced."""
+    # A device or a pipe is left alone, and so is a link: what it points to is written.
     given = ensure_path(path, action="write", remedy=remedy)
     target = Path(os.path.realpath(given))
     try:
@@ -99,16 +89,8 @@ def write_atomic(
 
 
 def read_text_file(path: Any) -> str:
-    """Return the UTF-8 text of a regular file; raise on devices and on huge files.
-
-    What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
-
-    Examples
-    --------
-    >>> read_text_file(os.devnull)
-    Traceback (most recent call last):
-    flockana.base.errors.FileError: cannot read ...: it is no regular file; expected a file
-    """
+    """Return the UTF-8 text of a regular file; raise on devices and on huge files."""
+    # What is no UTF-8 raises UnicodeDecodeError, a ValueError, as what is no JSON does.
     source = ensure_path(path)
     try:
         if source.exists() and not source.is_file():

@@ -1,7 +1,5 @@
 """Frequency of Python's garbage collection."""
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,17 +11,7 @@ and again, as by default after hundreds, takes a tenth of a short command."""
 
 @contextmanager
 def relaxed_gc() -> Iterator[None]:
-    """Collect garbage after a hundred thousand new objects instead of after hundreds.
-
-    Examples
-    --------
-    >>> before = gc.get_threshold()
-    >>> with relaxed_gc():
-    ...     gc.get_threshold()[0]
-    100000
-    >>> gc.get_threshold() == before
-    True
-    """
+    """Collect garbage after a hundred thousand new objects instead of after hundreds."""
     before = gc.get_threshold()
     gc.set_threshold(SELDOM)
     try:
@@ -33,8 +21,6 @@ def relaxed_gc() -> Iterator[None]:
 
 
 def freeze_gc() -> None:
-    """Exclude all present objects from garbage collection, in a process that is about to end.
-
-    Else Python would look through everything that was imported twice more: a tenth of a short command.
-    """
+    """Exclude all present objects from garbage collection, in a process that is about to end."""
+    # Else Python would look through everything that was imported twice more: a tenth of a short command.
     gc.freeze()

@@ -1,7 +1,5 @@
 """Ctrl-C: deferred during critical work, and restored where libraries convert it to other errors."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

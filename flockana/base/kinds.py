@@ -40,21 +40,8 @@ _PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequen
 
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Decorate a function so that it refuses, by name, an argument of another class than its annotation.
-
-    Annotations are read as text, so that no library is imported for a check.
-
-    Examples
-    --------
-    >>> @check_kinds
-    ... def first(responses: "Mapping[str, float]") -> str:
-    ...     return next(iter(responses))
-    >>> first({"x": 1.0})
-    'x'
-    >>> first(None)
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: responses = None: expected a mapping, such as a dict of values by label
-    """
+    """Decorate a function so that it refuses, by name, an argument of another class than its annotation."""
+    # Annotations are read as text, so that no library is imported for a check.
     called = inspect.signature(function)
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}

@@ -1,7 +1,5 @@
 """Cache of results on the object that they were computed from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any, TypeVar

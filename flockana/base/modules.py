@@ -1,7 +1,5 @@
 """Discovery of a package's modules by their names."""
 
-from __future__ import annotations
-
 import pkgutil
 from collections.abc import Iterator
 from importlib import import_module

@@ -1,7 +1,5 @@
 """Consistency of overridden methods with class attributes that describe them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from types import FunctionType
@@ -18,26 +16,10 @@ def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool
 
 
 def ensure_consistent(item: Any) -> None:
-    """Raise if a law overrides a public method whose counterpart for integrators it keeps.
-
-    A class of the library lists in ``derived_methods`` the public methods that follow from one which integrators call:
-    a user's class that changes only the former would be integrated without the change, as would an instance with a
-    method of its own.
-
-    Examples
-    --------
-    >>> class Law:
-    ...     derived_methods = {"flow": ("acceleration",)}
-    ...     def flow(self): ...
-    ...     def acceleration(self): ...
-    >>> class Noisy(Law):
-    ...     __module__ = "mine"
-    ...     def acceleration(self): ...
-    >>> ensure_consistent(Law())
-    >>> ensure_consistent(Noisy())
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: Noisy defines acceleration, but not flow, from which it follows: ...
-    """
+    """Raise if a law overrides a public method whose counterpart for integrators it keeps."""
+    # A class of the library lists in ``derived_methods`` the public methods that follow from one which integrators call:
+    # a user's class that changes only the former would be integrated without the change, as would an instance with a
+    # method of its own.
     kind = type(item)
     derived_methods: Mapping[str, tuple[str, ...]] = getattr(kind, "derived_methods", {})
     for source, derived in derived_methods.items():

@@ -1,7 +1,5 @@
 """Progress bars on a terminal or in a notebook; elsewhere a line every minute."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,13 +14,10 @@ _BASIS = 0.1  # share of the total from which on the remaining time is estimated
 def progress_bar(
     total: float, *, enabled: bool = True, counted: bool = True, steady: bool = False
 ) -> Iterator[Callable[[float, str], None]]:
-    """Show a progress bar; yield a function that reports progress and a text.
-
-    Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute.
-
-    `counted` shows both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate,
-    for work of which each part takes about as long.
-    """
+    """Show a progress bar; yield a function that reports progress and a text."""
+    # Off a terminal, where a bar would be rubbish, work that takes long is told in a line a minute. `counted` shows
+    # both numbers, for a total of runs or tasks; `steady` shows the time left and, if counted, the rate, for work of
+    # which each part takes about as long.
     from flockana.base.checks import ensure_flag  # and numpy, which to list needs not
 
     console = _console() if ensure_flag("progress", enabled) else None

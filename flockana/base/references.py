@@ -1,7 +1,5 @@
 """Bibliography: BibTeX entries of the sources of laws and theorems."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -12,13 +10,7 @@ from flockana.base.errors import ArgumentError
 
 @cache
 def bibliography() -> Mapping[str, str]:
-    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package.
-
-    Examples
-    --------
-    >>> "olfati-saber-2006" in bibliography()
-    True
-    """
+    """Return all BibTeX entries by key, from the ``KEY.bib`` files of the package."""
     package = Path(__file__).parent.parent
     return {path.stem: path.read_text(encoding="utf-8").strip() for path in sorted(package.rglob("*.bib"))}
 

@@ -1,7 +1,5 @@
 """Natural length and time of a law, in which thresholds are measured."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -5,8 +5,6 @@ named a module are read the same way. A user's class is named with its module, w
 is read.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping
@@ -103,12 +101,5 @@ def _own_class(module: str, qualname: str) -> Any:
 
 
 def to_data_mapping(stats: Mapping[str, Any]) -> dict[str, Any]:
-    """Return plain data of a mapping with text keys.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> to_data_mapping({"steps": np.int64(3)})
-    {'steps': 3}
-    """
+    """Return plain data of a mapping with text keys."""
     return {key: to_data(value) for key, value in stats.items()}

@@ -1,7 +1,5 @@
 """Tables as HTML for a notebook and as LaTeX for a paper."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,13 +24,7 @@ _SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 
 
 def tex(text: str) -> str:
-    """Return text with LaTeX's own characters escaped and Greek letters as mathematics.
-
-    Examples
-    --------
-    >>> tex("c1α > 5% of ψ_α")
-    'c1$\\\\alpha$ > 5\\\\% of $\\\\psi$\\\\_$\\\\alpha$'
-    """
+    """Return text with LaTeX's own characters escaped and Greek letters as mathematics."""
     commands = {**_GREEK, **_MORE, **_OTHER}
     apart = unicodedata.normalize("NFD", text)
     pieces = re.split("(\\w\u0303)", apart)
@@ -53,13 +45,7 @@ def _letter(letter: str, commands: dict[str, str]) -> str:
 
 
 def html_table(rows: Iterable[Sequence[str]], heads: Sequence[str], caption: str = "") -> str:
-    """Return an HTML table; cells are escaped, and a status gets its mark.
-
-    Examples
-    --------
-    >>> html_table([["i", "verified"]], ["claim", "status"])[:24]
-    '<table><thead><tr><th sc'
-    """
+    """Return an HTML table; cells are escaped, and a status gets its mark."""
     head = "".join(f'<th scope="col" style="text-align:left">{escape(text)}</th>' for text in heads)
     body = "".join("<tr>" + "".join(map(_cell, row)) + "</tr>" for row in rows)
     title = f'<caption style="text-align:left">{escape(caption)}</caption>' if caption else ""
@@ -72,15 +58,7 @@ def _cell(text: str) -> str:
 
 
 def text_table(rows: Iterable[Sequence[str]], heads: Sequence[str]) -> str:
-    """Return a table as lines of text with aligned columns.
-
-    Examples
-    --------
-    >>> print(text_table([["os-3", "verified"], ["energy", "refuted"]], ["theorem", "status"]))
-    theorem  status
-    os-3     verified
-    energy   refuted
-    """
+    """Return a table as lines of text with aligned columns."""
     padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in zip(heads, *rows, strict=True)]
     return "\n".join("  ".join(row).rstrip() for row in zip(*padded, strict=True))
 
@@ -91,44 +69,18 @@ def number(value: float | None) -> str:
 
 
 def latex_table(rows: Iterable[Sequence[str]], heads: Sequence[str], columns: str) -> str:
-    """Return rows of LaTeX text as a ``tabular`` with the rules of booktabs.
-
-    Examples
-    --------
-    >>> print(latex_table([["i", "verified"]], ["claim", "status"], "ll"))
-    \\begin{tabular}{ll}
-    \\toprule
-    claim & status \\\\
-    \\midrule
-    i & verified \\\\
-    \\bottomrule
-    \\end{tabular}
-    """
+    """Return rows of LaTeX text as a ``tabular`` with the rules of booktabs."""
     lines = [" & ".join(row) + r" \\" for row in rows]
     top = [rf"\begin{{tabular}}{{{columns}}}", r"\toprule", " & ".join(heads) + r" \\", r"\midrule"]
     return "\n".join([*top, *lines, r"\bottomrule", r"\end{tabular}"])
 
 
 def facts_html(title: str, facts: Mapping[str, object]) -> str:
-    """Return an HTML table of names and values.
-
-    Examples
-    --------
-    >>> "<td" in facts_html("run", {"agents": 7})
-    True
-    """
+    """Return an HTML table of names and values."""
     return html_table([(name, str(value)) for name, value in facts.items()], (title, ""))
 
 
 def facts_text(title: str, facts: Mapping[str, object]) -> str:
-    """Return lines of names and values under a title.
-
-    Examples
-    --------
-    >>> print(facts_text("run", {"agents": 7, "m": 2}))
-    run
-      agents  7
-      m       2
-    """
+    """Return lines of names and values under a title."""
     width = max(map(len, facts), default=0)
     return "\n".join([title, *(f"  {name.ljust(width)}  {value}" for name, value in facts.items())])

@@ -1,7 +1,5 @@
 """Conversion of laws, runs and scenarios to other units of length and time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar

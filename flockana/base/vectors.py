@@ -1,7 +1,5 @@
 """Fast norms and means of many short vectors, where numpy reduces slowly."""
 
-from __future__ import annotations
-
 from math import frexp, ldexp
 
 import numpy as np
@@ -29,16 +27,7 @@ def centres(x: FloatArray) -> FloatArray:
 
 
 def scaled_near_one(x: FloatArray, *others: float) -> tuple[FloatArray, tuple[float, ...], float]:
-    """Return numbers divided by a power of two, and that power: 1 unless squares would overflow or underflow.
-
-    Examples
-    --------
-    >>> x, (r,), unit = scaled_near_one(np.array([3.0, 4.0]) * 2.0**600, 2.0**599)
-    >>> x.tolist(), r, unit == 2.0**602
-    ([0.75, 1.0], 0.125, True)
-    >>> scaled_near_one(np.array([3.0]), 2.0)[2]
-    1.0
-    """
+    """Return numbers divided by a power of two, and that power: 1 unless squares would overflow or underflow."""
     top = max(float(x.max(initial=0.0)), -float(x.min(initial=0.0)), *others)
     if _SQUARED[0] < top < _SQUARED[1] or not 0.0 < top < np.inf:
         return x, others, 1.0

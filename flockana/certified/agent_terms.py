@@ -1,7 +1,5 @@
 """Forces on single agents in balls and series (Arb): the pull to a γ-agent on a straight path."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -46,24 +44,14 @@ class AgentTerm(ABC):
 
 @dataclass(frozen=True)
 class Pull(AgentTerm):
-    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²).
+    """Pull −c1γ (x − q_r) − c2γ (v − p_r), or with the first term bounded, −c1γ (x − q_r)/√(1 + ‖x − q_r‖²/ℓ²)."""
 
-    Attributes
-    ----------
-    start, velocity, declared : tuple of arb
-        q_r = start + velocity t, and p_r.
-    stiffness, damping : arb
-        c1γ and c2γ.
-    unit : arb, optional
-        ℓ; None for the linear pull.
-    """
-
-    start: tuple[arb, ...]
+    start: tuple[arb, ...]  # start, velocity, declared: q_r = start + velocity t, and p_r
     velocity: tuple[arb, ...]
     declared: tuple[arb, ...]
-    stiffness: arb
+    stiffness: arb  # stiffness, damping: c1γ and c2γ
     damping: arb
-    unit: arb | None = None
+    unit: arb | None = None  # ℓ; None for the linear pull
 
     def _away(self, t: Any, x: Sequence[Any]) -> list[Any]:
         """Return x − q_r."""
@@ -74,8 +62,7 @@ class Pull(AgentTerm):
         squares = list(map(square, away))
         return (1 + sum(squares[1:], squares[0]) / (unit * unit)).rsqrt()
 
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
         away = self._away(t, x)
         if self.unit is not None:
             slant = self._saturation(away, self.unit)
@@ -83,8 +70,7 @@ class Pull(AgentTerm):
         rows = zip(away, v, self.declared, strict=True)
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
-    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables."""
+    def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:  # noqa: D102
         m = len(x)
         drag = [[-self.damping if k == h else 0 for h in range(m)] for k in range(m)]
         if self.unit is None:

@@ -1,7 +1,5 @@
 """Alignment of a configuration with a rotated equilibrium, in balls: uniqueness, and a near-best rotation."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

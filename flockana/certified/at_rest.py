@@ -6,8 +6,6 @@ Equilibria of the structure come as orbits, one net rotated, so a zero is sought
 are 0 there. What is left sums to n ν + c1γ Σ x_i = n ν over the agents, so that ν = 0: the zero is an equilibrium.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -4,14 +4,10 @@ Numbers are exact: decimals as text, computed positions in hexadecimal. A name o
 `flockana.certified.basin` it is; what no machine checks stands in the file.
 """
 
-from __future__ import annotations
-
 import json
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
-
-from flint import fmpq
 
 from flockana._version import __version__
 from flockana.base.errors import ArgumentError
@@ -48,7 +44,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         "positions": [[float(x).hex() for x in row] for row in basin.rest],
         "box": format_decimal(proof.box),
         "bonds": bonds,
-        "curvatures": _all(shells.curvatures),
+        "curvatures": [format_decimal(value) for value in shells.curvatures],
         "second_eigenvalue": format_decimal(proof.second),
         "degree": format_decimal(proof.degree),
         "surplus": format_decimal(bounds.surplus),
@@ -78,7 +74,3 @@ def write_certificate(basin: Basin, path: str | Path) -> None:
         If the file cannot be written.
     """
     write_atomic(path, json.dumps(basin_certificate(basin), indent=1) + "\n")
-
-
-def _all(values: tuple[fmpq, ...]) -> list[str]:
-    return [format_decimal(value) for value in values]

@@ -7,8 +7,6 @@ mathematics, to the last digit that is stated. One that was sealed again with an
 thousandth larger, of which every claim is still proved, is a certificate of another law, and holds.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ It and `check_net` share with the prover the scalar functions of `intervals` and
 exact; "true" means certainly true.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations

@@ -3,8 +3,6 @@
 Only the scalar functions of `intervals` are shared with the prover.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -3,8 +3,6 @@
 Nothing of the prover but the scalar functions of `intervals`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
@@ -56,10 +54,8 @@ class Net:
         return adjacency(sigma_of_square(square(length), self.par.eps), self.par)
 
     def equilibrium(self) -> list[list[arb]]:
-        """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0.
-
-        The turns are those of the positions, to which they are orthogonal.
-        """
+        """Return balls around the equilibrium, by Krawczyk's test of the equations with multipliers μ = 0."""
+        # The turns are those of the positions, to which they are orthogonal.
         n, m = self.n, self.m
         turns = self.rotation_tangents(self.centre)
         held = turns + self.translations()
@@ -164,11 +160,9 @@ class Net:
         return arb_mat(rows)
 
     def floor_holds(self, rest: arb, eta: Fraction, along: Fraction, across: Fraction) -> bool:
-        """Return whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every displacement |e| <= eta.
-
-        With x the change of length and b = 1 − cos of the turn, left − right is a square in b, of which a bound below
-        is linear on [0, most]: see `pair_floors`. Intervals of x are halved until the bound is certain.
-        """
+        """Return whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every displacement |e| <= eta."""
+        # With x the change of length and b = 1 − cos of the turn, left − right is a square in b, of which a bound below
+        # is linear on [0, most]: see `pair_floors`. Intervals of x are halved until the bound is certain.
         cells = [(-eta, eta, 0)]
         while cells:
             low, high, depth = cells.pop()

@@ -167,11 +167,9 @@ class Run(Motion):
         return (rate.max(arb(0)) * h).exp() * (error + h * defect), box
 
     def defect(self, t: arb, h: arb, path: Sequence[Vector]) -> arb:
-        """Return a bound of the defect |y'' − u(t, y, y')| of a path on a step.
-
-        Where every pair is on one piece of its law: the coefficients of the difference at the begin of the step, and of
-        u the next one at any time of it. Elsewhere: the difference at the begin, and its slope during the step.
-        """
+        """Return a bound of the defect |y'' − u(t, y, y')| of a path on a step."""
+        # Where every pair is on one piece of its law: the coefficients of the difference at the begin of the step, and
+        # of u the next one at any time of it. Elsewhere: the difference at the begin, and its slope during the step.
         span, size, order = arb(0).union(h), self.n * self.m, len(path[0]) - 1
         whole = self.shifted(path, span)
         pieces = self.pieces([row[0] for row in whole[:size]])

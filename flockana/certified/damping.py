@@ -5,8 +5,6 @@ least that of the net with every pair at its longest, and none is above twice th
 its shortest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from flint import arb, arb_mat, fmpq
@@ -20,10 +18,8 @@ _DIGITS = 4
 
 
 def damping(u: Structure, lengths: Mapping[tuple[int, int], arb], reach: fmpq) -> tuple[fmpq, fmpq]:
-    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up.
-
-    So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
-    """
+    """Return (second eigenvalue, largest degree) of the weighted net, rounded down and up."""
+    # So c2γ + c2α second <= D <= c2γ + 2 c2α degree on Σ v_i = 0.
     away = ball(reach)
     weakest = {pair: u.weight(square(length + away)).lower() for pair, length in lengths.items()}
     strongest = {pair: u.weight(square((length - away).max(arb(0)))) for pair, length in lengths.items()}

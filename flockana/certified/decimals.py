@@ -3,8 +3,6 @@
 The ends of a ball are binary fractions; what is rounded are these, in whole numbers.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import ceil, floor
 

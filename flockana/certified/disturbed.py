@@ -9,8 +9,6 @@ E >= ½λ‖w‖² + ½‖v‖², e = ε/√λ and (1 − e)E <= F that is at mo
 as long as the flock stays in the basin, which it does while F < (1 − e) ΔH.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any

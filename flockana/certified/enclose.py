@@ -1,7 +1,5 @@
 """`enclose`: rigorous enclosure of a run, step by step."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -84,8 +82,6 @@ def enclose(
         Half-width of the set, in units of d, at which the tube counts as broken.
     steps : int
         At most so many.
-    progress : bool
-        Show a progress bar.
 
     Returns
     -------

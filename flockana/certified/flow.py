@@ -5,8 +5,6 @@ number holds for a ball (`arb`: an enclosure over all states in a box, also acro
 only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -24,29 +22,15 @@ Pieces = tuple[Piece, ...]  # of the pairs (0, 1), (0, 2), ..., then of the agen
 
 @dataclass(frozen=True)
 class Flow:
-    """Right-hand side q' = p, p' = u(t, q, p) of Algorithm 1, 2 or 3 in balls.
+    """Right-hand side q' = p, p' = u(t, q, p) of Algorithm 1, 2 or 3 in balls."""
 
-    Attributes
-    ----------
-    n, m : int
-        Agents and dimension.
-    pair : PairNumbers
-        The pair law.
-    stiffness, damping : arb
-        c1α and c2α.
-    pace : float
-        About the law's fastest rate, by which steps and coordinates are proposed; nothing rests on it.
-    terms : tuple of AgentTerm
-        What acts on each agent by itself: the γ-agent, obstacles.
-    """
-
-    n: int
+    n: int  # n, m: Agents and dimension
     m: int
-    pair: PairNumbers
-    stiffness: arb
+    pair: PairNumbers  # The pair law
+    stiffness: arb  # stiffness, damping: c1α and c2α
     damping: arb
-    pace: float
-    terms: tuple[AgentTerm, ...] = ()
+    pace: float  # About the law's fastest rate, by which steps and coordinates are proposed; nothing rests on it
+    terms: tuple[AgentTerm, ...] = ()  # What acts on each agent by itself: the γ-agent, obstacles
 
     def pieces(self, state: Sequence[arb]) -> Pieces:
         """Return the piece of the law on which each pair and each agent is, anywhere in a box."""

@@ -4,8 +4,6 @@ A form is a dict of forms by key, a list of one form for all entries, or one of 
 read has no place in a certificate, or it would be believed unseen.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any

@@ -7,8 +7,6 @@ series lies. The checkers have formulas of their own.
 """
 
 # fmt: off
-from __future__ import annotations
-
 from typing import Any
 
 from flint import arb

@@ -6,8 +6,6 @@ those of the γ-agent: over a box it is least where these are least, at one end 
 definite every mode decays; the proof of that is interval arithmetic.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, Literal

@@ -4,8 +4,6 @@ Every result encloses the true values on all of a ball (`flockana.certified.ball
 share nothing with what proves: that is generated (`flockana.certified.formulas`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any

@@ -3,8 +3,6 @@
 Floating point only proposes, an inverse or eigenvectors; what is concluded holds whatever it proposed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -27,11 +25,9 @@ def enclose_zero(
     centre: Sequence[arb],
     radius: arb,
 ) -> list[arb] | None:
-    """Return balls that hold the unique zero of f in a box; None if Krawczyk's test fails.
-
-    Krawczyk: with an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K lies
-    inside B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
-    """
+    """Return balls that hold the unique zero of f in a box; None if Krawczyk's test fails."""
+    # Krawczyk: with an enclosure S of f' on the box B and any matrix Y, let K = c - Y f(c) + (1 - Y S)(B - c). If K
+    # lies inside B, then f has exactly one zero in B; it is in K, and f' is nowhere singular on B.
     box = [x + arb(0, radius) for x in centre]
     enclosure = slope(box)
     y = enclosure.mid().inv().mid()
@@ -42,11 +38,9 @@ def enclose_zero(
 
 
 def least_eigenvalue(matrix: arb_mat) -> arb | None:
-    """Return a positive lower bound of the eigenvalues of the matrices in the balls; None if there is none.
-
-    With Q any matrix, here approximate eigenvectors, Gershgorin's discs bound the eigenvalues of QᵀAQ by some g. If
-    g > 0, Q is invertible, and ⟨Qx, A Qx⟩ >= g |x|² >= g |Qx|²/|QᵀQ|: the eigenvalues of A are at least g/|QᵀQ|.
-    """
+    """Return a positive lower bound of the eigenvalues of the matrices in the balls; None if there is none."""
+    # With Q any matrix, here approximate eigenvectors, Gershgorin's discs bound the eigenvalues of QᵀAQ by some g. If g
+    # > 0, Q is invertible, and ⟨Qx, A Qx⟩ >= g |x|² >= g |Qx|²/|QᵀQ|: the eigenvalues of A are at least g/|QᵀQ|.
     size = matrix.nrows()
     middle = np.array([[float(entry.mid()) for entry in row] for row in matrix.tolist()])
     q = arb_mat(size, size, [arb(float(x)) for x in np.linalg.eigh((middle + middle.T) / 2)[1].ravel()])

@@ -1,7 +1,5 @@
 """Laws that `enclose` supports, as right-hand sides in balls."""
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any, cast
 
@@ -23,12 +21,7 @@ _LED = (Algorithm2, Algorithm3)
 
 
 def ensure_enclosable(law: Any) -> None:
-    """Raise unless `enclose` supports a law.
-
-    Examples
-    --------
-    >>> ensure_enclosable(Algorithm1())
-    """
+    """Raise unless `enclose` supports a law."""
     if type(law) not in (Algorithm1, *_LED) or type(law.alpha) is not AlphaInteraction:
         raise ArgumentError(f"law = {law!r}: expected Algorithm1, 2 or 3 with AlphaInteraction, unwrapped")
     if isinstance(law, _LED):

@@ -4,8 +4,7 @@ The counting is that of `flockana.equilibria.barrier`, with every length and lev
 the side that is safe.
 """
 
-from __future__ import annotations
-
+from itertools import combinations
 from math import ceil, floor
 from typing import Any
 
@@ -40,7 +39,7 @@ def coincident_state(alpha: Any, n: int, m: int) -> arb:
     with ctx.workprec(BITS):
         s2 = (
             sum((square(arb(float(a)) - arb(float(b))) for a, b in zip(x, y, strict=True)), arb(0))
-            for x, y in _pairs(q)
+            for x, y in combinations(q, 2)
         )
         return sum(map(PairNumbers.of_alpha(alpha).potential, s2), arb(0))
 
@@ -55,15 +54,9 @@ def disconnected_state(alpha: Any, n: int, m: int) -> arb | None:
         return (n * (n - 1) // 2 - bonds) * PairNumbers.of_alpha(alpha).far
 
 
-def _pairs(q: Any) -> list[tuple[Any, Any]]:
-    return [(q[i], q[j]) for i in range(len(q)) for j in range(i + 1, len(q))]
-
-
 def _shortest_bound(alpha: Any) -> fmpq | None:
-    """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none.
-
-    ψ_α falls up to d_α, so that it holds below any length at which it holds.
-    """
+    """Return a length below which a pair certainly has ψ_α > ψ_α(r_α); None if there is none."""
+    # ψ_α falls up to d_α, so that it holds below any length at which it holds.
     pair, low, high = PairNumbers.of_alpha(alpha), fmpq(0), exact(alpha.d)
     if not pair.c_star > pair.far:
         return None

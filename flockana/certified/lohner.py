@@ -27,21 +27,11 @@ _VARIATION = 14  # order of the derivative of a step
 
 @dataclass(frozen=True)
 class StateSet:
-    """Set of states x̂ + C r₀ + B r.
+    """Set of states x̂ + C r₀ + B r."""
 
-    Attributes
-    ----------
-    centre : tuple of arb
-        x̂, exact.
-    c, b : arb_mat
-        C and B, exact.
-    start, error : tuple of arb
-        The boxes r₀ and r, about 0.
-    """
-
-    centre: tuple[arb, ...]
-    c: arb_mat
-    start: tuple[arb, ...]
+    centre: tuple[arb, ...]  # x̂, exact
+    c: arb_mat  # c, b: C and B, exact
+    start: tuple[arb, ...]  # start, error: The boxes r₀ and r, about 0
     b: arb_mat
     error: tuple[arb, ...]
 
@@ -61,30 +51,14 @@ class StateSet:
 
 
 class Step(NamedTuple):
-    """Proved enclosures of one step.
+    """Proved enclosures of one step."""
 
-    Attributes
-    ----------
-    after : StateSet
-        Holds the states at its end.
-    during : list of arb
-        Box that holds them from its begin to its end.
-    relative : list of list of arb
-        Of each pair, the box that holds q_j − q_i during it.
-    deviations : list of list of arb
-        Of each agent, the box that holds q_i − q_c during it.
-    added : float
-        The largest remainder, in units of length; of a velocity, what it goes in the law's own time.
-    blur : float
-        By what share the set may grow as the derivative of the step has a remainder.
-    """
-
-    after: StateSet
-    during: list[arb]
-    relative: list[list[arb]]
-    deviations: list[list[arb]]
-    added: float
-    blur: float
+    after: StateSet  # Holds the states at its end
+    during: list[arb]  # Box that holds them from its begin to its end
+    relative: list[list[arb]]  # Of each pair, the box that holds q_j − q_i during it
+    deviations: list[list[arb]]  # Of each agent, the box that holds q_i − q_c during it
+    added: float  # The largest remainder, in units of length; of a velocity, what it goes in the law's own time
+    blur: float  # By what share the set may grow as the derivative of the step has a remainder
 
 
 def variation_order(order: int) -> int:
@@ -115,10 +89,8 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
-    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long.
-
-    x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
-    """
+    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long."""
+    # x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
     span, box = _interval(h), before.hull
     during = _picard(flow, t, span, box)
     if during is None:
@@ -137,11 +109,9 @@ def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
 def _enclosed(
     flow: Flow, times: arb, h: arb, reach: Sequence[arb], order: int, pieces: Pieces
 ) -> tuple[list[arb], list[arb]] | None:
-    """Return the box of the solutions during a step and the remainder at its end, if proved.
-
-    If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
-    would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
-    """
+    """Return the box of the solutions during a step and the remainder at its end, if proved."""
+    # If the polynomial on [0, h] plus h^N times the N-th coefficient on a box E lies inside E, no solution leaves E: it
+    # would be on E's boundary at a first time, and inside by Taylor's theorem up to it.
     growth = _first_growth(reach, h)
     for _ in range(_INFLATIONS):
         box = [x + arb(0, g) for x, g in zip(reach, growth, strict=True)]
@@ -184,12 +154,10 @@ def _first_growth(box: Sequence[arb], h: arb) -> list[arb]:
 def _variation(
     flow: Flow, t: arb, h: arb, path: Sequence[Sequence[arb]], during: Sequence[arb], pieces: Pieces, order: int
 ) -> tuple[arb_mat, arb_mat]:
-    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder.
-
-    At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest row
-    sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the identity
-    by more than e^{Lh} − 1.
-    """
+    """Return ∂x(t + h)/∂x(t) on the whole set by a Taylor polynomial with remainder, and the remainder."""
+    # At a time between, the K-th coefficient is that of the states there, times ∂x(between)/∂x(t). With L the largest
+    # row sum of |∂x'/∂x| during the step, Gronwall's inequality bounds the latter: no entry differs from that of the
+    # identity by more than e^{Lh} − 1.
     span = _interval(h)
     polynomial = flow.variation(t, path, order - 1, pieces)
     there = flow.variation(t + span, flow.taylor(t + span, during, order, pieces), order, pieces)[order]
@@ -217,11 +185,9 @@ def _moved(before: StateSet, moved: Sequence[arb], slope: arb_mat, pace: float) 
 
 
 def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
-    """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set.
-
-    Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it does
-    not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
-    """
+    """Return an exact, nearly orthogonal matrix whose columns follow the longest edges of the set."""
+    # Velocities count by what they go in the law's own time, so that what damping shrinks is not mixed with what it
+    # does not. Floating point proposes the matrix; whatever it is, the set is enclosed in it.
     size, widest = len(widths), max(widths)
     weights = np.repeat((1.0, 1.0 / pace), size // 2)[:, None]
     edges = weights * np.array([[float(x.mid()) for x in row] for row in b.tolist()])

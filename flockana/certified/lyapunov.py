@@ -19,8 +19,6 @@ inequality leaves X = θλ/2 + c − αλ/2ε for κM/2 + ατ/2, and the third 
 is (√(μM) + α)²/4X at least, where τ = 2X/(√(μM) + α) and κ = τ√(μ/M). What it then leaves falls in α, and is bisected.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,14 +67,7 @@ def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> f
 
 
 def decay(bounds: Bounds) -> Decay:
-    """Return nearly the best ε, θ, κ and τ with e <= ½, proposed in floating point, and the proved rate.
-
-    Examples
-    --------
-    >>> of_spring = decay(Bounds(fmpq(1), fmpq(1, 2), fmpq(1), fmpq(1)))  # x'' + x' + x = 0: x falls like exp(-t/2)
-    >>> 0.19 < float(of_spring.rate) < 0.5
-    True
-    """
+    """Return nearly the best ε, θ, κ and τ with e <= ½, proposed in floating point, and the proved rate."""
     widest = min(0.5 * float(bounds.curvature) ** 0.5, float(bounds.least))  # beyond, e > ½ or no speed falls
     eps = widest * np.geomspace(_LEAST, 1.0, _STEPS)
     low, high = np.zeros_like(eps), np.minimum(eps, 2.0 * float(bounds.least))

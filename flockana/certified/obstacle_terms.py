@@ -5,8 +5,6 @@ With a = (x − y)/‖x − y‖ and the clearance c = ‖x − y‖ − R the �
 (it depends on c² and on c a only), h d_β and d_β are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
@@ -23,22 +21,12 @@ from flockana.certified.series import PairNumbers, Piece
 
 @dataclass(frozen=True)
 class SphereTerm(AgentTerm):
-    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest.
+    """Force c1β φ_β n̂ + c2β b (p̂ − v) of a sphere at rest."""
 
-    Attributes
-    ----------
-    beta : PairNumbers
-        The pair law of an agent and its β-agent.
-    centre, radius : tuple of arb, arb
-        y and R.
-    stiffness, damping : arb
-        c1β and c2β.
-    """
-
-    beta: PairNumbers
-    centre: tuple[arb, ...]
+    beta: PairNumbers  # The pair law of an agent and its β-agent
+    centre: tuple[arb, ...]  # centre, radius: y and R
     radius: arb
-    stiffness: arb
+    stiffness: arb  # stiffness, damping: c1β and c2β
     damping: arb
 
     def _away(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
@@ -76,8 +64,7 @@ class SphereTerm(AgentTerm):
             adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
         return -self.damping * adjacency * (clearance / distance * across + square(radial))
 
-    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+    def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:  # noqa: D102
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)
@@ -85,10 +72,8 @@ class SphereTerm(AgentTerm):
         return [-push * k - drag * (free * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables.
-
-        With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
-        """
+        """Return the derivatives of the force by position and velocity, two tables."""
+        # With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         s2, mu, free = square(clearance), self.radius / distance, clearance / distance

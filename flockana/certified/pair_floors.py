@@ -15,8 +15,6 @@ F'' and T = F'/ℓ at ℓ: of one length ℓ and of b in [0, (η² − x²)/(2 �
 where their enclosures are too wide. (`proofs/certified_basins.py` checks the identity.)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

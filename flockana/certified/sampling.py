@@ -1,7 +1,5 @@
 """Estimate of an equilibrium's true basin by random runs, beside the certified one."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

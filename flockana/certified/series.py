@@ -23,29 +23,16 @@ class PairNumbers:
     """Numbers of a pair law as balls at one precision.
 
     The β-pair's action is the α-pair's with φ(s) = σ₁(s) − 1, which is φ of a = 0, b = 2 and c = 0.
-
-    Attributes
-    ----------
-    eps, h : arb
-        Of the σ-norm and of the bump.
-    a, b, c : arb
-        Of φ.
-    zero : arb
-        σ-norm at which the potential vanishes: d_α, or d_β.
-    cutoff : arb
-        σ-norm at which the force ends: r_α, or d_β.
-    area : arb
-        ℓ².
     """
 
-    eps: arb
+    eps: arb  # eps, h: Of the σ-norm and of the bump
     h: arb
-    a: arb
+    a: arb  # a, b, c: Of φ
     b: arb
     c: arb
-    zero: arb
-    cutoff: arb
-    area: arb
+    zero: arb  # σ-norm at which the potential vanishes: d_α, or d_β
+    cutoff: arb  # σ-norm at which the force ends: r_α, or d_β
+    area: arb  # ℓ²
 
     @classmethod
     def of_alpha(cls, alpha: Any) -> PairNumbers:

@@ -9,8 +9,6 @@ G'' = k_i in the i-th shell, G(0) = G'(0) = 0. The least of G'/t and of (t G' �
 are monotone within each; and G >= ½λt² where G' >= λt.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

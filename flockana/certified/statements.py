@@ -1,7 +1,5 @@
 """Exact wording of the statement of each kind of certificate; any other is rejected."""
 
-from __future__ import annotations
-
 FORMAT = "flockana certificate 1"
 BASIN = (
     "In the frame of the centre of mass, every solution that starts nearer than `radius` to the orbit under rotations "

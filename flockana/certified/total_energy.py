@@ -1,7 +1,5 @@
 """Energy of Algorithm 3 with a γ-agent at rest, in balls, and the integral of its rate along a tube."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -38,11 +36,9 @@ def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
 
 
 def work(tube: Tube) -> arb:
-    """Return a ball around the integral of dH/dt over the tube, from the closed form of the rate.
-
-    On a step where every pair and agent is on one piece, the rate's Taylor polynomial is integrated, with its last
-    coefficient taken over all states of the step; elsewhere the step's length times the rate's range.
-    """
+    """Return a ball around the integral of dH/dt over the tube, from the closed form of the rate."""
+    # On a step where every pair and agent is on one piece, the rate's Taylor polynomial is integrated, with its last
+    # coefficient taken over all states of the step; elsewhere the step's length times the rate's range.
     with ctx.workprec(BITS):
         flow, total = flow_of(tube.law, tube.n, tube.m), arb(0)
         for k, (start, end) in enumerate(zip(tube.t[:-1], tube.t[1:], strict=True)):

@@ -3,8 +3,6 @@
 The certificate holds a path of polynomials beside the run, of a higher order than the tube's, and its distance from it.
 """
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 from importlib.metadata import version

@@ -33,28 +33,14 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Between:
-    """The solver's own steps between the samples of a run.
+    """The solver's own steps between the samples of a run."""
 
-    Parameters
-    ----------
-    t : ndarray, shape (S,)
-        Their times, rising, none of which is that of a sample.
-    q, p, u : ndarray, shape (S, n, m)
-        Positions, velocities, accelerations.
-    slack : ndarray, shape (T + S - 1, n), optional
-        For every interval of the T samples and S steps together: how far each agent's path through all steps that were
-        made is from that through those kept. None if all were kept.
-
-    Raises
-    ------
-    ArgumentError
-        On shapes that do not fit each other, numbers that are not finite, or times that do not rise.
-    """
-
-    t: FloatArray
-    q: FloatArray
+    t: FloatArray  # Their times, rising, none of which is that of a sample
+    q: FloatArray  # q, p, u: Positions, velocities, accelerations
     p: FloatArray
     u: FloatArray
+    # For every interval of the T samples and S steps together: how far each agent's path through all steps that were
+    # made is from that through those kept. None if all were kept.
     slack: FloatArray | None = None
 
     def __post_init__(self) -> None:
@@ -160,10 +146,8 @@ class Recorder:
         return Between(t, q, p, u, np.array([self._slack.get(knot, exact) for knot in knots[:-1].tolist()]))
 
     def _limit_memory(self) -> None:
-        """Drop every other step if there are too many, and free their memory.
-
-        Where a step is left out, no sample may come between its neighbours any more.
-        """
+        """Drop every other step if there are too many, and free their memory."""
+        # Where a step is left out, no sample may come between its neighbours any more.
         if self._held <= self.most or not self._samples:
             return
         self._assemble()

@@ -1,7 +1,5 @@
 """Laws that are compiled together with the integrator: many steps in one call (`flockana.kernels.advance`)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -50,8 +48,7 @@ class Engine(Stepper):
         given += [float(rtol), tuple(map(float, floor)), float(longest)]
         self._method = Method(*given)
 
-    def advance(self, checks: StepChecks) -> int:
-        """Make accepted steps; `failure` says why the run ends, if it does."""
+    def advance(self, checks: StepChecks) -> int:  # noqa: D102
         if self._system.reach[0] > 0.0 and self.pairs.made >= self._sorted + _LISTS:
             self._sort()
         judged = checks.judged(self.order)
@@ -83,8 +80,7 @@ class Engine(Stepper):
         self.pairs = self.pairs._replace(places=np.empty((0, m)))
         self._sorted = self.pairs.made
 
-    def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return (times, states, work) of the samples due within the steps; work is NaN where a step ended."""
+    def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:  # noqa: D102
         states, work = self._samples
         return self.due[: len(work)], states, work
 

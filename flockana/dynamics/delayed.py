@@ -1,7 +1,5 @@
 """Integration of a wrapped law without noise, in steps that miss no encounter."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import ceil
 

@@ -4,8 +4,6 @@ Steppers are compiled with the law (`flockana.dynamics.compiled`) or step any la
 (`flockana.dynamics.solvers`). Beside the state, ∫ dH/dt is integrated as one more variable.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -32,12 +30,10 @@ def integrated(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Sample | Samples]:
-    """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step.
-
-    A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
-    with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets the
-    numbers of steps made again and of switches.
-    """
+    """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step."""
+    # A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
+    # with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets
+    # the numbers of steps made again and of switches.
     jumps = isinstance(law, SwitchedLaw) and law.located and not plan.dt
     engine = None if jumps else engine_of(law, q0, p0, t0, plan)
     if engine is not None:
@@ -73,10 +69,8 @@ def _driven(
 
 
 def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[Samples]:
-    """Yield the steps that are not samples, then the samples, in blocks for speed.
-
-    Steps come first: a run that is interrupted after them has no samples whose steps are not known.
-    """
+    """Yield the steps that are not samples, then the samples, in blocks for speed."""
+    # Steps come first: a run that is interrupted after them has no samples whose steps are not known.
     made, (states, work) = stepper.block.t[1 : good + 1].copy(), stepper.states(good)
 
     def samples(t: FloatArray, states: FloatArray, work: FloatArray, wanted: bool = True) -> Samples:
@@ -101,12 +95,6 @@ def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[
 
 
 def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block of steps.
-
-    Examples
-    --------
-    >>> _among(np.array([0.0, 1.0, 3.0]), np.array([1.0, 2.0])).tolist()
-    [False, True, False]
-    """
+    """Return which times occur in a rising list, without `np.isin`, which would sort the list for each block."""
     nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
     return np.asarray(nearest == times)

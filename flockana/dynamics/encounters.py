@@ -64,15 +64,7 @@ class Encounters:
 
     @classmethod
     def of(cls, law: Law, n: int) -> Encounters:
-        """Return the encounters of a law for n agents.
-
-        Examples
-        --------
-        >>> from flockana.laws.olfati_saber import Algorithm1
-        >>> encounters = Encounters.of(Algorithm1(), 2)
-        >>> encounters.radii.tolist(), encounters.far
-        ([[8.4], [8.4]], 3.5)
-        """
+        """Return the encounters of a law for n agents."""
         surfaces = [np.broadcast_to(np.asarray(one, dtype=np.float64), (n,)) for one in law.surfaces]
         radii = np.sort(np.array(surfaces).reshape(len(surfaces), n).T, axis=1)
         length = min(np.inf if law.scales is None else law.scales.length, radii[:, -1].min() if surfaces else np.inf)
@@ -88,19 +80,7 @@ class Encounters:
         return self.radii.size > 0 or self.bodies is not None or self.poles.size > 0
 
     def share(self, h: float, before: State, after: State) -> float:
-        """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole.
-
-        Examples
-        --------
-        Two agents, 200 apart, that pass through each other within one step:
-
-        >>> from flockana.laws.olfati_saber import Algorithm1
-        >>> still, p = np.zeros((2, 1)), np.array([[15.0], [-15.0]])
-        >>> before, after = (State(np.array(q), p, still) for q in ([[0.0], [200.0]], [[210.0], [-10.0]]))
-        >>> h = 14.0 * Encounters.of(Algorithm1(), 2).share(14.0, before, after)
-        >>> 200.0 - 8.4 < 30.0 * h < 200.0 - 4.8
-        True
-        """
+        """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
         rules, none = self.rules(False, (0.0, 0.0), fixed=False), no_pairs(0, m)

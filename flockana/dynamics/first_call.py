@@ -1,7 +1,5 @@
 """Check of a law's first results before integration, so that an error names the law and what it returned."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

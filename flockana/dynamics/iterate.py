@@ -1,7 +1,5 @@
 """The steps of a map."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
@@ -15,13 +13,7 @@ _NUMBERS = 6_000_000  # kept of the steps made at once, at most
 
 
 def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float], float] = np.ceil) -> int:
-    """Return the number of steps of dt between two times, whatever the rounding of the times.
-
-    Examples
-    --------
-    >>> count_steps(0.0, 0.3, 0.1), count_steps(1e6, 1e6 + 0.3, 0.1), count_steps(0.0, 0.31, 0.1)
-    (3, 3, 4)
-    """
+    """Return the number of steps of dt between two times, whatever the rounding of the times."""
     slack = 4.0 * float(np.spacing(max(abs(start), abs(stop), stop - start)))
     return int(rounded((stop - start + (slack if rounded is np.floor else -slack)) / dt))
 
@@ -34,11 +26,9 @@ def discrete(
     keep: FloatArray | None,
     tally: Tally,
 ) -> Iterator[Samples]:
-    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there.
-
-    Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
-    times to keep the nearest steps are given, each once: between its steps a map has no state.
-    """
+    """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
+    # Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
+    # times to keep the nearest steps are given, each once: between its steps a map has no state.
     q, p, memory, t0, dt = q0, p0, law.start(q0, p0), t_span[0], law.dt
     steps, wanted = count_steps(*t_span, dt, np.floor), wanted_steps(law, t_span, keep)
     if wanted is None or 0 in wanted:
@@ -99,13 +89,7 @@ def _chunk(
 
 
 def _nearest(t0: float, dt: float, steps: int, keep: FloatArray) -> IndexArray:
-    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near.
-
-    Examples
-    --------
-    >>> _nearest(0.0, 1.0, 9, np.array([0.0, 0.4, 2.5, 2.6, 9.4, 9.6])).tolist()
-    [0, 2, 3, 9]
-    """
+    """Return indices of the steps nearest to the times to keep, each once; the earlier of two as near."""
     k = np.maximum(np.ceil((keep - t0) / dt - 0.5), 0.0).astype(np.int64)
 
     def before(steps: IndexArray) -> npt.NDArray[np.bool_]:

@@ -121,11 +121,6 @@ class MeasuredRun(ResultCache):
     def measure(self, name: str) -> Measure:
         """Return a metric's description: its text, unit and style of drawing.
 
-        Parameters
-        ----------
-        name : str
-            Its name.
-
         Raises
         ------
         UnknownNameError
@@ -141,11 +136,6 @@ class MeasuredRun(ResultCache):
 
     def metric(self, name: str) -> FloatArray:
         """Return one of `metrics` over time, shape (T,), without computing the others.
-
-        Parameters
-        ----------
-        name : str
-            Its name.
 
         Raises
         ------

@@ -4,8 +4,6 @@ A run is known at its samples; between them only distances are bounded (`Traject
 and go between samples, so predicates about nets speak of the sampled times.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,28 +17,14 @@ BoolArray = npt.NDArray[np.bool_]
 
 
 def ensure_run(trajectory: Any, name: str = "trajectory") -> Trajectory:
-    """Return `trajectory` if it is a run; raise `ArgumentError` otherwise.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        What was given as one.
-    name : str
-        Of the argument.
-    """
+    """Return `trajectory` if it is a run; raise `ArgumentError` otherwise."""
     if not isinstance(trajectory, Trajectory):
         raise ArgumentError(f"{name} = {format_value(trajectory)}: expected a run, as simulate(...) gives it")
     return trajectory
 
 
 def is_flock(trajectory: Trajectory) -> BoolArray:
-    """Return a mask of the samples at which the net G(q) is connected, shape (T,).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of a law with an interaction range.
-    """
+    """Return a mask of the samples at which the net G(q) is connected, shape (T,)."""
     result: BoolArray = ensure_run(trajectory).metrics().connectivity.values == 1.0
     return result
 
@@ -50,8 +34,6 @@ def is_quasi_flock(trajectory: Trajectory, *, share: float = 0.5) -> BoolArray:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        A run of a law with an interaction range.
     share : float
         What counts as giant; the source gives no number.
 
@@ -71,8 +53,6 @@ def is_cohesive(trajectory: Trajectory, radius: float) -> bool:
 
     Parameters
     ----------
-    trajectory : Trajectory
-        A run.
     radius : float
         In the unit of q.
     """
@@ -80,11 +60,5 @@ def is_cohesive(trajectory: Trajectory, radius: float) -> bool:
 
 
 def is_dynamic_flock(trajectory: Trajectory) -> bool:
-    """Whether the net is connected at every sample of the run (cut one with `Trajectory.window`).
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        A run of a law with an interaction range.
-    """
+    """Whether the net is connected at every sample of the run (cut one with `Trajectory.window`)."""
     return bool(is_flock(trajectory).all())

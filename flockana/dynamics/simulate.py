@@ -4,8 +4,6 @@ Beside the state, ∫ dH/dt is integrated as one more variable, so that every ru
 of the energy balance is `Trajectory.energy_residual`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -207,10 +205,8 @@ def _ensure_samples_fit(dt: float, t_span: tuple[float, float], q0: FloatArray, 
 
 
 def _stops(t_span: tuple[float, float], dt: float, keep: FloatArray | None) -> Iterator[float]:
-    """Yield times at which steps of at most dt end.
-
-    The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
-    """
+    """Yield times at which steps of at most dt end."""
+    # The way to a time to keep is split evenly: a last step that is a sliver would lose the order for nothing.
     if keep is None:
         yield from (t_span[0] + k * dt for k in range(count_steps(*t_span, dt)))
         yield t_span[1]

@@ -3,8 +3,6 @@
 scipy's solvers with a past (BDF, LSODA) begin anew where a step is made again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

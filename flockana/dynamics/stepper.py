@@ -1,7 +1,5 @@
 """Interface between the driver of runs and integrators, compiled or not."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws with jumps: the first time within a step at which a pair leaves its smooth piece is located."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator
 
@@ -129,11 +127,9 @@ def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: 
 
 
 def turns(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> list[float]:
-    """Return the times within a step at which the distance of a pair that may switch has an extremum, rising.
-
-    The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
-    pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.
-    """
+    """Return the times within a step at which the distance of a pair that may switch has an extremum, rising."""
+    # The interpolant of every solver is a polynomial, and so are the squares of distances: their turns are roots. Only
+    # pairs are asked whose two agents' ways, each bounded by the coefficients of its series, could reach an edge.
     times = 0.5 * (start + end) + 0.5 * (end - start) * _NODES
     places = np.stack([way(t) for t in times.tolist()])  # (nodes, n, m)
     series = np.tensordot(_TO_SERIES, places, axes=1)

@@ -1,7 +1,5 @@
 """Absolute tolerances of the adaptive solvers: multiples of the law's own scales, never below what rounding allows."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -40,13 +38,7 @@ class Control(NamedTuple):
 
 
 def ensure_atol(name: str, value: Any) -> Atol:
-    """Return an absolute tolerance: a length, a pair (length, speed), or None.
-
-    Examples
-    --------
-    >>> ensure_atol("atol", [1e-9, 1e-8])
-    (1e-09, 1e-08)
-    """
+    """Return an absolute tolerance: a length, a pair (length, speed), or None."""
     if value is None or np.ndim(value) == 0:
         return None if value is None else ensure_positive(name, value)
     if np.shape(value) != (2,):
@@ -55,13 +47,7 @@ def ensure_atol(name: str, value: Any) -> Atol:
 
 
 def options_in_units(options: Mapping[str, Any], length: float, time: float) -> dict[str, Any]:
-    """Return options of `simulate`, or the statistics of a run, in other units.
-
-    Examples
-    --------
-    >>> options_in_units({"rtol": 1e-8, "atol": (1.0, 1.0), "dt": 1.0}, 3.0, 2.0)
-    {'rtol': 1e-08, 'atol': (3.0, 1.5), 'dt': 2.0}
-    """
+    """Return options of `simulate`, or the statistics of a run, in other units."""
     speed = length / time
     factors = {"t_eval": time, "dt": time, "max_step": time, "atol": length}
     scaled = {key: times(value, factors[key]) if key in factors else value for key, value in options.items()}

@@ -257,11 +257,6 @@ class Trajectory(MeasuredRun):
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the run, law and parameters included, as netCDF-4; an existing file is replaced only when whole.
 
-        Parameters
-        ----------
-        path : path-like
-            File to write.
-
         Returns
         -------
         pathlib.Path
@@ -278,11 +273,6 @@ class Trajectory(MeasuredRun):
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
         """Read what `save` wrote.
-
-        Parameters
-        ----------
-        path : path-like
-            File to read.
 
         Raises
         ------

@@ -4,8 +4,6 @@ Nothing is decided by which comes first, so results do not depend on who works. 
 (for want of memory, say) is found by trying those under suspicion one at a time; all others are worked on again.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future
@@ -33,11 +31,9 @@ def map_in_batches(
     batch_size: Callable[[tuple[Result, ...]], int] = lambda results: 1,
     watch: Callable[[tuple[Item, ...]], None] = lambda under_way: None,
 ) -> Iterator[tuple[tuple[Item, Result | None], ...]]:
-    """Call a function on batches of items, and yield each item with its result as batches complete.
-
-    The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
-    items to send together; `watch` is told what is under way. An error of the function ends all.
-    """
+    """Call a function on batches of items, and yield each item with its result as batches complete."""
+    # The result is None for an item that ended its worker process. `batch_size` tells from the last results how many
+    # items to send together; `watch` is told what is under way. An error of the function ends all.
     waiting, suspects = deque(items), deque[Any]()
     pending: Pending = {}
     dead: list[tuple[Item, None]] = []  # kept back until a batch is done: only then the fault was theirs

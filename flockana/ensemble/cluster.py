@@ -3,8 +3,6 @@
 A client that is left open closes itself when it is collected, and waits for ever if Dask holds its own lock just then.
 """
 
-from __future__ import annotations
-
 import gc
 import time
 from collections.abc import Callable, Iterator

@@ -97,13 +97,7 @@ def to_dataset(
 
 
 def metric_name(name: str) -> str:
-    """Return the variable name of a measure, or of the function in ``"module:function"``.
-
-    Examples
-    --------
-    >>> metric_name("strain"), metric_name("my.module:spread")
-    ('strain', 'spread')
-    """
+    """Return the variable name of a measure, or of the function in ``"module:function"``."""
     return name.rpartition(":")[2]
 
 
@@ -185,10 +179,8 @@ def shares(dataset: xarray.Dataset, *, level: float = 0.95) -> xarray.Dataset:
 
 
 def share_cells(table: xarray.Dataset) -> Iterator[tuple[str, str, str, str, str, str, str]]:
-    """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each claim that was checked.
-
-    Shares are in per cent, with their intervals; the last two are numbers of runs.
-    """
+    """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each claim that was checked."""
+    # Shares are in per cent, with their intervals; the last two are numbers of runs.
     axes = [str(name) for name in table.runs.dims if name != "claim"]
     for values in product(*(table[name].values.tolist() for name in axes)):
         point = dict(zip(axes, values, strict=True))

@@ -7,8 +7,6 @@ What only shows numbers (plots, reports, commands) and how runs are distributed 
 docstring keeps a store, and a changed kernel does not.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import json
@@ -41,11 +39,9 @@ def numerics_version() -> str:
 
 
 def cached_digest(sources: Mapping[str, bytes], folder: Path) -> str:
-    """Return `digest_of_sources`, cached in a folder by the files' contents.
-
-    To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
-    named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
-    """
+    """Return `digest_of_sources`, cached in a folder by the files' contents."""
+    # To parse all sources takes most of a second, in every process; to read them, a hundredth of that. What is kept is
+    # named for the files as they are, to the byte, and for what digests them. Where it cannot be kept, it is not.
     exact = hashlib.sha256(repr((sys.version, _libraries(), Path(__file__).read_bytes())).encode())
     for name, source in sorted(sources.items()):
         exact.update(f"\0{name}\0{len(source)}\0".encode() + source)

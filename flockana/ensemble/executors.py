@@ -1,7 +1,5 @@
 """Executors: serial, process pool, Dask, custom."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Check that worker processes can be started without running the user's script again."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import pickle
@@ -15,10 +13,8 @@ GUARD = 'if __name__ == "__main__":'
 
 
 def can_start_processes(request: Any) -> bool:
-    """Return whether processes can make the runs; warn and return False if this process must.
-
-    A started process imports the script that called. Without a guard that would run it again.
-    """
+    """Return whether processes can make the runs; warn and return False if this process must."""
+    # A started process imports the script that called. Without a guard that would run it again.
     if (line := unguarded_line()) is not None:
         _warn(f"line {line} of the script is not under `{GUARD}`, so the runs are made in this process, one by one")
         return False
@@ -44,14 +40,7 @@ def unguarded_line() -> int | None:
 
 
 def is_guarded(source: str, line: int) -> bool:
-    r"""Return whether a line lies under an ``if`` that asks for ``__name__``.
-
-    Examples
-    --------
-    >>> text = 'import os\nif __name__ == "__main__":\n    os.getpid()\n'
-    >>> is_guarded(text, 3), is_guarded(text, 1)
-    (True, False)
-    """
+    r"""Return whether a line lies under an ``if`` that asks for ``__name__``."""
     return any(
         isinstance(node, ast.If)
         and node.lineno <= line <= (node.end_lineno or node.lineno)

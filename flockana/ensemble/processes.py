@@ -1,7 +1,5 @@
 """Worker processes that ignore Ctrl-C, use one thread each, and end with the program."""
 
-from __future__ import annotations
-
 import atexit
 import gc
 import multiprocessing

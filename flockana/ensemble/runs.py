@@ -1,7 +1,5 @@
 """Execution of an ensemble's runs on workers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 
@@ -18,7 +16,10 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
     """Make runs and yield their records; a run that ends its worker is recorded."""
     try:
         for done in map_in_batches(jobs, partial(run_batch, request), workers, batch_size=_batch_size):
-            yield tuple(_lost_run(job) if record is None else record for job, record in done)
+            yield tuple(
+                Record(job, DIED, "the worker process that made this run ended") if record is None else record
+                for job, record in done
+            )
     except FlockanaError:
         raise
     except Exception as error:  # what a run raises is in its record: this comes from who works
@@ -26,10 +27,6 @@ def make_runs(request: Request, jobs: Sequence[Job], workers: WorkerPool) -> Ite
             f"the executor failed: {type(error).__name__}: {error}; runs in a store are kept, so mend it and start "
             "again"
         ) from error
-
-
-def _lost_run(job: Job) -> Record:
-    return Record(job, DIED, "the worker process that made this run ended")
 
 
 def _batch_size(records: tuple[Record, ...]) -> int:

@@ -1,7 +1,5 @@
 """Results of an ensemble that print, and show themselves in a notebook, as a table of shares."""
 
-from __future__ import annotations
-
 import xarray
 
 from flockana.base.tables import html_table, text_table

@@ -85,14 +85,7 @@ class Record:
 
     @classmethod
     def from_json(cls, text: str, key: str = "") -> Record:
-        """Return the record of a JSON text from `to_json`.
-
-        Examples
-        --------
-        >>> record = Record(Job(3, (("n", 7),)), "complete", claims={"os-1:i": ("verified", 0.1, None)})
-        >>> Record.from_json(record.to_json()) == record
-        True
-        """
+        """Return the record of a JSON text from `to_json`."""
         data = json.loads(text)
         if data.pop(SEAL, None) != digest([key, data]):
             raise FileError("its digest is not that of its contents")
@@ -102,13 +95,7 @@ class Record:
 
 
 def reference(function: Callable[..., Any]) -> str:
-    """Return ``"module:name"`` of a function that another process can import.
-
-    Examples
-    --------
-    >>> reference(run_one)
-    'flockana.ensemble.work:run_one'
-    """
+    """Return ``"module:name"`` of a function that another process can import."""
     name = f"{getattr(function, '__module__', None)}:{getattr(function, '__qualname__', None)}"
     try:
         if resolve(name) is function:
@@ -178,7 +165,9 @@ def _judge_run(request: Request, job: Job, item: Scenario, run: Trajectory) -> R
         for verdict in verdicts
         for claim in verdict.claims
     }
-    metrics = {name: float(_measure(name)(run)) for name in request.metrics}
+    metrics = {
+        name: float((resolve(name) if ":" in name else measures()[name].number)(run)) for name in request.metrics
+    }
     statuses: dict[str, str] = {verdict.theorem: verdict.status for verdict in verdicts}
     return Record(job, COMPLETE, "", statuses, claims, metrics, _stats(run))
 
@@ -192,10 +181,6 @@ def _verdicts(request: Request, item: Scenario, run: Trajectory) -> tuple[Verdic
     if SOURCE in request.theorems:
         verdicts += item.reported(run, tolerances=tolerances)
     return tuple(verdicts)
-
-
-def _measure(name: str) -> Callable[[Trajectory], float]:
-    return resolve(name) if ":" in name else measures()[name].number
 
 
 def _number(value: Any) -> float | None:

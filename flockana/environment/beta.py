@@ -1,7 +1,5 @@
 """Sums over the β-agents of several obstacles, and checks of starts among them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Capsule obstacle: all points within a radius of a line segment."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -3,8 +3,6 @@
 No agent acts on a γ-agent, so its motion is found beside the flock's, to far less than a run's own error.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import is_dataclass
 from math import inf, isfinite
@@ -93,12 +91,7 @@ def motion_from(q: FloatArray, p: FloatArray, time: float, acceleration: Force) 
 
 
 def ensure_force(force: Any) -> None:
-    """Raise unless a force can be called.
-
-    Examples
-    --------
-    >>> ensure_force(Spring((0.0,), 1.0))
-    """
+    """Raise unless a force can be called."""
     if not callable(force):
         raise ArgumentError(f"force = {force!r}: expected Spring(...) or a function (q_r, p_r) -> p_r'")
 

@@ -10,8 +10,6 @@ function, with a second one for Jacobians at moving agents (see `flockana.kernel
 as it is.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -68,11 +66,6 @@ class Obstacle(ABC):
 
     def beta_agents(self, q: Any, p: Any) -> BetaAgents:
         """Return each agent's β-agent on this obstacle, near or far.
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities of the agents.
 
         Raises
         ------

@@ -1,7 +1,5 @@
 """Convex polygon obstacles in the plane."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, sqrt

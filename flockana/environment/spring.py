@@ -1,7 +1,5 @@
 """Spring with drag, whose pull may be bounded: a force on a γ-agent with dynamics."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

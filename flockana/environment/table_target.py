@@ -1,7 +1,5 @@
 """γ-agent from a table of times and positions, such as a recorded leader."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,10 +25,6 @@ class TableTarget(Target):
     ----------
     t : array_like, shape (T,)
         Times, rising, two or more.
-    q : array_like, shape (T, m)
-        Positions.
-    p : array_like, shape (T, m), optional
-        Velocities.
 
     Examples
     --------

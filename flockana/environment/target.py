@@ -1,7 +1,5 @@
 """Interface of γ-agents: position, velocity, and the velocity reported to the law."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from typing import NamedTuple
 

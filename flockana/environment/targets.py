@@ -82,8 +82,6 @@ class LinearTarget(Target):
     ----------
     q : array_like, shape (m,)
         Position at t = 0.
-    p : array_like, shape (m,)
-        Constant velocity.
 
     Examples
     --------
@@ -224,12 +222,11 @@ class CircleTarget(Target):
 
     @property
     def harmonic(self) -> Harmonic:  # noqa: D102
-        c, s = (self.radius * self._plane(*way) for way in self._turned())
+        c, s = (
+            self.radius * self._plane(*way)
+            for way in ((cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase)))
+        )
         return _harmonic(self.centre, c=c, s=s, omega=2.0 * pi * self.frequency)
-
-    def _turned(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the starting point on the unit circle, and the direction there."""
-        return (cos(self.phase), sin(self.phase)), (-sin(self.phase), cos(self.phase))
 
 
 @dataclass(frozen=True)
@@ -238,8 +235,6 @@ class RescaledVelocity(Target):
 
     Parameters
     ----------
-    target : Target
-        The path.
     factor : float
         1 gives the consistent target back, 0 a γ-agent that hides its velocity.
 

@@ -4,8 +4,6 @@ Discs and balls are `flockana.environment.obstacles.Sphere`. A `SimplePolygon` n
 β-agents and is no `Obstacle` of Algorithm 3.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

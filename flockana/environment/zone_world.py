@@ -1,7 +1,5 @@
 """Surroundings of zone-based flocking: obstacles, a box, and aliens that pursue agents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar

@@ -3,8 +3,6 @@
 All energies here are those of V, to be multiplied by c1α.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil, floor, inf, isfinite, pi, sin, sqrt
 
@@ -48,11 +46,10 @@ class Barrier:
 
 
 def collision_barrier(alpha: AlphaInteraction, n: int, *, m: int = 2, starts: int = 24, seed: int = 0) -> Barrier:
-    """Search min{V(q) : two agents coincide} and min V by IPOPT from many starts; numeric, not rigorous.
-
-    Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
-    the first is at least c*; and V(q) < the first minimum, with V not rising along the flow, excludes every collision.
-    """
+    """Search min{V(q) : two agents coincide} and min V by IPOPT from many starts; numeric, not rigorous."""
+    # Any pair will do, as agents are alike: the constraint is q_1 = q_2. Since every other pair then counts at least 0,
+    # the first is at least c*; and V(q) < the first minimum, with V not rising along the flow, excludes every
+    # collision.
     from flockana.equilibria.program import Program
 
     n, m = ensure_count("n", n), ensure_dimension(m)
@@ -94,10 +91,8 @@ def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
 
 
 def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
-    """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V.
-
-    They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
-    """
+    """Return the lengths between which ψ_α < ψ_α(r_α), so that a pair lowers V."""
+    # They are (shortest, r); the shortest is 0 where even a coincident pair has no more than ψ_α(r_α).
     if alpha.c_star <= alpha.far_potential:
         return 0.0, alpha.r
     low, high = 0.0, alpha.d  # ψ_α falls from c* to 0; scipy.optimize takes longer to load than this
@@ -109,11 +104,10 @@ def bound_range(alpha: AlphaInteraction) -> tuple[float, float]:
 
 
 def largest_clique(ratio: float, m: int) -> int | None:
-    """Return an upper bound of the number of points whose distances agree within a factor below `ratio`.
-
-    On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of it
-    and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's ball.
-    """
+    """Return an upper bound of the number of points whose distances agree within a factor below `ratio`."""
+    # On a line p points have a ratio of p − 1 at least; four of the plane √2 (one angle is not acute), up to seven of
+    # it and five in space are known too. Beyond, balls of half the shortest distance about the points fit into Jung's
+    # ball.
     if not isfinite(ratio):
         return None
     packed = floor((1.0 + 2.0 * ratio * sqrt(m / (2.0 * (m + 1.0)))) ** m)
@@ -152,12 +146,10 @@ def lattice_reach(alpha: AlphaInteraction, m: int = 2) -> int | None:
 
 
 def collision_bounds(alpha: AlphaInteraction, n: int, m: int = 2) -> tuple[float, float]:
-    """Return a proved lower and an attained upper bound of min{V : two agents coincide}, without a search.
-
-    Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
-    pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
-    upper one doubles the agent with the most links in a compact lattice.
-    """
+    """Return a proved lower and an attained upper bound of min{V : two agents coincide}, without a search."""
+    # Below the first no two agents can meet; at the second a configuration is known in which two do. Of a coincident
+    # pair, which costs c*, one agent can be taken away: n − 1 are left, with at least `energy_floor` between them. The
+    # upper one doubles the agent with the most links in a compact lattice.
     n, m = ensure_count("n", n), ensure_dimension(m)
     if n == 1:
         return inf, inf

@@ -1,7 +1,5 @@
 """Classification of critical points by the Hessian's spectrum off the rigid motions."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -50,11 +48,9 @@ def landscape(potential: Potential, q: FloatArray) -> Landscape:
 
 
 def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
-    """Return eigenvalues of the Hessian on the complement of the potential's rigid motions.
-
-    What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
-    no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
-    """
+    """Return eigenvalues of the Hessian on the complement of the potential's rigid motions."""
+    # What is zero there is a soft mode: a hinge that bends, a component that drifts; or a direction whose stiffness is
+    # no larger than what rounding and the force that is left account for (see `flockana.equilibria.curvature`).
     here = landscape(potential, q)
     values, signs, _ = here.curvatures()
     return Spectrum(values, here.rigid.shape[1], int(np.sum(signs < 0)), int(np.sum(signs == 0)))

@@ -1,7 +1,5 @@
 """Least number of agents of a strict minimum of V with coincident agents."""
 
-from __future__ import annotations
-
 from math import ceil
 
 import numpy as np
@@ -21,11 +19,9 @@ def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> Float
 
 
 def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:
-    """Return n such that no smaller configuration with coincident agents is a local minimum of V.
-
-    Of c agents at one place the motions against each other feel c φ_α(0) I from within, negative, and one block per
-    agent elsewhere. These blocks must outweigh it in every direction, hence in the trace: k > m c |φ_α(0)|/max tr.
-    """
+    """Return n such that no smaller configuration with coincident agents is a local minimum of V."""
+    # Of c agents at one place the motions against each other feel c φ_α(0) I from within, negative, and one block per
+    # agent elsewhere. These blocks must outweigh it in every direction, hence in the trace: k > m c |φ_α(0)|/max tr.
     from scipy.optimize import minimize_scalar
 
     m, repulsion = ensure_dimension(m), -float(alpha.phi_alpha(0.0))

@@ -1,7 +1,5 @@
 """Minima of U_λ reached from a lattice, against its size and the ratio c1γ/c1α."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import sqrt

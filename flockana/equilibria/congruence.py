@@ -22,11 +22,9 @@ def spectrum_of_distances(q: FloatArray) -> FloatArray:
 
 
 def congruent(first: FloatArray, second: FloatArray, *, tol: float) -> bool:
-    """Return whether an isometry and a renumbering map one configuration to the other.
-
-    Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
-    a spectrum.
-    """
+    """Return whether an isometry and a renumbering map one configuration to the other."""
+    # Equal distance spectra are asked first; then the isometry is constructed, since different configurations can share
+    # a spectrum.
     from scipy.spatial import KDTree
     from scipy.spatial.distance import cdist
 
@@ -71,10 +69,8 @@ def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, to
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
-    """Return whether the isometry that maps the frame to its image maps all of x to y.
-
-    The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
-    """
+    """Return whether the isometry that maps the frame to its image maps all of x to y."""
+    # The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
     u, _, vt = np.linalg.svd(x[frame].T @ y[list(image)])
     distance, nearest = tree.query(x @ u @ vt)
     return bool(np.max(distance) <= 10.0 * tol) and _one_to_one(nearest, y, tol)

@@ -13,8 +13,6 @@ go at r the force vanishes as (r − x)², so a solver that has taken it down to
 stiffness of that size, of either side's sign. No number with a unit enters, and none that fits one law only.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -118,11 +116,9 @@ class Landscape:
         return 2.0 * self.force / (float(values[0]) - rounding) if np.all(signs > 0) else float("inf")
 
     def holds(self, energy: float) -> bool:
-        """Return whether a flock with this kinetic energy stays near the minimum, if its energy never rises.
-
-        Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4 from
-        the minimum, which is lower than here by no more than ρ²/λ.
-        """
+        """Return whether a flock with this kinetic energy stays near the minimum, if its energy never rises."""
+        # Within a distance R up to which the stiffness keeps half of its least value λ, the potential rises by λR²/4
+        # from the minimum, which is lower than here by no more than ρ²/λ.
         if not np.isfinite(self.distance):
             return False
         if not self.values.size:
@@ -143,10 +139,8 @@ class Landscape:
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """Return the configuration scaled up, scaled down, and shifted unless translations do not matter.
-
-        Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
-        """
+        """Return the configuration scaled up, scaled down, and shifted unless translations do not matter."""
+        # Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
         centre = self.q.mean(axis=0)
         places = [centre + (1.0 + sign * factor) * (self.q - centre) for sign in (1.0, -1.0)]
@@ -157,10 +151,8 @@ class Landscape:
 
 
 def least_curvature(landscape: Landscape) -> tuple[float, float]:
-    """Return the smallest curvature relative to the largest, and its error from rounding and residual force.
-
-    They are (NaN, ∞) where there is nothing but rigid motions, and (0, 0) where nothing is stiff at all.
-    """
+    """Return the smallest curvature relative to the largest, and its error from rounding and residual force."""
+    # They are (NaN, ∞) where there is nothing but rigid motions, and (0, 0) where nothing is stiff at all.
     values = landscape.values
     if not values.size:
         return float("nan"), float("inf")
@@ -171,10 +163,8 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
 
 
 def descent_direction(landscape: Landscape) -> FloatArray:
-    """Return the unit direction (n, m) of steepest second-order descent.
-
-    The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
-    """
+    """Return the unit direction (n, m) of steepest second-order descent."""
+    # The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
     near = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
     basis = landscape.vectors[:, near]
     fixed = np.random.default_rng(0).standard_normal(landscape.q.size)

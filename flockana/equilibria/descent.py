@@ -6,8 +6,6 @@ downhill at once stays in a poor one. So a flock whose neighbours parted on the 
 neighbours is left alone: then the minimum is the one that belongs to the start.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any, NamedTuple
 
@@ -42,15 +40,7 @@ class Descent(NamedTuple):
 
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
-    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> found = descend(Potential(Algorithm1()), np.array([[0.0], [6.5]]), 100)
-    >>> bool(abs(found.q[1, 0] - found.q[0, 0] - 7.0) < 1e-9), found.message
-    (True, 'Converged')
-    """
+    """Return a minimum reached downhill from q, or by annealing where pairs collapsed on the way."""
     steps, message = 100 * max_iter, "Converged"
     best = relax(potential, q, steps, tol=_ROUGH)
     for heat in _HEATS if pairs_collapsed(potential, q, best) else ():
@@ -112,10 +102,8 @@ def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
 
 
 def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray, bool]:
-    """Minimise by Newton's method, with moduli of eigenvalues where the Hessian is not positive.
-
-    A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
-    """
+    """Minimise by Newton's method, with moduli of eigenvalues where the Hessian is not positive."""
+    # A step is no longer than the trust in the quadratic model, which follows from how well it foretold the last one.
     length, scale = potential.pair.length, potential.force_scale
     trust, force = 0.1 * length, potential.force(q)
     for _ in range(steps):
@@ -137,10 +125,8 @@ def newton(potential: Potential, q: FloatArray, steps: int) -> tuple[FloatArray,
 
 
 def _better(force: FloatArray, after: FloatArray, step: FloatArray, hessian: Any, near: float) -> bool:
-    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end.
-
-    The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
-    """
+    """Return whether a step achieved enough of its predicted decrease of energy, or of force near the end."""
+    # The fall of energy is the work of the force by the trapezoidal rule: no large energies to subtract.
     if _largest(force) <= near:
         return _largest(after) < _largest(force)
     promised = float(np.vdot(force, step)) - 0.5 * float(step.ravel() @ (hessian @ step.ravel()))

@@ -1,7 +1,5 @@
 """Gradient flow q' = −∇U of a law's structural potential, to its limit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from threading import RLock
 from typing import Any

@@ -4,8 +4,6 @@ Lanczos' method finds eigenvalues and may miss one; the signs of an elimination'
 are held against the count, and more are asked for until what is not among them is surely positive.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import Any
 
@@ -30,8 +28,7 @@ class LargeLandscape(Landscape):
         return self._extremes[0]
 
     @cached_property
-    def vectors(self) -> FloatArray:
-        """Eigenvectors of `values`, as columns."""
+    def vectors(self) -> FloatArray:  # noqa: D102
         return self._extremes[1]
 
     @cached_property

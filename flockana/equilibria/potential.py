@@ -1,7 +1,5 @@
 """Potential of a law that is a sum of terms: value, force, stiffness, symmetries."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -125,10 +123,8 @@ class Potential:
         return self.law.stiffness(q, self.t)
 
     def symmetries(self, q: FloatArray) -> FloatArray:
-        """Return an orthonormal basis (n m, k) of the rigid motions that keep the potential.
-
-        All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
-        """
+        """Return an orthonormal basis (n m, k) of the rigid motions that keep the potential."""
+        # All of them where shape and centre move apart; else the rotations about the γ-agent that move no obstacle.
         if not self.pinned:
             return rigid_motions(q)
         if self.target is None or any(term.invariance == "none" for term in self.law.terms):
@@ -149,10 +145,8 @@ def inside_obstacle(law: Law, q: FloatArray) -> bool:
 
 
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
-    """Return the skew matrices that leave every obstacle in place.
-
-    A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
-    """
+    """Return the skew matrices that leave every obstacle in place."""
+    # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
     m = centre.size
     generators = []
     for a in range(m):

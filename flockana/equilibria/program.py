@@ -1,8 +1,7 @@
-"""Nonlinear program for IPOPT: CasADi expressions over a list of pairs with exact derivatives.
+"""Nonlinear program for IPOPT: the potential of a law over a list of pairs, with its gradient and Hessian.
 
-The value of ψ_α on its taper is no elementary function, so IPOPT gets the value from the kernels (a CasADi callback,
-exact to 1e-13 c*) and gradient and Hessian from the expressions generated from sympy. Nothing differentiates the
-callback, and the two sources are held against each other at every step of the line search.
+All three come from the law's kernels, by CasADi callbacks that nothing differentiates: ψ_α on its taper is no
+elementary function.
 
 CasADi loses Ctrl-C, or takes it for a failed evaluation: so it is held wherever CasADi is at work.
 """
@@ -18,7 +17,6 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.base.interrupts import defer_sigint
 from flockana.equilibria.potential import Potential, inside_obstacle
-from flockana.equilibria.terms import has_form, own_derivatives, pair_term
 from flockana.measures.nets import LinkArray
 
 # the box is there to keep steps short, and is seldom active at the end: a barrier of almost nothing
@@ -48,12 +46,12 @@ class _Value(ca.Callback):
 
 
 class _Derivatives(ca.Callback):
-    """Gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
+    """Gradient and upper triangle of the Hessian in the program's units, from the kernels."""
 
-    def __init__(self, program: Program, rows: Any, columns: Any) -> None:
+    def __init__(self, program: Program) -> None:
         ca.Callback.__init__(self)
-        self._program, self._at = program, (rows, columns)
-        self._pattern = ca.Sparsity.triplet(program.size, program.size, rows.tolist(), columns.tolist())
+        self._program, self._at = program, _upper_triangle(program.shape, program.pairs)
+        self._pattern = ca.Sparsity.triplet(program.size, program.size, *(each.tolist() for each in self._at))
         self.construct("derivatives", {})
 
     def get_n_in(self) -> int:
@@ -113,12 +111,10 @@ class Program:
         self.d = potential.pair.length
         self.unit = potential.force_scale * self.d
         x, c = ca.MX.sym("x", self.size), ca.MX.sym("c", self.size * gauge)
-        slope, hessian = self._derivatives(x)
-        self._callback, self._watch = _Value(self), _Watch(self.size, gauge)  # kept alive: CasADi holds no reference
-        value, multiplier, ignored = self._callback(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
+        self._value, self.derivatives = _Value(self), _Derivatives(self)  # kept alive: CasADi holds no reference
+        self._watch, (slope, hessian) = _Watch(self.size, gauge), self.derivatives(x)
+        value, multiplier, ignored = self._value(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
-        derivatives = ca.Function("derivatives", [x], [slope, hessian], ["x"], ["gradient", "hessian"])
-        self.derivatives = defer_sigint()(derivatives)
         self._program: Any = {"x": x, "p": c, "f": value, "g": held}
         self._exact = {
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
@@ -167,70 +163,11 @@ class Program:
             self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
         return self._solvers[tol, max_iter]
 
-    def _derivatives(self, x: Any) -> tuple[Any, Any]:
-        """Return gradient and upper triangle of the Hessian from the law's kernels, for laws without formulas."""
-        (n, m), (i, j) = self.shape, self.pairs.T
-        rows, columns, scatter = _scatter(n, m, i, j)
-        if not has_form(self.potential.pair, self.potential.others):
-            self._kernels = _Derivatives(self, rows, columns)  # kept alive, as above
-            return self._kernels(x)  # type: ignore[no-any-return]
-        gain = self.potential.gain
-        q = self.d * ca.reshape(x, m, n)
-        slope, blocks = ca.MX.zeros(m, n), []
-        if i.size:
-            ends = _matrix(
-                np.concatenate([i, j]), np.tile(np.arange(i.size), 2), np.repeat([-1.0, 1.0], i.size), (n, i.size)
-            )
-            pull, stiff = pair_term(self.potential.pair, m).map(i.size)(q @ ends)
-            slope = gain * (pull @ ends.T)
-            blocks.append(gain * ca.vec(stiff))
-        own_slope, own_blocks = self._own(q)
-        slope = slope + own_slope
-        blocks.append(ca.vec(own_blocks))
-        pattern = ca.Sparsity.triplet(n * m, n * m, rows.tolist(), columns.tolist())
-        hessian = ca.MX(pattern, scatter @ ca.vertcat(*blocks))
-        return ca.vec(slope) * (self.d / self.unit), hessian * (self.d**2 / self.unit)
 
-    def _own(self, q: Any) -> tuple[Any, Any]:
-        """Return gradient (m, n) and Hessian blocks (m, m n) of the terms of single agents."""
-        n, m = self.shape
-        slope, blocks = ca.MX.zeros(m, n), ca.MX.zeros(m, m * n)
-        for term in self.potential.others:
-            for own_slope, own_blocks in own_derivatives(term, self.potential.t, q):
-                slope, blocks = slope + own_slope, blocks + own_blocks
-        return slope, blocks
-
-
-def _matrix(rows: Any, columns: Any, values: Any, shape: tuple[int, int]) -> Any:
-    from scipy.sparse import coo_matrix
-
-    return ca.DM(coo_matrix((values, (rows, columns)), shape=shape).tocsc())
-
-
-def _scatter(n: int, m: int, i: Any, j: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Any]:
-    """Return rows and columns of the upper triangle, and the matrix from block entries to them.
-
-    A pair's block enters twice on the diagonal and, negated, between its agents; an agent's own block once.
-    """
-    k, own = np.arange(i.size), np.arange(n)
-    placed = [
-        (i, i, k, 1.0),
-        (j, j, k, 1.0),
-        (np.minimum(i, j), np.maximum(i, j), k, -1.0),
-        (own, own, i.size + own, 1.0),
-    ]
-    rows, columns, sources, signs = [], [], [], []
-    for a, b, block, sign in placed:
-        for e in range(m):
-            for c in range(m):
-                row, column = a.astype(np.int64) * m + e, b.astype(np.int64) * m + c
-                kept = row <= column
-                rows.append(row[kept])
-                columns.append(column[kept])
-                sources.append((block * m * m + c * m + e)[kept])
-                signs.append(np.full(int(kept.sum()), sign))
-    row, column = np.concatenate(rows), np.concatenate(columns)
-    entries, slot = np.unique(column * (n * m) + row, return_inverse=True)  # column by column, as CasADi stores them
-    shape = (entries.size, m * m * (i.size + n))
-    scatter = _matrix(slot, np.concatenate(sources), np.concatenate(signs), shape)
-    return entries % (n * m), entries // (n * m), scatter
+def _upper_triangle(shape: tuple[int, int], pairs: LinkArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return rows and columns of the Hessian's upper triangle, column by column, as CasADi stores them."""
+    (n, m), (i, j), agents = shape, pairs.T.astype(np.int64), np.arange(shape[0])
+    a, b = np.append(np.minimum(i, j), agents)[:, None, None], np.append(np.maximum(i, j), agents)[:, None, None]
+    row, column = np.broadcast_arrays(m * a + np.arange(m)[:, None], m * b + np.arange(m))
+    entries = np.unique((column * (n * m) + row)[row <= column])
+    return entries % (n * m), entries // (n * m)

@@ -1,7 +1,5 @@
 """Resting states of laws without a potential, by Newton's method on the forces."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -18,10 +16,8 @@ _SHORTEN = 0.5  # factor on a step, as often as the force grows by it
 
 
 def resting_state(law: Any, q0: Any, *, t: float = 0.0) -> FloatArray:
-    """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares).
-
-    Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
-    """
+    """Return positions near q0 where the force on every agent at rest vanishes (Newton, least squares)."""
+    # Where a law has a potential `find_equilibrium` says more: which kind of equilibrium it is.
     if not isinstance(ensure_law(law), Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law; a map has no forces at rest")
     q, t = ensure_points("q0", q0), ensure_finite_scalar("t", t)

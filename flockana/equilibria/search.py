@@ -1,7 +1,5 @@
 """Distinct equilibria from many starts, random discs and lattice patches, minimised in parallel, ranked by energy."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -38,15 +36,9 @@ def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, densit
 
 
 def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise: float = 0.05) -> list[FloatArray]:
-    """Return starts grown agent by agent at random free sites of a lattice, then perturbed.
-
-    Of three random free places the one with the most neighbours is taken: compact patches, but not the same each time.
-
-    Examples
-    --------
-    >>> [start.shape for start in lattice_starts(5, 2, 7.0, 2)]
-    [(5, 2), (5, 2)]
-    """
+    """Return starts grown agent by agent at random free sites of a lattice, then perturbed."""
+    # Of three random free places the one with the most neighbours is taken: compact patches, but not the same each
+    # time.
     rng = np.random.default_rng([n, m, seed, 1])
     basis = {
         1: np.eye(1),
@@ -132,10 +124,8 @@ def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executo
 
 
 def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:
-    """Group equilibria up to translation, rotation, reflection and numbering, lowest energy first.
-
-    Degenerate ones come in families (a hinge bends, a component drifts): those of equal energy and index are one.
-    """
+    """Group equilibria up to translation, rotation, reflection and numbering, lowest energy first."""
+    # Degenerate ones come in families (a hinge bends, a component drifts): those of equal energy and index are one.
     groups: list[list[Equilibrium]] = []
     for equilibrium in _by_energy(equilibria):
         potential = Potential(equilibrium.law)

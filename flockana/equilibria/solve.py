@@ -1,7 +1,5 @@
 """Equilibria of laws with a potential, by IPOPT, damped motion with Newton steps, or a root-finder."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import sqrt
@@ -154,14 +152,14 @@ def find_equilibrium(
     Parameters
     ----------
     law : Algorithm1, Algorithm2, Algorithm3 or DeadZoneFlocking
-        The law, the last with a ramp; obstacles of Algorithm 3 must be spheres and walls.
+        The law, the last with a ramp.
     q0 : array_like, shape (n, m)
         Start, with no agent inside an obstacle.
     method : {"minimise", "ipopt", "descent", "root"}
-        IPOPT on the potential, with CasADi's derivatives; the descent of `flockana.equilibria.descent` on the law's own
-        forces and Hessian, for flocks up to n m = 60 000; or Levenberg-Marquardt on the gradient, which finds saddles
-        too (n m up to hundreds). "minimise" is IPOPT up to n m = 400, where it leaves saddles by their steepest
-        direction, and beyond that the descent, a hundred times as fast at n = 1000 and ending in lower minima.
+        IPOPT on the potential, with its gradient and Hessian; the descent of `flockana.equilibria.descent`, for flocks
+        up to n m = 60 000; or Levenberg-Marquardt on the gradient, which finds saddles too (n m up to hundreds).
+        "minimise" is IPOPT up to n m = 400, where it leaves saddles by their steepest direction, and beyond that the
+        descent, a hundred times as fast at n = 1000 and ending in lower minima.
     t : float
         When, for a γ-agent that moves.
     margin : float
@@ -260,11 +258,9 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Minimise in a box about the start, then about each solution, until the box is not active.
-
-    The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
-    directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
-    """
+    """Minimise in a box about the start, then about each solution, until the box is not active."""
+    # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
+    # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.program import Program
 
     (n, m), escapes = q.shape, 0
@@ -292,25 +288,21 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
 
 def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
     """Find a zero of the gradient by Levenberg-Marquardt, with the gauge as extra equations."""
-    import casadi as ca
     from scipy.optimize import least_squares
 
-    from flockana.equilibria.program import Program
-
-    basis = potential.symmetries(q)
-    program = Program(potential, (len(q), q.shape[1]), all_pairs(len(q)), basis.shape[1])
-    start = q.ravel() / program.d
+    basis, scale, d = potential.symmetries(q), potential.force_scale, potential.pair.length
+    start = q.ravel() / d
 
     def equations(x: FloatArray) -> FloatArray:
-        return np.concatenate([np.array(program.derivatives(x)[0]).ravel(), basis.T @ (x - start)])
+        return np.concatenate([-potential.force(d * x.reshape(q.shape)).ravel() / scale, basis.T @ (x - start)])
 
     def jacobian(x: FloatArray) -> FloatArray:
-        return np.vstack([np.array(ca.triu2symm(program.derivatives(x)[1])), basis.T])
+        return np.vstack([potential.stiffness(d * x.reshape(q.shape)).toarray() * (d / scale), basis.T])
 
     result = least_squares(equations, start, jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=max_iter)
     converged = result.status > 0 and float(np.abs(result.fun).max()) < 1e-5
     reason = result.message if converged else f"{result.message} The gradient has a least square that is not zero."
-    return program.d * result.x.reshape(q.shape), converged, reason
+    return d * result.x.reshape(q.shape), converged, reason
 
 
 def _polish(potential: Potential, q: FloatArray) -> FloatArray:

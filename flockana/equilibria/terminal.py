@@ -1,7 +1,5 @@
 """Final state of a run: distance from equilibrium, links, second-order character."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Search for a run that refutes a theorem's claim, in the neighbourhood of a scenario."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Confirmation of counterexamples by a second run with a thousandth of the tolerance."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
@@ -44,10 +42,8 @@ class Case(Protocol):
 
 
 def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
-    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too.
-
-    A map has no tolerance: its verdict stays as it is.
-    """
+    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too."""
+    # A map has no tolerance: its verdict stays as it is.
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict
     run = simulate(case.law, case.q0, case.p0, case.t_span, **tightened_options(case.options))
@@ -65,14 +61,7 @@ def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Ca
 
 
 def tightened_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method.
-
-    Examples
-    --------
-    >>> options = tightened_options({"method": "RK4", "dt": 0.1, "t_eval": [1.0]})
-    >>> sorted(options), round(options["rtol"], 14)
-    (['rtol', 't_eval'], 1e-11)
-    """
+    """Return options of `simulate` with a thousandth of the tolerance, by an adaptive method."""
     finer = {key: value for key, value in options.items() if key not in ("dt", "rtol", "atol")}
     if finer.get("method") == "RK4":
         del finer["method"]

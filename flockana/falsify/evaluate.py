@@ -1,7 +1,5 @@
 """Evaluation of a point of the search space: its run, verdict and grade."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 

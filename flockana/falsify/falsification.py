@@ -1,7 +1,5 @@
 """Result of a search for a counterexample: the worst run, and every claim's margin over the search."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass

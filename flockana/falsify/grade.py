@@ -5,8 +5,6 @@ that leaves the hypotheses is led back by how far they are missed, and comes to 
 whose numbers contradict a proof is no counterexample, and its margin leads no search.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import isnan
 
@@ -19,10 +17,8 @@ _LEAD = 1e-3  # of a surrogate: less than a step of any count, so it orders only
 
 
 def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0, lead: float | None = None) -> float:
-    """Return a number for a claim on a run: the lower, the nearer the run comes to refuting the claim.
-
-    A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
-    """
+    """Return a number for a claim on a run: the lower, the nearer the run comes to refuting the claim."""
+    # A claim about a limit that has a lead is graded by it: how well a limit is known tells nothing of what it is.
     margin = float("nan") if claim.margin is None else float(claim.margin)
     aid = 0.0 if lead is None else _LEAD * lead
     if claim.status == "vacuous":
@@ -37,12 +33,6 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1.
-
-    Examples
-    --------
-    >>> shortfall([Hypothesis("a", "unmet", -3.0), Hypothesis("b", "unmet"), Hypothesis("c", "met", 1.0)])
-    1.75
-    """
+    """Return how far hypotheses are from being met, summed over the unmet ones, each at most 1."""
     unmet = [h.margin for h in hypotheses if h.status == "unmet"]
     return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet))

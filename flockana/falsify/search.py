@@ -1,7 +1,5 @@
 """CMA-ES in the unit cube, restarted with twice the population after convergence (IPOP)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

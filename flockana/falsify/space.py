@@ -1,7 +1,5 @@
 """Bounded search space of initial states and law parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import log

@@ -1,7 +1,5 @@
 """The α-pair law among agents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

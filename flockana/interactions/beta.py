@@ -1,7 +1,5 @@
 """Repulsion between an agent and the β-agent of an obstacle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

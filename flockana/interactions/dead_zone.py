@@ -1,7 +1,5 @@
 """The dead-zone pair law: repulsion near, attraction far, no force between."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -96,6 +94,7 @@ class DeadZoneInteraction(PairInteraction):
         "eta": (-2, 0),
         "k1": (0, -2),
     }
+    coincidence = False  # the repulsion is infinite at 0
 
     def __post_init__(self) -> None:
         normalise(self, ensure_positive, "r", "r_b", "delta", "r_d", "k_r")
@@ -149,11 +148,6 @@ class DeadZoneInteraction(PairInteraction):
     def surfaces(self) -> tuple[float, ...]:
         """Distances at which the force changes its form: ends of the dead zone within range, and the range."""
         return tuple(sorted({self.d1, min(self.d2, self.r), self.r}))
-
-    @property
-    def coincidence(self) -> bool:
-        """False: two agents cannot coincide, as the repulsion is infinite at 0."""
-        return False
 
     @property
     def strength(self) -> float:

@@ -1,7 +1,5 @@
 """`pair_law`: pair law from sympy expressions, text or numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

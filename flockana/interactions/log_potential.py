@@ -1,7 +1,5 @@
 """Potential of Tanner, Jadbabaie and Pappas: infinite at contact, least at d, defined at every distance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import exp, expm1, inf, sqrt

@@ -1,7 +1,5 @@
 """Weights of velocity consensus as functions of the distance."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass

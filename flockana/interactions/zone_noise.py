@@ -1,7 +1,5 @@
 """Randomness in zone-based flocking: noisy weights and gusts, reproducible by a seed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """Radii of the zones of repulsion, conflict, attraction and surveillance, and weights of the behaviours."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar

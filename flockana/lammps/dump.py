@@ -1,7 +1,5 @@
 """A run that LAMMPS dumped, as a `Trajectory` that says how far it is from a law."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any

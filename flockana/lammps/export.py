@@ -1,7 +1,5 @@
 """Write a folder that LAMMPS runs: data file, tabulated pair style, input script, and what is missing in words."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable

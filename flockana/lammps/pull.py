@@ -1,7 +1,5 @@
 """Pull to a γ-agent in LAMMPS: variables of each agent added to its force, and viscous drag."""
 
-from __future__ import annotations
-
 from functools import singledispatch
 
 from flockana.environment.target import Target
@@ -16,13 +14,7 @@ Formulas = tuple[tuple[str, str], ...]  # (q_r, p_r) along each axis
 
 @singledispatch
 def path(target: Target) -> Formulas | None:
-    """Return (q_r, p_r) along each axis as formulas in time; None without a known formula.
-
-    Examples
-    --------
-    >>> path(LinearTarget((200.0, 30.0), (5.0, 0.0)))
-    (('200.0+5.0*v_t', '5.0'), ('30.0+0.0*v_t', '0.0'))
-    """
+    """Return (q_r, p_r) along each axis as formulas in time; None without a known formula."""
     return None
 
 
@@ -76,19 +68,7 @@ def _line(q: float, p: float) -> str:
 
 
 def pull_commands(term: Navigation) -> list[str] | None:
-    """Return commands that add the term to the forces, or None without a formula.
-
-    Examples
-    --------
-    >>> from flockana.interactions import Gains
-    >>> for line in pull_commands(Navigation(StaticTarget((5.0,)), Gains(c1_gamma=2.0, c2_gamma=3.0))):
-    ...     print(line)
-    variable target_x equal 5.0
-    variable target_vx equal 0.0
-    variable pull_x atom "-2.0*(x-v_target_x)+3.0*v_target_vx"
-    fix drag all viscous 3.0
-    fix pull all addforce v_pull_x 0.0 0.0
-    """
+    """Return commands that add the term to the forces, or None without a formula."""
     formulas, gains = path(term.target), term.gains
     if formulas is None or gains.per_agent:
         return None

@@ -1,7 +1,5 @@
 """LAMMPS input script, data file and notes on untranslated parts of a law."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -90,14 +88,7 @@ def _translate_consensus(term: PairTerm, m: int, result: Translation, *, nearest
 
 
 def nearest_weight(term: PairTerm, m: int) -> tuple[float, float]:
-    """Return (s, largest error) of the weight (1 − r/range)^2s nearest to the adjacency.
-
-    Examples
-    --------
-    >>> from flockana.interactions.dead_zone import DeadZoneInteraction
-    >>> nearest_weight(PairTerm(DeadZoneInteraction(), 1.0, 1.0), 2)
-    (0.0, 0.0)
-    """
+    """Return (s, largest error) of the weight (1 − r/range)^2s nearest to the adjacency."""
     from scipy.optimize import minimize_scalar
 
     x = (np.arange(_SHELLS) + 0.5) / _SHELLS

@@ -4,8 +4,6 @@
 With as many points in the file as in the style, and the parameter RSQ, it takes the file's values as they are.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,15 +39,7 @@ class PairTable:
 
 
 def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
-    """Tabulate a pair term from a distance to its range.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction
-    >>> table = pair_table(PairTerm(AlphaInteraction(), 30.0, 0.0), 1000, 1e-5)
-    >>> bool(table.force[0] > 0.0), float(abs(table.force[-1])) < 1e-12, table.energy_error < 1e-2
-    (True, True, True)
-    """
+    """Tabulate a pair term from a distance to its range."""
     outer = term.pair.range
     s2 = np.linspace(inner**2, outer**2, points)
     r = np.sqrt(s2)
@@ -75,14 +65,7 @@ def _jumps(term: PairTerm, x: float, largest: float) -> bool:
 
 
 def inner_cutoff(term: PairTerm) -> float:
-    """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction
-    >>> inner_cutoff(PairTerm(AlphaInteraction(r=8.0), 1.0, 1.0))
-    8e-06
-    """
+    """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular."""
     bounded = bool(np.isfinite(term.pair.energy_at(np.zeros(1))).all())
     return _INNER * term.pair.range if bounded else _INNER_SINGULAR * term.pair.length
 

@@ -1,7 +1,5 @@
 """Builders of α-lattices on the line, in the plane and in space, with their largest ratios r/d."""
 
-from __future__ import annotations
-
 from math import isqrt, prod, sqrt
 from typing import Any
 

@@ -14,8 +14,6 @@ links are. What rounding of the positions themselves did before is not undone: i
 equation, two links that ought to cross may miss each other by a rounding. `separation` tells by how much links miss.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Coordination numbers, and defects of a triangular lattice: interior agents without six neighbours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

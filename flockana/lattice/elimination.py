@@ -7,8 +7,6 @@ front by front (Haynsworth 1968), their signs count those of the whole matrix, a
 elimination is that of a positive definite matrix near it, which Newton's method needs to go downhill.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Classification of configurations by link lengths: α-lattice, quasi-α-lattice, or neither."""
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Planar graphs: bounds on their links, tests, and a Kuratowski subgraph as witness."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import isqrt
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Algorithm 3 of Olfati-Saber (2006): flocking with a γ-agent among obstacles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -5,8 +5,6 @@ recommended one and the default, the last is the letter of the paper (`ZoneFlock
 edges there are two letters: (8) names the closest point, (21) sums over all edges, and each goes with its form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache
@@ -245,10 +243,6 @@ class ZoneFlocking(DiscreteLaw):
 
         Parameters
         ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; left as they are.
         memory : mapping of str to ndarray
             ``heading``, ``estimate`` and, if there are aliens, ``alien``; as `start` gives it.
         """

@@ -1,7 +1,5 @@
 """Laws composed of chosen terms: gradient, consensus, γ-feedback, β-agents, drag and speed control."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property

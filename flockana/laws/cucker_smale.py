@@ -1,7 +1,5 @@
 """The law of Cucker and Smale: velocity consensus of all agents, weighted by distance."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -42,6 +40,7 @@ class CuckerSmale(SumOfTerms):
     mean: bool = False
 
     references: ClassVar[tuple[str, ...]] = ("cucker-smale-2007", "ha-liu-2009")
+    moving = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.weight, RationalWeight):
@@ -52,11 +51,6 @@ class CuckerSmale(SumOfTerms):
     def scales(self) -> Scales:
         """ℓ, and the time 1/K in which two agents that are near match."""
         return Scales(self.weight.length, 1.0 / self.weight.strength)
-
-    @property
-    def moving(self) -> bool:
-        """True: the law's energy is that in the frame of the centre of mass."""
-        return True
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:

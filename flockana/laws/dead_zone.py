@@ -1,7 +1,5 @@
 """The dead-zone law of Li, Yuan and Liu: a flock held by forces that act only off a band of distances."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -61,6 +59,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
 
     references = ("li-dead-zone",)
+    moving = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.interaction, DeadZoneInteraction):
@@ -77,14 +76,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         ensure_apart(q)
         super().check_start(q, p)
 
-    def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
-        """Return the control input u(q, p).
-
-        Raises
-        ------
-        ArgumentError
-            On wrong shapes, values that are not finite, or two agents at one place.
-        """
+    def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:  # noqa: D102
         t, q, p = self._checked(t, q, p)
         ensure_apart(q)
         return self.flow(t, q, p)[0]
@@ -93,11 +85,6 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def terms(self) -> tuple[Term, ...]:
         """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling by k₂ pᵀL̂p (see L5)."""
         return (PairTerm(self.interaction, 1.0, self.k2),)
-
-    @property
-    def moving(self) -> bool:
-        """True: the law's energy is that in the frame of the centre of mass."""
-        return True
 
     def literal_energy(self, q: Any, p: Any) -> float:
         """Return the energy of neighbours only, which jumps by ψ(r) when a pair comes into range (erratum L5)."""
@@ -148,53 +135,21 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         pieces: Pieces = zones(q, self.interaction.par)
         return pieces
 
-    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow` with every pair held in its zone.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Zones.
-        """
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros_like(q)
         return u, -self.k2 * zone_forces(q, p, pieces, self.interaction.par, self.k2, u)
 
-    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """Return how far each pair is inside its zone.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Zones.
-        """
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:  # noqa: D102
         return Margins(*zone_margins(q, pieces, self.interaction.par))
 
-    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """Return the zones after every pair with a negative margin has moved to the next one.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Zones before.
-        margins : Margins
-            At the switch.
-        """
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
         step = np.where(margins.inside < 0.0, np.where(margins.upper, 1, -1), 0)
         after = pieces + step
         if self.interaction.d2 >= self.interaction.r:  # there is no zone of attraction
             after = np.where(after == ATTRACTION, np.where(step > 0, OUT, DEAD), after)
         return after.astype(np.int8)
 
-    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Return the pairs that slide along the edge just crossed, driven back from both sides.
-
-        Parameters
-        ----------
-        before, after : ndarray of int8
-            Zones on the two sides.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities at the switch.
-        """
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
         rows, columns = np.triu_indices(len(q), 1)
         for k in np.flatnonzero(before != after):
             i, j = int(rows[k]), int(columns[k])

@@ -1,7 +1,5 @@
 """A law whose agents act on the past."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
@@ -28,8 +26,6 @@ class Delayed(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that acts late.
     delay : float or array_like, shape (n, n)
         τ >= 0; or, of ``"neighbours"``, how late agent i hears agent j.
     late : {"all", "pairs", "neighbours"}

@@ -17,11 +17,9 @@ if TYPE_CHECKING:
 
 
 def law_derivation(law: Any, m: int = 2) -> EnergyIdentity:
-    """Return the derivation of a law's potential, force, energy and dH/dt, with LaTeX output.
-
-    The sums are over n agents, whatever n is: the identity is derived from one generic pair and one generic agent, in
-    the σ-norm z_ij, of which every function of a pair's distance is one.
-    """
+    """Return the derivation of a law's potential, force, energy and dH/dt, with LaTeX output."""
+    # The sums are over n agents, whatever n is: the identity is derived from one generic pair and one generic agent, in
+    # the σ-norm z_ij, of which every function of a pair's distance is one.
     from flockana.symbolic.energy import algorithm1_identity, structural_identity
 
     kinds = [type(term) for term in law.terms]

@@ -5,8 +5,6 @@ them up. Where i sees j and j does not see i, action is not reaction: momentum i
 none of the theorems applies. What still holds is in the theorem `directed-nets`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -90,10 +90,6 @@ class DiscreteLaw(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time at the start of the step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; not to be changed in place.
         memory : mapping of str to ndarray
             What else the law remembers.
         """
@@ -108,10 +104,6 @@ class DiscreteLaw(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time at the start of the first step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; not to be changed in place.
         memory : mapping of str to ndarray
             What else the law remembers.
         steps : int
@@ -135,10 +127,6 @@ class DiscreteLaw(LawOfMotion):
 
         Parameters
         ----------
-        t : float
-            Time at the start of the first step.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities; not to be changed in place.
         memory : mapping of str to ndarray
             What else the law remembers; not to be changed in place either, as the steps may be made again.
         wanted : ndarray of int, shape (S,)

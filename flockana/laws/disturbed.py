@@ -38,8 +38,6 @@ class Disturbed(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that is disturbed.
     force : array_like, shape (m,) or (n, m), or callable
         Acceleration that is constant, or a function t -> w(t) of that shape: the same for all agents, or one for each.
     swing : array_like, shape (m,) or (n, m)
@@ -52,8 +50,6 @@ class Disturbed(Wrapper):
         In radians.
     intensity : float
         s >= 0, in length over time to the power 3/2.
-    seed : int
-        Of the noise.
 
     Raises
     ------
@@ -151,13 +147,7 @@ class Disturbed(Wrapper):
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def push(self, t: float) -> FloatArray:
-        """Return w(t) without its noise, shape (m,) or (n, m); 0 without a force.
-
-        Parameters
-        ----------
-        t : float
-            Time.
-        """
+        """Return w(t) without its noise, shape (m,) or (n, m); 0 without a force."""
         total: FloatArray = np.zeros(1)
         if self.force is not None:
             total = total + np.asarray(self._called(t))

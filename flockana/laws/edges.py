@@ -1,7 +1,5 @@
 """Directed edges of the minimal model, with their weights and lengths."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

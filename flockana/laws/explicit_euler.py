@@ -1,7 +1,5 @@
 """Explicit Euler steps of any continuous law."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from flockana.laws.scheme import Scheme

@@ -1,7 +1,5 @@
 """Base class of Algorithms 1 to 3 and compositions: gains and their conversion of units."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, Self
 

@@ -180,8 +180,6 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
 
         Parameters
         ----------
-        t : ndarray, shape (T,)
-            Sample times.
         extra : mapping of str to ndarray
             Further series of the run.
 
@@ -234,11 +232,6 @@ class Law(LawOfMotion):
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:
         """Control input u(t, q, p).
 
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities, m = 1, 2 or 3.
-
         Returns
         -------
         ndarray, shape (n, m)
@@ -255,23 +248,11 @@ class Law(LawOfMotion):
         return u
 
     def energy(self, t: float, q: Any, p: Any) -> float:
-        """The law's energy H (arguments and errors as `acceleration`).
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
-        """
+        """The law's energy H (arguments and errors as `acceleration`)."""
         return self.hamiltonian(*self._checked(t, q, p))
 
     def energy_rate(self, t: float, q: Any, p: Any) -> float:
-        """Time derivative of `energy` along the law's flow, in closed form (arguments and errors as `acceleration`).
-
-        Parameters
-        ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities.
-        """
+        """Time derivative of `energy` along the law's flow, in closed form (arguments and errors as `acceleration`)."""
         return self.checked_flow(*self._checked(t, q, p))[1]
 
     def compiled(self, m: int) -> Compiled | None:
@@ -288,8 +269,6 @@ class Law(LawOfMotion):
 
         Parameters
         ----------
-        q, p : array_like, shape (n, m)
-            Positions and velocities, an equilibrium or not.
         sparse : bool
             Return a scipy.sparse.csr_array.
 

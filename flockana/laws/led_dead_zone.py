@@ -1,7 +1,5 @@
 """The dead-zone law with the leaders that the paper's text speaks of and its equation (9) lacks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Flocking that keeps its links: a potential without bound at the range, after Ji and Egerstedt and Zavlanos et al."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -50,6 +48,7 @@ class LinkKeeping(SumOfTerms):
 
     references: ClassVar[tuple[str, ...]] = ("ji-egerstedt-2007", "zavlanos-2007")
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k": (1, -2), "c": (0, -1)}
+    surfaces = ()  # no force begins or ends at a distance
 
     def __post_init__(self) -> None:
         normalise(self, ensure_positive, "r", "k")
@@ -88,11 +87,6 @@ class LinkKeeping(SumOfTerms):
     def lattice(self) -> None:
         """None, as links have no preferred length."""
         return
-
-    @property
-    def surfaces(self) -> tuple[float, ...]:
-        """Empty, as no force begins or ends at a distance."""
-        return ()
 
     @property
     def poles(self) -> tuple[float, ...]:

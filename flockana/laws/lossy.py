@@ -1,7 +1,5 @@
 """A law whose messages between agents are lost at random."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +24,6 @@ class Lossy(Wrapper):
         A law with a pair term.
     loss : float
         Probability, 0 <= loss <= 1.
-    seed : int
-        Of the losses.
 
     Raises
     ------

@@ -1,7 +1,5 @@
 """A law whose agents measure with noise."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -23,14 +21,10 @@ class Measured(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that acts on what is measured.
     position, velocity : float
         Intensities >= 0: length times √time, and length over √time.
     of : {"all", "neighbours"}
         Noise on everything, the same for whoever looks; or on what each listener hears of each other agent.
-    seed : int
-        Of the noise.
 
     Raises
     ------

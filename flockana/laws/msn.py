@@ -1,7 +1,5 @@
 """The MSN project's discretisation of Algorithms 1 and 2, which is a map of its own rather than an integrator."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -29,14 +27,6 @@ class MSNDiscretisation(DiscreteLaw):
     and reaction differ within a step; f is 3/2, which moves each agent by u dt² too far (E9). Neighbours are those of
     the end of the previous iteration, and the γ-agent has already moved on to the end of this one. The project sums
     in single precision, which is not imitated.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> pull = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=0.0), target=StaticTarget((1.0,)))
-    >>> q, p, u, _ = MSNDiscretisation(pull, dt=0.1).step(0.0, np.array([[0.0]]), np.array([[0.0]]), {})
-    >>> float(u[0, 0]), round(float(q[0, 0]), 6), float(p[0, 0])
-    (1.0, 0.015, 0.1)
     """
 
     law: Algorithm1 | Algorithm2

@@ -4,8 +4,6 @@ The notebook multiplies q_j − q_i by 10 where it is shorter than 0.05, after t
 keep their values and only n_ij becomes σ_ε(10 (q_j − q_i)). The force then jumps at that distance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -44,14 +42,7 @@ def extra_push(alpha: AlphaInteraction, q: FloatArray, *, min_distance: float, f
 
 @dataclass(frozen=True)
 class PushTerm(Term):
-    """Term of the push near contact, which is not a gradient and has no energy.
-
-    Examples
-    --------
-    >>> u, q = np.zeros((2, 1)), np.array([[0.0], [0.04]])
-    >>> PushTerm(AlphaInteraction(), 1.0, 0.05, 10.0).act(0.0, q, 0.0 * q, u), bool(u[0, 0] < 0.0)
-    (0.0, True)
-    """
+    """Term of the push near contact, which is not a gradient and has no energy."""
 
     alpha: AlphaInteraction
     stiffness: float
@@ -114,13 +105,6 @@ class PushedAlgorithm1(_Push, Algorithm1):
 
     dH/dt = −c2α pᵀL̂p + Σ⟨f_i, p_i⟩ with f the extra force, in closed form. `stiffness` is that of Algorithm 1, exact
     wherever no pair is closer than `min_distance`.
-
-    Examples
-    --------
-    >>> q, p = [[0.0, 0.0], [0.04, 0.0]], [[0.0, 0.0], [0.0, 0.0]]
-    >>> pushed, plain = (law.acceleration(0.0, q, p)[1, 0] for law in (PushedAlgorithm1(), Algorithm1()))
-    >>> round(float(pushed / plain), 2)
-    9.92
     """
 
     min_distance: float = MIN_DISTANCE
@@ -137,15 +121,7 @@ class PushedAlgorithm1(_Push, Algorithm1):
 
 @dataclass(frozen=True)
 class PushedAlgorithm2(_Push, Algorithm2):
-    """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import StaticTarget
-    >>> law = PushedAlgorithm2(target=StaticTarget((0.0,)))
-    >>> bool(law.acceleration(0.0, [[0.0], [0.04]], [[0.0], [0.0]])[0, 0] < 0.0)
-    True
-    """
+    """Algorithm 2 with the notebook's push; `energy` stays H_λ, whose rate gains the power of the push."""
 
     min_distance: float = MIN_DISTANCE
     factor: float = FACTOR

@@ -1,7 +1,5 @@
 """Algorithms 1 and 2 of Olfati-Saber (2006), in one, two and three dimensions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -59,13 +57,7 @@ def paper_pair(law: Any) -> AlphaInteraction:
 
 
 def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
-    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ.
-
-    Examples
-    --------
-    >>> alpha_scales(AlphaInteraction(d=4.0, r=5.0), Gains(c1_alpha=0.0, c1_gamma=0.25))
-    Scales(length=4.0, time=2.0)
-    """
+    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ."""
     rates = (
         np.sqrt(gains.c1_alpha * alpha.strength / alpha.length),
         np.sqrt(np.max(gains.c1_gamma)),

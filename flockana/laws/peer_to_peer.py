@@ -1,7 +1,5 @@
 """Algorithm 2 without a leader: each agent follows a copy of the γ-agent of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A law whose input is computed at sampling instants and held between them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -25,8 +23,6 @@ class Sampled(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law that is sampled.
     period : float
         Time between two samples.
     offsets : array_like, shape (n,), optional

@@ -1,7 +1,5 @@
 """A law whose actuators have a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -27,8 +25,6 @@ class Saturated(Wrapper):
 
     Parameters
     ----------
-    law : Law
-        The law whose input is bounded.
     limit : float
         Largest acceleration, in length over time².
     by : {"length", "component"}

@@ -1,7 +1,5 @@
 """Schemes that step a continuous law by a fixed step: what they have in common."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -18,13 +16,6 @@ class Scheme(DiscreteLaw):
     """A map that approximates the flow of a law: q' = q + dt p + f dt² u, p' = p + dt u, with f `position_factor`.
 
     A subclass gives f, or a step of its own.
-
-    Parameters
-    ----------
-    law : Law
-        The continuous law.
-    dt : float
-        Step.
 
     Raises
     ------

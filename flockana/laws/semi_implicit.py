@@ -1,7 +1,5 @@
 """Semi-implicit Euler steps of any continuous law: velocities first, then positions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeGuard

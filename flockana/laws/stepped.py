@@ -1,7 +1,5 @@
 """Steps of a wrapped law: Euler-Maruyama, a weak scheme of order 2, and Runge-Kutta of order 4 over the past."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -37,30 +35,8 @@ class Stepped(Scheme):
 
     Parameters
     ----------
-    law : Wrapper
-        The law that is stepped.
-    dt : float
-        Step.
     order : {1, 2, 4}
         Scheme.
-
-    Raises
-    ------
-    ArgumentError
-        On a step that does not divide a delay or a period, or order 4 with noise.
-
-    Examples
-    --------
-    A lone agent sees the target where it was: at first it falls with constant acceleration.
-
-    >>> from flockana.environment.targets import StaticTarget
-    >>> from flockana.interactions import Gains
-    >>> from flockana.laws.delayed import Delayed
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> law = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=0.0), target=StaticTarget((0.0,)))
-    >>> late, q, p = Stepped(Delayed(law, 0.5), 0.5, 4), np.array([[1.0]]), np.array([[0.0]])
-    >>> float(late.step(0.0, q, p, late.start(q, p))[0][0, 0])
-    0.75
     """
 
     order: int = 2

@@ -108,8 +108,6 @@ class SumOfTerms(Law):
 
         Parameters
         ----------
-        q : array_like, shape (n, m)
-            Positions.
         t : float
             When: a γ-agent may move.
         """

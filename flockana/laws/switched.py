@@ -1,7 +1,5 @@
 """Laws whose acceleration jumps across surfaces in space: what `simulate` must know to stop at each switch."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from typing import NamedTuple
 

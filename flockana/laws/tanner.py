@@ -1,7 +1,5 @@
 """The laws of Tanner, Jadbabaie and Pappas: potentials and velocity consensus along a net, fixed or of proximity."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -52,6 +50,7 @@ class FixedNetFlocking(Law):
 
     units: ClassVar[Mapping[str, Powers]] = {"k2": (0, -1)}
     references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+    centre_decouples = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "edges", _edges(self.edges))
@@ -62,10 +61,6 @@ class FixedNetFlocking(Law):
     def scales(self) -> Scales:
         """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
-
-    @property
-    def centre_decouples(self) -> bool:  # noqa: D102
-        return True
 
     @cached_property
     def _ends(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
@@ -127,6 +122,8 @@ class ProximityFlocking(SwitchedLaw):
 
     units: ClassVar[Mapping[str, Powers]] = {"r": (1, 0), "k2": (0, -1)}
     references: ClassVar[tuple[str, ...]] = ("tanner-2007",)
+    centre_decouples = True
+    located = True  # the force always jumps
 
     def __post_init__(self) -> None:
         _ensure_potential(self.potential)
@@ -138,15 +135,6 @@ class ProximityFlocking(SwitchedLaw):
     def scales(self) -> Scales:
         """Length and time scales d and d/√k."""
         return Scales(self.potential.d, length_scale_time(self.potential))
-
-    @property
-    def centre_decouples(self) -> bool:  # noqa: D102
-        return True
-
-    @property
-    def located(self) -> bool:
-        """True: the force always jumps."""
-        return True
 
     @property
     def surfaces(self) -> tuple[float, ...]:
@@ -162,54 +150,22 @@ class ProximityFlocking(SwitchedLaw):
         pieces: Pieces = np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
         return pieces
 
-    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow` with every pair held within R or beyond.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Where each pair is held.
-        """
+    def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         u = np.zeros(q.shape)
         return u, net_forces(self.potential, self.k2, q, p, *_pairs_within(pieces, len(q)), u)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
         return self.piece_flow(self.pieces(q), t, q, p)
 
-    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """Return how far each pair is inside its piece.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Where each pair is held.
-        """
+    def margins(self, pieces: Pieces, q: FloatArray) -> Margins:  # noqa: D102
         inside = self.r - _distances(q)
         return Margins(np.where(pieces == _NEAR, inside, -inside), pieces == _NEAR)
 
-    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """Return the other piece for every pair with a negative margin.
-
-        Parameters
-        ----------
-        pieces : ndarray of int8
-            Before.
-        margins : Margins
-            At the switch.
-        """
+    def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:  # noqa: D102
         after: Pieces = np.where(margins.inside < 0.0, _NEAR + _FAR - pieces, pieces).astype(np.int8)
         return after
 
-    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:
-        """Return the pair that both sides drive back, if several switch at once; else None.
-
-        Parameters
-        ----------
-        before, after : ndarray of int8
-            Pieces on the two sides.
-        q, p : ndarray, shape (n, m)
-            Positions and velocities at the switch.
-        """
+    def sliding(self, before: Pieces, after: Pieces, t: float, q: FloatArray, p: FloatArray) -> str | None:  # noqa: D102
         rows, columns = np.triu_indices(len(q), 1)
         old, new = (self.piece_flow(side, t, q, p)[0] for side in (before, after))
         for k in np.flatnonzero(before != after):

@@ -1,7 +1,5 @@
 """Taylor steps of any continuous law: q + p dt + ½ u dt², p + u dt, with u at the step's beginning."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from flockana.laws.scheme import Scheme

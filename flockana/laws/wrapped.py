@@ -24,29 +24,16 @@ _CHANNELS = 8  # kinds of random numbers
 
 
 class View(NamedTuple):
-    """States that agents know when they compute their inputs.
+    """States that agents know when they compute their inputs."""
 
-    Attributes
-    ----------
-    t : float
-        Time that they take it to be.
-    q, p : ndarray, shape (n, m)
-        Their own positions and velocities.
-    heard : (ndarray, ndarray), optional
-        Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or
-        (1, n, m) if all hear the same. By default `q` and `p`.
-    linked : ndarray of bool, shape (n, n), optional
-        Whether a listener hears a speaker; all by default.
-    both : bool
-        In the terms between agents their own state is that which is heard too.
-    """
-
-    t: float
-    q: FloatArray
+    t: float  # Time that they take it to be
+    q: FloatArray  # q, p: Their own positions and velocities
     p: FloatArray
+    # Positions and velocities of the others, in the last two axes; shape (n, n, m), by listener and speaker, or (1, n,
+    # m) if all hear the same. By default `q` and `p`.
     heard: tuple[FloatArray, FloatArray] | None = None
-    linked: Any = None
-    both: bool = False
+    linked: Any = None  # Whether a listener hears a speaker; all by default
+    both: bool = False  # In the terms between agents their own state is that which is heard too
 
 
 class Step:
@@ -90,8 +77,6 @@ class Step:
 
         Parameters
         ----------
-        seed : int
-            Of the wrapper.
         channel : int
             Kind of number.
         shape : tuple of int
@@ -240,13 +225,7 @@ class Wrapper(WrappingLaw):
 
 
 def ensure_wrappable(law: Any) -> None:
-    """Raise unless something can be wrapped.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> ensure_wrappable(Algorithm1())
-    """
+    """Raise unless something can be wrapped."""
     if not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law such as Algorithm1(), or one that wraps a law")
 
@@ -259,26 +238,12 @@ def ensure_seed(seed: Any) -> int:
 
 
 def needs_steps(law: Any) -> bool:
-    """Return whether a law can be run by fixed steps only.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> needs_steps(Algorithm1())
-    False
-    """
+    """Return whether a law can be run by fixed steps only."""
     return isinstance(law, Wrapper) and any(one.stepped for one in law.wrappers)
 
 
 def wrappers_of(law: Any) -> tuple[Wrapper, ...]:
-    """Wrappers of a law, or of the law that a map steps; empty without any.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> wrappers_of(Algorithm1())
-    ()
-    """
+    """Wrappers of a law, or of the law that a map steps; empty without any."""
     within = law.continuous
     return tuple(within.wrappers) if isinstance(within, Wrapper) else ()
 
@@ -333,13 +298,7 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
 
 
 def ensure_hears(law: Law) -> None:
-    """Raise unless the law's pair terms are known, so that heard states can enter them alone.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> ensure_hears(Algorithm1())
-    """
+    """Raise unless the law's pair terms are known, so that heard states can enter them alone."""
     core = law.core if isinstance(law, Wrapper) else law
     if not any(isinstance(term, PairTerm) for term in core.terms):
         raise ArgumentError(

@@ -6,8 +6,6 @@ above its tangent plane at any point: over the hull that plane is least at a con
 from below. Halving an interval makes the bound as tight as one likes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
@@ -52,11 +50,9 @@ def clearance(
     obstacles: Sequence[Obstacle],
     slack: FloatArray | None = None,
 ) -> Clearance:
-    """Bound the clearance of all agents from all obstacles over all times, from samples of a run.
-
-    The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
-    are too sparse to resolve the motion.
-    """
+    """Bound the clearance of all agents from all obstacles over all times, from samples of a run."""
+    # The bound subtracts an allowance for each path's own error (`flockana.kernels.paths`), so it is weak where samples
+    # are too sparse to resolve the motion.
     n, m = q.shape[1:]
     least_of = [_Minimum(t, _least_clearances(obstacle, q.reshape(-1, m)).reshape(len(t), n)) for obstacle in obstacles]
     extent, rows = float(np.ptp(q.reshape(-1, m), axis=0).max()), max(1, _CHUNK // n)
@@ -183,10 +179,8 @@ class ConstrainedLattice:
 def constrained_lattice(
     q: Any, obstacles: Sequence[Obstacle], *, alpha: AlphaInteraction, beta: BetaInteraction
 ) -> ConstrainedLattice:
-    """Measure a configuration against a constrained α-lattice (Olfati-Saber 2006).
-
-    The repulsion ends at d' but N_i^β at r': an agent between the two is a neighbour that nothing pulls to d'.
-    """
+    """Measure a configuration against a constrained α-lattice (Olfati-Saber 2006)."""
+    # The repulsion ends at d' but N_i^β at r': an agent between the two is a neighbour that nothing pulls to d'.
     q = ensure_points("q", q)
     excess = np.abs(link_lengths(q, links(q, alpha.r)) - alpha.d)
     slack = np.abs(ObstacleField(tuple(obstacles), beta).links(q, np.zeros_like(q)).distance - beta.d)

@@ -1,7 +1,5 @@
 """The share of a flock that follows its leader."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,11 +10,6 @@ from flockana.measures.measure import Measure
 FOLLOWS = 1e-2  # of the law's own speed: an agent this near to the leader's velocity follows it
 
 
-def _has_leader(law: Any) -> bool:
-    """Return whether the law has a γ-agent."""
-    return law.target is not None
-
-
 def following(run: Any) -> FloatArray:
     """Return which agents match their leader's velocity at the end, within 1/100 of the law's speed, shape (n,)."""
     rate = run.law.target.rate(float(run.t[-1]))
@@ -24,17 +17,13 @@ def following(run: Any) -> FloatArray:
     return same
 
 
-def _share(run: Any) -> float:
-    return float(np.mean(following(run)))
-
-
 MEASURES = (
     Measure(
         "followers",
         "share of agents that follow the leader",
-        of_run=_share,
+        of_run=lambda run: float(np.mean(following(run))),
         of_run_text="share of agents with the leader's velocity at the end, within 1/100 of the law's speed",
-        defined=_has_leader,
+        defined=lambda law: law.target is not None,
         at_most_one=True,
     ),
 )

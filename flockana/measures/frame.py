@@ -1,20 +1,11 @@
 """Moving frame of the flock's centre of mass."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
 
 
 def moving_frame(x: FloatArray) -> FloatArray:
-    """Return the deviations from the mean over agents, x_i − x_c.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> moving_frame(np.array([[0.0], [4.0]])).tolist()
-    [[-2.0], [2.0]]
-    """
+    """Return the deviations from the mean over agents, x_i − x_c."""
     deviations: FloatArray = x - np.add.reduce(x, axis=0) / len(x)  # x.mean, without its checks
     return deviations

@@ -4,8 +4,6 @@ A file of this package that defines ``MEASURES`` adds to it: `Trajectory.metrics
 What only the runs of one law have is in that law's `measures`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property

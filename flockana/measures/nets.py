@@ -94,11 +94,9 @@ def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> cs
 
 
 def printed_edge_share(n: int, pairs: LinkArray) -> float:
-    """Return C* = |E(Γ*)|/|E(G)| as the slides print it: share of *links* in the largest component (E7).
-
-    With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96
-    for components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
-    """
+    """Return C* = |E(Γ*)|/|E(G)| as the slides print it: share of *links* in the largest component (E7)."""
+    # With isolated agents it is 1 whenever only one component has links, which is why the slides' own example (0.96 for
+    # components of 1, 1, 1, 1, 96) needs the share of nodes, `metrics.giant_share`.
     n = ensure_count("n", n)
     pairs = ensure_links(pairs, n)
     if len(pairs) == 0:
@@ -109,18 +107,7 @@ def printed_edge_share(n: int, pairs: LinkArray) -> float:
 
 
 def printed_rank_connectivity(n: int, pairs: LinkArray, *, typeset: bool = False) -> float:
-    """Return C = rank(A)/n of the adjacency matrix as the MSN project prints it (erratum E8).
-
-    Examples
-    --------
-    A path of three agents is connected, yet:
-
-    >>> path = np.array([[0, 1], [1, 2]], dtype=np.int32)
-    >>> round(printed_rank_connectivity(3, path), 3)
-    0.667
-    >>> printed_rank_connectivity(3, path[:0], typeset=True) == 2 / 3  # of three agents without a link
-    True
-    """
+    """Return C = rank(A)/n of the adjacency matrix as the MSN project prints it (erratum E8)."""
     from flint import nmod_mat
 
     n = ensure_count("n", n)

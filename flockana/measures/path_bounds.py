@@ -5,8 +5,6 @@ them (`flockana.kernels.paths` says when that is): those of the solver's own ste
 not. So a run keeps the steps between its samples (`flockana.dynamics.between`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -37,11 +35,9 @@ class ClosestApproach:
 def closest_approach(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
 ) -> ClosestApproach:
-    """Return lower bounds of all pair distances over all times, from samples of position, velocity, acceleration.
-
-    Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
-    samples are too sparse to resolve the motion.
-    """
+    """Return lower bounds of all pair distances over all times, from samples of position, velocity, acceleration."""
+    # Paths are quintic between samples; the bound subtracts an allowance for each path's own error, so it is weak where
+    # samples are too sparse to resolve the motion.
     lower, reached, when, pair = np.inf, np.inf, float(t[0]), (-1, -1)
     bounds = np.full(len(t) - 1, np.inf)
     at_samples = min_distances(q)
@@ -111,10 +107,8 @@ class Contact:
 def contacts(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, *, tol: float, intervals: Iterable[int] | None = None
 ) -> tuple[Contact, ...]:
-    """Return the pairs that come within `tol` of each other, with their first times, in order of time.
-
-    Only in the intervals given, in rising order, if it is known that none comes so near in the others.
-    """
+    """Return the pairs that come within `tol` of each other, with their first times, in order of time."""
+    # Only in the intervals given, in rising order, if it is known that none comes so near in the others.
     first: dict[tuple[int, int], Contact] = {}
     for k in range(len(t) - 1) if intervals is None else intervals:
         h = t[k + 1] - t[k]

@@ -1,7 +1,5 @@
 """Directed perception graphs, where an edge (j, i) means that i perceives j: trees and matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
@@ -43,11 +41,9 @@ def random_out_tree(n: int, rng: np.random.Generator) -> Edges:
 
 
 def out_tree_root(n: int, edges: Edges) -> int | None:
-    """Return the root of a rooted out-tree, or None for any other graph.
-
-    Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
-    "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
-    """
+    """Return the root of a rooted out-tree, or None for any other graph."""
+    # Information flows along edges, so the root perceives nobody and all others are reached from it. (The paper calls
+    # "root" a node that all others reach: against its own direction of edges that would be the opposite tree.)
     seen = np.bincount([i for _, i in edges], minlength=n)
     if len(edges) != n - 1 or seen.max() > 1 or not is_connected(n, edges):
         return None  # n − 1 edges, each to another agent, connected: no room for a cycle
@@ -74,13 +70,7 @@ def receivers(n: int, edges: Edges) -> FloatArray:
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
-    """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m).
-
-    Examples
-    --------
-    >>> edge_vectors(np.array([[0.0], [3.0]]), ((0, 1),)).tolist()
-    [[-3.0]]
-    """
+    """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m)."""
     sender, receiver = _columns(edges)
     x: FloatArray = q[..., sender, :] - q[..., receiver, :]
     return x

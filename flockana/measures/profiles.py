@@ -1,7 +1,5 @@
 """Quantiles of all pair distances over time, for any number of agents."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,13 +13,7 @@ QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 def pair_distance_profile(q: Any, shares: Sequence[float] = QUARTERS) -> FloatArray:
-    """Return quantiles of all pair distances at each instant, shape (T, number of shares); NaN for one agent.
-
-    Examples
-    --------
-    >>> pair_distance_profile([[[0.0], [1.0], [3.0]]], (0.0, 0.5, 1.0)).tolist()
-    [[1.0, 2.0, 3.0]]
-    """
+    """Return quantiles of all pair distances at each instant, shape (T, number of shares); NaN for one agent."""
     from scipy.spatial.distance import pdist
 
     try:

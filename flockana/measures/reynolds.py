@@ -5,8 +5,6 @@ s_ij = φ_α(‖q_j − q_i‖_σ)/(1 + ε‖q_j − q_i‖_σ). Its sign parts 
 (too far: centring), negative friends F⁻ (too close: avoidance) and neutral ones F⁰.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Measures defined for any flock: of its net, its extent and its velocities."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,10 +14,6 @@ def _mismatch(flock: Flock) -> FloatArray:
     """Return K̃ = K/n."""
     mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
     return mismatch
-
-
-def _component_count(run: Any) -> int:
-    return int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1
 
 
 def _strain(run: Any) -> float:
@@ -53,7 +47,7 @@ MEASURES = (
     Measure(
         "components",
         "components of the net",
-        of_run=_component_count,
+        of_run=lambda run: int(components(run.n, links(run.q[-1], run.law.pair.range)).max()) + 1,
         of_run_text="components of the net at the end",
         defined=has_range,
     ),

@@ -1,7 +1,5 @@
 """Joint connectivity: time windows over which the nets, taken together, connect all agents."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
@@ -63,19 +61,12 @@ def _root(leader: list[int], i: int) -> int:
 
 
 def windows_of(run: Any) -> tuple[tuple[int, int], ...]:
-    """Return windows of a run's samples over which its nets are jointly connected.
-
-    A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
-    """
+    """Return windows of a run's samples over which its nets are jointly connected."""
+    # A net is that of the law's pair interaction, or what a law without one tells by its own ``links(q)``.
     if not hasattr(run.law, "links") and run.law.pair is None:
         raise ArgumentError(f"{type(run.law).__name__} has no net: expected a run of a law with a range")
     own = getattr(run.law, "links", None)
     return joint_windows(run.n, (links(q, run.law.pair.range) if own is None else own(q) for q in run.q))
-
-
-def _gives_links(law: Any) -> bool:
-    """Return whether the law gives its own links, so that no neighbour search is needed."""
-    return hasattr(law, "links")
 
 
 MEASURES = (
@@ -84,6 +75,6 @@ MEASURES = (
         "windows of time over which the net is jointly connected",
         of_run=lambda run: len(windows_of(run)),
         of_run_text="contiguous windows of samples, each with a connected union of its nets",
-        defined=_gives_links,
+        defined=lambda law: hasattr(law, "links"),
     ),
 )

@@ -182,13 +182,7 @@ def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> 
 
 
 def frame_count(seconds: float, fps: float) -> int:
-    """Return the number of frames of a film, at least 1.
-
-    Examples
-    --------
-    >>> frame_count(2.5, 20.0)
-    50
-    """
+    """Return the number of frames of a film, at least 1."""
     frames = ensure_positive("seconds", seconds) * ensure_positive("fps", fps)
     if fps > 50.0 or frames > _FRAMES:
         raise ArgumentError(

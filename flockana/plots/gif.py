@@ -1,7 +1,5 @@
 """GIF films that last as long as asked: the format counts in hundredths of a second."""
 
-from __future__ import annotations
-
 import itertools
 from io import BytesIO
 from typing import Any

@@ -1,7 +1,5 @@
 """Figures for a paper: the columns of journals, and files with fonts that publishers take."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any
@@ -22,13 +20,7 @@ _SHAPE = 0.75  # height over width of each Axes
 
 
 def column_size(name: str, rows: int = 1, columns: int = 1) -> tuple[float, float]:
-    """Return width and height in inches of a figure that fills a journal's column.
-
-    Examples
-    --------
-    >>> column_size("ieee"), column_size("elsevier-wide", 1, 2)
-    ((3.5, 2.625), (7.48, 2.805))
-    """
+    """Return width and height in inches of a figure that fills a journal's column."""
     ensure_known("column", name, COLUMNS)
     width = COLUMNS[name]
     return width, round(_SHAPE * width * rows / columns, 3)

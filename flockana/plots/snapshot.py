@@ -189,8 +189,6 @@ def configuration(
 
     Parameters
     ----------
-    q : array_like, shape (n, m)
-        Positions, m = 1, 2 or 3.
     p : array_like, shape (n, m), optional
         Velocities; without them agents are dots.
     d : float or array_like, shape (M,), optional
@@ -200,8 +198,6 @@ def configuration(
     edges : array_like of int, shape (M, 2), optional
         Links to draw in place of those within r, from the first agent to the second; one without its reverse has an
         arrowhead.
-    target : array_like, shape (m,), optional
-        Position of the γ-agent.
     obstacles : sequence of Obstacle
         Drawn in full, and kept in view where they are bounded.
     beta : BetaInteraction, optional
@@ -264,10 +260,8 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
-    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1.
-
-    Where agents have many, links are thin, and those near d lie above the others.
-    """
+    """Draw links coloured by strain; the scale ends at the strain of a link about to break, at most 1."""
+    # Where agents have many, links are thin, and those near d lie above the others.
     if len(pairs) == 0:
         return
     few = min(1.0, (_MANY * len(points) / max(1, len(pairs))) ** 0.5)

@@ -245,13 +245,7 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
 
 
 def line_width_and_opacity(n: int) -> tuple[float, float]:
-    """Return width and opacity of one of n lines on the same axes: fainter the more there are.
-
-    Examples
-    --------
-    >>> line_width_and_opacity(3), line_width_and_opacity(150)
-    ((1.2, 0.9), (0.4, 0.4))
-    """
+    """Return width and opacity of one of n lines on the same axes: fainter the more there are."""
     return min(max(20.0 / n, 0.4), 1.2), min(max(20.0 / n, 0.4), 0.9)
 
 

@@ -1,7 +1,5 @@
 """Typesetting of symbols in labels, legends and titles as mathtext."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 
@@ -22,24 +20,16 @@ def _greek(letter: str) -> str:
     return "\\" + _GREEK[letter] if letter in _GREEK else letter
 
 
-def _gain(m: re.Match[str]) -> str:
-    return rf"$c_{m[1]}^{_greek(m[2])}$"
-
-
-def _indexed(m: re.Match[str]) -> str:
-    return rf"${_greek(m[1])}_{_greek(m[2])}$"
-
-
 # each pattern is tried at a place before those below it; a letter alone is a symbol where a label begins with it
 _RULES: tuple[tuple[str, Callable[[re.Match[str]], str]], ...] = (
     ("|".join(re.escape(word) for word in _WORDS), lambda m: _WORDS[m[0]]),
     (r"H − H\(0\) − ∫ dH/dt", lambda m: r"$H - H(0) - \int \dot H\,dt$"),
     (r"d([qp])_([a-z])/dt", lambda m: rf"$\dot {m[1]}_{m[2]}$"),
     (r"C = rank\(L\)/\(n − 1\)", lambda m: r"$C = \mathrm{rank}(L)/(n - 1)$"),
-    (rf"c([12])([{_LETTERS}])", _gain),
+    (rf"c([12])([{_LETTERS}])", lambda m: rf"$c_{m[1]}^{_greek(m[2])}$"),
     (r"\|([qp])_([a-z])/([qp])_([a-z])\|", lambda m: rf"$|{m[1]}_{m[2]}/{m[3]}_{m[4]}|$"),
     (r"‖([a-z])(?:_([a-z]))?‖", lambda m: rf"$\Vert {m[1]}{f'_{m[2]}' if m[2] else ''}\Vert$"),
-    (rf"([{_LETTERS}A-Za-z])_([{_LETTERS}a-z])(?![A-Za-z_])", _indexed),
+    (rf"([{_LETTERS}A-Za-z])_([{_LETTERS}a-z])(?![A-Za-z_])", lambda m: rf"${_greek(m[1])}_{_greek(m[2])}$"),
     (r"([A-Za-z])([₀-₉])", lambda m: f"${m[1]}_{m[2].translate(_DIGITS)}$"),
     (rf"([{_LETTERS}c])\*", lambda m: f"${_greek(m[1])}^*$"),
     ("([A-Z])\u0303|(Ẽ)", lambda m: rf"$\tilde {m[1] or 'E'}$"),
@@ -55,15 +45,7 @@ _ANY = re.compile("|".join(f"(?P<r{k}>{pattern})" for k, (pattern, _) in enumera
 
 
 def typeset(text: str) -> str:
-    r"""Return a label with its symbols in mathtext; existing mathtext is kept.
-
-    Examples
-    --------
-    >>> typeset("c1γ (1/time²)"), typeset("t (time)"), typeset("τ*, delay margin (time)")
-    ('$c_1^\\gamma$ (1/time$^2$)', '$t$ (time)', '$\\tau^*$, delay margin (time)')
-    >>> typeset("agents coincide"), typeset("$x_i$"), typeset("a run")
-    ('agents coincide', '$x_i$', 'a run')
-    """
+    r"""Return a label with its symbols in mathtext; existing mathtext is kept."""
     if "$" in text:
         return text
 

@@ -1,7 +1,5 @@
 """Write the report: one HTML page that needs no network (JavaScript only to play), and the verdicts as JSON."""
 
-from __future__ import annotations
-
 import json
 import os
 import platform
@@ -62,13 +60,7 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
 
 
 def report_folder(name: str | None) -> Path:
-    """Return the folder of a report; a partial report never replaces one on the whole catalogue.
-
-    Examples
-    --------
-    >>> report_folder(None).name
-    'report'
-    """
+    """Return the folder of a report; a partial report never replaces one on the whole catalogue."""
     return FOLDER if name is None or not _covers_catalogue(FOLDER) else FOLDER / name
 
 
@@ -102,12 +94,10 @@ def write_report(
     flocks: LinearisedFlocks = NO_FLOCKS,
     of: str | None = None,
 ) -> Path:
-    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole.
-
-    A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
-    part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
-    None for the whole catalogue.
-    """
+    """Write ``index.html`` and ``verdicts.json``; existing ones are replaced only when the new ones are whole."""
+    # A report that is not complete leaves a complete one alone and goes to the folder ``unfinished`` within; one on a
+    # part leaves one on the whole catalogue alone and goes to a folder of its name. `of` is what was checked, by name;
+    # None for the whole catalogue.
     folder = ensure_directory(directory)
     if of is not None and _covers_catalogue(folder):
         folder = ensure_directory(folder / of)

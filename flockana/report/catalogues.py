@@ -1,7 +1,5 @@
 """Catalogues as terminal tables and plain data; nothing here draws, solves or integrates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -69,13 +67,7 @@ def _first(references: Sequence[str]) -> str:
 def select(
     entries: Iterable[dict[str, Any]], words: Sequence[str] = (), *, source: str = "", status: str = ""
 ) -> list[dict[str, Any]]:
-    """Return the entries that contain all words, of one source, with one expected status.
-
-    Examples
-    --------
-    >>> [entry["name"] for entry in select(theorem_entries(), ["proximity"], source="tanner")]
-    ['tanner-switching']
-    """
+    """Return the entries that contain all words, of one source, with one expected status."""
     every = list(entries)
     sources = sorted({entry["source"] for entry in every})
     if source and not any(source.casefold() in known.casefold() for known in sources):
@@ -90,14 +82,7 @@ def select(
 
 
 def short_list(entries: Sequence[dict[str, Any]]) -> str:
-    """Return a line for each entry, grouped by source.
-
-    Examples
-    --------
-    >>> print(short_list([{"name": "os-1", "title": "Algorithm 1", "source": "Olfati-Saber 2006"}]))
-    Olfati-Saber 2006
-      os-1  Algorithm 1
-    """
+    """Return a line for each entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
     for source in dict.fromkeys(entry["source"] for entry in entries):
         own = (entry for entry in entries if entry["source"] == source)

@@ -1,7 +1,5 @@
 """Curves over time as SVG in the page's own colours: written as text, in a hundredth of the time of a drawn figure."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -115,15 +113,7 @@ def _limits(values: Sequence[FloatArray], logarithmic: bool) -> tuple[float, flo
 
 
 def _round(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Return round numbers between two as tick marks, with their texts.
-
-    Examples
-    --------
-    >>> _round(0.0, 60.0, 5)
-    [(0.0, '0'), (20.0, '20'), (40.0, '40'), (60.0, '60')]
-    >>> [text for _, text in _round(-3e-7, 2e-7, 4)], [text for _, text in _round(0.0, 1.0, 4)]
-    (['-2e-07', '0', '2e-07'], ['0.0', '0.5', '1.0'])
-    """
+    """Return round numbers between two as tick marks, with their texts."""
     if not high > low:
         return [(low, f"{low:.4g}")]
     raw = (high - low) / most
@@ -144,15 +134,7 @@ def _decades(low: float, high: float) -> list[tuple[float, str]]:
 
 
 def _path(x: FloatArray, y: FloatArray) -> str:
-    """Return points as SVG path data in whole numbers, broken where they are not finite.
-
-    Examples
-    --------
-    >>> _path(np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, np.nan, 3.0]))
-    'M0 0L1 1M3 3'
-    >>> _path(np.arange(4.0), np.array([5.0, 5.0, 5.0, 7.0]))
-    'M0 5L2 5L3 7'
-    """
+    """Return points as SVG path data in whole numbers, broken where they are not finite."""
     text: list[str] = []
     heights = [round(v) if np.isfinite(v) else None for v in y.tolist()]
     pen = "M"

@@ -1,7 +1,5 @@
 """The report's section on one start under many laws: what each theorem promises, and what happened."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -39,11 +37,7 @@ class ComparisonSection:
 
     rows: tuple[Row, ...]  # one for each law
     pictures: tuple[Picture, ...]  # paths side by side, and velocity diameters
-
-    @property
-    def name(self) -> str:
-        """Return the name of the task that makes the section."""
-        return MANY_LAWS
+    name = MANY_LAWS  # of the task that makes the section
 
 
 @cache

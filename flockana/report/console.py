@@ -1,7 +1,5 @@
 """The terminal's view: tables that read well at 80 columns, in colour or in a pipe."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

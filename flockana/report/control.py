@@ -1,7 +1,5 @@
 """Step response, root locus, norms and state-space data for the report."""
 
-from __future__ import annotations
-
 import base64
 import json
 from dataclasses import dataclass

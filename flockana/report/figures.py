@@ -1,7 +1,5 @@
 """Figures of one scenario as SVG: the flock at some instants, and curves over time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache

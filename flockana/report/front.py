@@ -1,7 +1,5 @@
 """Findings that stand first in the report: plain sentences, each on a verdict of the catalogue."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -41,13 +39,7 @@ def thumbnail(page: ScenarioPage) -> str:
 
 
 def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
-    """Return the findings whose verdicts are in the report and as expected.
-
-    Examples
-    --------
-    >>> front_findings([])
-    ()
-    """
+    """Return the findings whose verdicts are in the report and as expected."""
     by_name = {page.name: page for page in pages if isinstance(page, ScenarioPage)}
     found = []
     for scenario, theorem, text in FINDINGS:

@@ -1,7 +1,5 @@
 """Figures of a run of averaged headings."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

@@ -1,7 +1,5 @@
 """Report section on lattices and equilibria, made from the verdicts alone."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Figures of a run of the dead-zone law with leaders."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from flockana.dynamics.trajectory import Trajectory

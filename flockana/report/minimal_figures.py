@@ -1,7 +1,5 @@
 """Figures of a run of the minimal model: the common ones, and the profiles of Jond's Fig. 10."""
 
-from __future__ import annotations
-
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.report.charts import Chart, panels

@@ -1,7 +1,5 @@
 """Figures of a run of the MSN project's map: the common ones, and its connectivity curve."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

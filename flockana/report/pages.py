@@ -144,10 +144,8 @@ def _pictures(scenario: Scenario, run: Trajectory) -> tuple[Picture, ...]:
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """Return the player's data of a run, with instants of the source and of the claims marked.
-
-    Empty where places or velocities are so large that the player's numbers have no room for them.
-    """
+    """Return the player's data of a run, with instants of the source and of the claims marked."""
+    # Empty where places or velocities are so large that the player's numbers have no room for them.
     named = marks_of(run, verdicts, scenario.instants)
     try:
         played = scene(

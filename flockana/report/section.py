@@ -1,7 +1,5 @@
 """Sections of the report beside its verdicts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 # theorems that the section on linearised stability shows: measured decay, and margins

@@ -1,7 +1,5 @@
 """The report's section on linearised stability."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
@@ -55,11 +53,7 @@ class LinearisedFlocks:
     poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
     control: tuple[Picture, ...]  # step response, root locus and norms
     downloads: tuple[Download, ...]  # state spaces
-
-    @property
-    def name(self) -> str:
-        """Return the name of the task that makes the section."""
-        return LINEARISED
+    name = LINEARISED  # of the task that makes the section
 
 
 NO_FLOCKS = LinearisedFlocks((), (), ())

@@ -1,7 +1,5 @@
 """Snapshots of a flock as SVG in the page's colours, for print and without scripts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Runs of scenarios from many seeds, for the report's shares: planned, sent and made in batches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from flockana.base.errors import ArgumentError
@@ -39,13 +37,7 @@ class SurveyResult:
 
 
 def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Survey, ...]:
-    """Return the surveys of the section on many seeds.
-
-    Examples
-    --------
-    >>> [survey.name for survey in surveys("zone-51", 30)]
-    ['zone-51, seeds 0 to 9', 'zone-51, seeds 10 to 19', 'zone-51, seeds 20 to 29']
-    """
+    """Return the surveys of the section on many seeds."""
     if name is None:
         usual = {subject: scenario(subject, seed).seeds for subject in scenarios()}
         wanted = {subject: most if count is None else count for subject, most in usual.items() if most}

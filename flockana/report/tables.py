@@ -1,7 +1,5 @@
 """Terminal tables: headed tables and tables of facts, as blocks on narrow terminals."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from copy import copy
@@ -23,15 +21,6 @@ class FoldingTable(Table):
     """A table that cuts nothing: words that wrap break at hyphens, and where even that is too wide, rows are blocks.
 
     Rich itself would cut numbers and names, or leave whole columns out.
-
-    Examples
-    --------
-    >>> table = FoldingTable(column("claim"), column("margin", right=True), box=None)
-    >>> table.add_row("iv-printed", "1.411e+04")
-    >>> Console(width=12).print(table)
-    iv-printed
-      margin:
-      1.411e+04
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
@@ -44,7 +33,10 @@ class FoldingTable(Table):
             if spare >= 0 or each.no_wrap:
                 continue
             cells = [heads[k], *(row[k] for row in rows)]
-            widest = max(_clamped(each, cell.cell_len if "\n" not in cell else _lines(cell)) for cell in cells)
+            widest = max(
+                _clamped(each, cell.cell_len if "\n" not in cell else max(line.cell_len for line in cell.split()))
+                for cell in cells
+            )
             least = max(min(widest, _LEAST), *map(_longest_piece, cells))
             rooms[k] = max(least, widest + spare)
             spare += widest - rooms[k]
@@ -75,10 +67,6 @@ class FoldingTable(Table):
 
 def _text(console: Console, cell: RenderableType) -> Text:
     return cell if isinstance(cell, Text) else console.render_str(str(cell), highlight=False)
-
-
-def _lines(text: Text) -> int:
-    return max(line.cell_len for line in text.split())
 
 
 def _clamped(each: Column, width: int) -> int:
@@ -116,13 +104,7 @@ def _broken(text: Text, room: int) -> Text:
 
 
 def headed_table(*columns: Column | str, **options: Any) -> Table:
-    """Return a table with a line under its headings.
-
-    Examples
-    --------
-    >>> headed_table(column("mode"), column("frequency", right=True)).columns[1].justify
-    'right'
-    """
+    """Return a table with a line under its headings."""
     return FoldingTable(*columns, box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), **options)
 
 
@@ -133,13 +115,7 @@ def column(heading: str, *, right: bool = False, width: int | None = None, wraps
 
 
 def fact_table(facts: Iterable[tuple[str, str]]) -> Table:
-    """Return a table of facts: name and value.
-
-    Examples
-    --------
-    >>> fact_table([("links", "12"), ("graph", "planar")]).row_count
-    2
-    """
+    """Return a table of facts: name and value."""
     columns = Column(no_wrap=True, style="bright_black"), Column(overflow="fold")
     table = FoldingTable(*columns, box=box.SIMPLE, show_header=False, pad_edge=False, padding=(0, 1))
     for name, value in facts:

@@ -1,7 +1,5 @@
 """Values as short text, for the page and for the terminal."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -23,13 +21,7 @@ _GAIN_OWNERS = {
 
 
 def show(value: Any) -> str:
-    """Return a claim's value as short text: numbers to four digits, long sequences by length.
-
-    Examples
-    --------
-    >>> show(1.23456789), show(None), show({"pair": (1, 2)}), show(np.arange(9))
-    ('1.235', '—', 'pair: (1, 2)', '9 values')
-    """
+    """Return a claim's value as short text: numbers to four digits, long sequences by length."""
     if value is None:
         return "—"
     if isinstance(value, np.generic):
@@ -50,15 +42,7 @@ def show(value: Any) -> str:
 
 
 def markup(value: Any) -> Markup:
-    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings.
-
-    Examples
-    --------
-    >>> markup({"pair": (1, 2)})
-    Markup('pair: (1, 2)')
-    >>> markup({"a": {"b": 1.0}})
-    Markup('<details class="values"><summary>1 entry</summary><dl><dt>a</dt><dd>b: 1</dd></dl></details>')
-    """
+    """Return a value as markup: text as `show` writes it, or a folded table of nested mappings."""
     if not isinstance(value, Mapping) or (len(value) <= _LONGEST and not any(map(_deep, value.values()))):
         return escape(show(value))
     rows = Markup("").join(Markup("<dt>{}</dt><dd>{}</dd>").format(key, markup(item)) for key, item in value.items())
@@ -71,13 +55,7 @@ def _deep(value: Any) -> bool:
 
 
 def source_name(key: str) -> str:
-    """Return a key of the bibliography as a readable name.
-
-    Examples
-    --------
-    >>> source_name("olfati-saber-2006"), source_name("msn-2013")
-    ('Olfati-Saber 2006', 'MSN 2013')
-    """
+    """Return a key of the bibliography as a readable name."""
     *words, year = key.split("-") if key[-1:].isdigit() else (*key.split("-"), "")
     return f"{'-'.join(word.upper() if word in ('msn', 'ode') else word.capitalize() for word in words)} {year}".strip()
 
@@ -92,16 +70,7 @@ def deciding_claim(verdict: Verdict) -> Claim | None:
 
 
 def parameters(law: Any) -> tuple[tuple[str, str], ...]:
-    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> [name for name, value in parameters(Algorithm1())]
-    ['law', 'alpha', 'gains']
-    >>> parameters(Algorithm1())[2][1]
-    'Gains(c1_alpha = 30, c2_alpha = 10.95)'
-    """
+    """A law's parameters as (name, value) to read; gains that act on nothing in this law are left out."""
     if not is_dataclass(law):
         return (("law", type(law).__name__),)
     items = ((f.name, getattr(law, f.name)) for f in fields(law))
@@ -120,13 +89,7 @@ def _describe(value: Any, law: Any) -> str:
 
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
-    """Return (name, value, meaning) of every threshold.
-
-    Examples
-    --------
-    >>> tolerance_rows(Tolerances())[0][:2]
-    ('energy', '1e-06')
-    """
+    """Return (name, value, meaning) of every threshold."""
     meanings = dict(re.findall(r"^(\w+) : float\n((?:[ ]{4}.+\n?)+)", getdoc(Tolerances) or "", re.MULTILINE))
     names = [f.name for f in fields(tolerances)]
     return tuple((n, show(getattr(tolerances, n)), " ".join(meanings.get(n, "").split())) for n in names)

@@ -41,13 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems without a run.
-
-    Examples
-    --------
-    >>> plan("E8")
-    (Task(name='E8', fixed=True, seed=0, only=(), figures=True),)
-    """
+    """The tasks that a name stands for: scenarios in the order of the catalogue, then theorems without a run."""
     if name in scenarios():
         return (Task(name, seed=seed, figures=figures),)
     if name is None:
@@ -106,10 +100,8 @@ def check_all(
     jobs: int = 1,
     watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None,
 ) -> Iterator[Done]:
-    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C.
-
-    A task that ends its process (for want of memory, say) is named in an error, when all others are done.
-    """
+    """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C."""
+    # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
     if not tasks:
         return
     lost: list[str] = []
@@ -122,11 +114,9 @@ def check_all(
 
 
 def _execution_order(tasks: Sequence[Work]) -> list[Work]:
-    """Return tasks in the order of execution: one flow first, then maps, then the others.
-
-    Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
-    the other the loops of maps, and seldom wait for each other (`flockana.jit`).
-    """
+    """Return tasks in the order of execution: one flow first, then maps, then the others."""
+    # Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
+    # the other the loops of maps, and seldom wait for each other (`flockana.jit`).
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())
     of_maps = {subject for subject in subjects if isinstance(scenario(subject).law, DiscreteLaw)}
     maps = [task for task in tasks if _subject(task) in of_maps]

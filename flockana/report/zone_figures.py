@@ -1,7 +1,5 @@
 """Figures of a run of zone-based flocking: Jond's figures 5 to 9 and the quantities of its claims."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

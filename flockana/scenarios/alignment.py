@@ -1,7 +1,5 @@
 """Scenarios of the Cucker-Smale law: flocking by velocity consensus, and pairs at the critical speed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

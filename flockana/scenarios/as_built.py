@@ -1,7 +1,5 @@
 """A flock under Algorithm 2 as it is built: sensors, messages, clocks, actuators and wind are not perfect."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -7,8 +7,6 @@ front of the two means, and starts that do not violate the claim already. The na
 a flock passes one that the conventional method, which wraps obstacles in discs, would close.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Checks of a scenario's parts and options before anything is run."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args

@@ -1,7 +1,5 @@
 """Scenarios of links kept by tension: a chain thrown apart, and two unlinked pairs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

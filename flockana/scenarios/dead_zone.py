@@ -1,7 +1,5 @@
 """Dead-zone paper's simulation with the missing parameters chosen, and runs at the limits of its claims."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -32,13 +30,7 @@ _FIGURE_3 = (0.0, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0)  # shares of the run: 
 def describe_choices(
     law: DeadZoneFlocking | LedDeadZoneFlocking, box: float, t_end: float, *, flow: bool = False
 ) -> str:
-    """Return a description of every parameter not printed in the paper.
-
-    Examples
-    --------
-    >>> describe_choices(DeadZoneFlocking(), 40.0, 200.0)[:34]
-    'Ours: r_b = 8 (d1 = 3.5, d2 = 12.5'
-    """
+    """Return a description of every parameter not printed in the paper."""
     pair = law.interaction
     ramp = (
         f"a ramp of width {pair.ramp:g} in place of the jumps beside the dead zone"

@@ -1,7 +1,5 @@
 """Dead-zone law with several leaders and pinned agents: the paper's conclusion, simulated (erratum L9)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_finite_scalar

@@ -1,7 +1,5 @@
 """Algorithm 1 on a directed net (agents that look ahead only): momentum and energy."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rigorous verdicts on a scenario, from a tube and the certified basin that it ends in."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Expected statuses of a scenario: ``verified("energy", "os-3:i") | refuted("E11")``."""
 
-from __future__ import annotations
-
 from flockana.theorems.theorem import Status
 
 

@@ -1,7 +1,5 @@
 """Building blocks of scenario reports: claims judged by margins, and component counts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
@@ -35,10 +33,8 @@ def finding(
     error: float | None = None,
     witness: Any = None,
 ) -> Claim:
-    """Return a claim judged by its margin alone.
-
-    A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
-    """
+    """Return a claim judged by its margin alone."""
+    # A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
     if error is None:
         counted = margin != 0.0 and float(2.0 * margin).is_integer()
         size = abs(computed) if isinstance(computed, float | int) else 0.0
@@ -51,13 +47,7 @@ def finding(
 def limit_report(
     name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
 ) -> Claim:
-    """Return a report on a limit: verified by a certificate, else open, never refuted.
-
-    Examples
-    --------
-    >>> limit_report("rests", Certificate(-0.5, "it does not fall"), "it still moves").status
-    'inconclusive'
-    """
+    """Return a report on a limit: verified by a certificate, else open, never refuted."""
     return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
 
 

@@ -1,7 +1,5 @@
 """Scenarios of explicit Euler with the paper's steps of 0.01 to 0.03."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

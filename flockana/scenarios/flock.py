@@ -1,7 +1,5 @@
 """A user's own flock: a law, a start and a time span, accepted wherever a scenario of the catalogue is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce

@@ -1,7 +1,5 @@
 """Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenarios of pair laws by their formula: a Morse flock that follows, and one that holds together by itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenarios of γ-agents with dynamics: one leader, and peers that each follow a copy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenarios of Jadbabaie, Lin and Morse: two groups that meet and agree, and two that part."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenarios of Su, Wang and Lin (2009): few informed agents, and a leader of varying velocity."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi
 
@@ -162,13 +160,7 @@ def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
-    """Return n agents in a square, of which the first few follow a leader of constant velocity.
-
-    Examples
-    --------
-    >>> informed_survey(informed=6).law.gains.c1_gamma[5:7]
-    (1.1, 0.0)
-    """
+    """Return n agents in a square, of which the first few follow a leader of constant velocity."""
     if not 1 <= informed <= n:
         raise ArgumentError(f"informed = {informed}: expected 1 to {n}, the number of agents")
     generator, who = np.random.default_rng(seed), range(informed)

@@ -5,8 +5,6 @@ agree about it. The recommended settings have one spacing, equal for all, and ve
 averaged: then forces are mutual, momentum is kept, and H falls but where perception switches.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

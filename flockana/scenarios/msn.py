@@ -4,8 +4,6 @@ Its γ-agent moves by iteration i at t = 0.009 i, and the p_r that it hands over
 rate (erratum E12). What the project reports (`msn_reports`) is judged on one random start.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import sqrt
 

@@ -3,8 +3,6 @@
 Where it gives a figure, the spread from start to start was measured over twenty starts of the map and is allowed for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache

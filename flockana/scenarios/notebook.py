@@ -1,7 +1,5 @@
 """Scenarios of the R² notebook, with its tenfold push below 0.05 as an option."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -73,11 +71,9 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report the printed fall of one agent's ‖u_γ‖ to below 0.001 by the last of 150 steps.
-
-    With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
-    the end every agent has the γ-agent's velocity. Whether this run is long enough to see it is what is looked at.
-    """
+    """Report the printed fall of one agent's ‖u_γ‖ to below 0.001 by the last of 150 steps."""
+    # With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
+    # the end every agent has the γ-agent's velocity. Whether this run is long enough to see it is what is looked at.
     pull = run.law.gains.c2_gamma * np.linalg.norm(run.p[-1] - run.law.target.state(float(run.t[-1]))[1], axis=1)
     middle = float(np.median(pull))
     certificate = Certificate(max(-1.0, 1.0 - middle / _FOLLOWS), "that is what counts as following")

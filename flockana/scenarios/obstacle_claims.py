@@ -1,7 +1,5 @@
 """Claims of sources about flocks among obstacles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import inf
 
@@ -110,12 +108,11 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Claim that the flock comes to rest, with small speeds and small forces.
-
-    With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is when.
-    So one instant will do here, of small speeds and forces together: it is no turning point of a swing for ever. Near
-    stiff obstacles the solver's last digits are worth as much force: the calmest instant of the last tenth is taken.
-    """
+    """Claim that the flock comes to rest, with small speeds and small forces."""
+    # With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is
+    # when. So one instant will do here, of small speeds and forces together: it is no turning point of a swing for
+    # ever. Near stiff obstacles the solver's last digits are worth as much force: the calmest instant of the last tenth
+    # is taken.
     law, late = run.law, np.flatnonzero(run.t >= run.t[-1] - 0.1 * (run.t[-1] - run.t[0]))
     still = np.zeros_like(run.p[0])
     forces = np.array([np.linalg.norm(law.acceleration(run.t[k], run.q[k], still), axis=1).max() for k in late])

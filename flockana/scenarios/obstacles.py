@@ -1,7 +1,5 @@
 """Scenarios of Olfati-Saber (2006), Figures 9 and 14 to 17, and more runs for Theorem 6."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any

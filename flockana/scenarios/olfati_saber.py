@@ -1,7 +1,5 @@
 """Scenarios of Olfati-Saber (2006), Figures 10 to 13, and three more with the same parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from itertools import pairwise
 from math import cos, pi, sin, sqrt

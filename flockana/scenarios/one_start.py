@@ -4,8 +4,6 @@ A further law is one more `LawEntry` of `ENTRIES`: its name, how it is built for
 its runs, and what that promises in a few words.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 

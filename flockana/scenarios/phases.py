@@ -1,7 +1,5 @@
 """Scenario family over two parameters: flocking, fragmentation and collapse."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

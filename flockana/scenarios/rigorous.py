@@ -1,7 +1,5 @@
 """Scenarios with rigorous verdicts: a flock that provably forms, and a proved collision."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

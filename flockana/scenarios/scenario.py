@@ -167,10 +167,8 @@ class Scenario:
 
 
 def differences(verdict: Verdict, expected: Mapping[str, Status]) -> tuple[str, ...]:
-    """Return where a verdict differs from expected statuses or contradicts a proof, one line each.
-
-    Statuses are keyed by theorem id and by ``"id:claim"``.
-    """
+    """Return where a verdict differs from expected statuses or contradicts a proof, one line each."""
+    # Statuses are keyed by theorem id and by ``"id:claim"``.
     statuses = {verdict.theorem: verdict.status} | {f"{verdict.theorem}:{c.name}": c.status for c in verdict.claims}
     differ = (
         f"{key} is {statuses.get(key, 'missing')}, expected {status}"

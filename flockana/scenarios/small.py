@@ -1,7 +1,5 @@
 """Small scenarios at the edge of a claim, from which a search for counterexamples begins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import sqrt
 

@@ -1,7 +1,5 @@
 """Lazy starts, computed on first access: listing scenarios needs only their sizes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -34,13 +32,7 @@ def lazy_state(
 
 
 def is_lazy(start: Any) -> bool:
-    """Return whether positions or velocities are lazy.
-
-    Examples
-    --------
-    >>> is_lazy(lazy_array((2, 1), lambda: None))
-    True
-    """
+    """Return whether positions or velocities are lazy."""
     return isinstance(start, _LazyArray)
 
 
@@ -63,19 +55,7 @@ class _LazyArrayField:
 
 
 def accepts_lazy(*names: str) -> Callable[[type[T]], type[T]]:
-    """Decorate a dataclass so that fields may be given by `lazy_array`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> @accepts_lazy("q")
-    ... @dataclass(frozen=True)
-    ... class Flock:
-    ...     q: FloatArray
-    >>> flock = Flock(lazy_array((2, 1), lambda: np.array([[0.0], [7.0]])))
-    >>> flock.q.ravel().tolist(), flock.q is flock.q
-    ([0.0, 7.0], True)
-    """
+    """Decorate a dataclass so that fields may be given by `lazy_array`."""
 
     def prepared(cls: type[T]) -> type[T]:
         for name in names:

@@ -1,7 +1,5 @@
 """Scenarios of Tanner, Jadbabaie and Pappas: a fixed wheel, and proximity nets that hold or part."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.interactions.log_potential import LogPotential

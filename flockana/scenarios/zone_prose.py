@@ -3,8 +3,6 @@
 None of these is simulated in the paper. Starts and settings are those of its section 5.1 or ours; each text says so.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -71,26 +71,13 @@ class Blocks:
 
 
 def reduced(stiffness: FloatArray, damping: FloatArray, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-    """Return A of x'' = −K x − D x' in bases N of the positions and V of the velocities that are kept.
-
-    Examples
-    --------
-    >>> one = np.eye(1)
-    >>> reduced(2.0 * one, 3.0 * one, one, one).tolist()
-    [[0.0, 1.0], [-2.0, -3.0]]
-    """
+    """Return A of x'' = −K x − D x' in bases N of the positions and V of the velocities that are kept."""
     top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
     return np.vstack([top, -velocities.T @ np.hstack([stiffness @ positions, damping @ velocities])])
 
 
 def complement(basis: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the orthogonal complement.
-
-    Examples
-    --------
-    >>> np.abs(complement(np.array([[1.0], [0.0]]))).tolist()
-    [[0.0], [1.0]]
-    """
+    """Return an orthonormal basis of the orthogonal complement."""
     if basis.shape[1] == 0:
         return np.eye(basis.shape[0])
     rest: FloatArray = np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
@@ -118,14 +105,7 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
 
 
 def is_pairs_and_pull(law: Any) -> bool:
-    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2 do.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> is_pairs_and_pull(Algorithm1())
-    True
-    """
+    """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2."""
     terms = getattr(law, "terms", ())
     linear = (isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
     return bool(terms) and all(linear)

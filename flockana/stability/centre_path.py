@@ -1,7 +1,5 @@
 """The centre of mass behind a γ-agent on a line, a sine or a circle, in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,14 +20,7 @@ _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
-    """Return the γ-agent's path and the factor of its p_r, unwrapped.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import LinearTarget
-    >>> path_and_factor(RescaledVelocity(LinearTarget((0.0,), (2.0,)), 0.5))[1]
-    0.5
-    """
+    """Return the γ-agent's path and the factor of its p_r, unwrapped."""
     if isinstance(target, RescaledVelocity):
         return target.target, target.factor
     return target, 1.0
@@ -50,14 +41,7 @@ class Motion:
 
 
 def motion(target: Target) -> Motion:
-    """Return a γ-agent's motion as a line plus a harmonic.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import CircleTarget
-    >>> motion(CircleTarget((1.0, 2.0), 3.0, 0.5)).swing.tolist()
-    [(3+0j), -3j]
-    """
+    """Return a γ-agent's motion as a line plus a harmonic."""
     path = target.harmonic if isinstance(target, Target) else None
     if path is None:
         raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
@@ -113,17 +97,7 @@ def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
 
 
 def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> FloatArray:
-    """Return q_c(t) in closed form from its start at t[0], transient included, shape (T, m).
-
-    Examples
-    --------
-    Without damping it swings through a target at rest and as far beyond:
-
-    >>> from flockana.environment.targets import StaticTarget
-    >>> swing = Gains(c1_gamma=1.0, c2_gamma=0.0)
-    >>> centre_path(swing, StaticTarget((5.0,)), [0.0, np.pi], [1.0], [0.0]).round(9).ravel().tolist()
-    [1.0, 9.0]
-    """
+    """Return q_c(t) in closed form from its start at t[0], transient included, shape (T, m)."""
     moving, times = motion(target), np.atleast_1d(np.asarray(t, dtype=np.float64))
     start, speed = ensure_vector("q_c", q_c, moving.start.size), ensure_vector("p_c", p_c, moving.start.size)
     lag, swing = steady_motion(gains, moving)

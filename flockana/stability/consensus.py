@@ -1,7 +1,5 @@
 """Consensus with a delay, x'(t) = −L x(t − τ): as a `DelaySystem`, and its roots in closed form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

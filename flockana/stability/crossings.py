@@ -10,8 +10,6 @@ matrix (A + B)(μ − W), in the eigenvectors of W at ω, is diagonally dominant
 short against the eigenvalues' distances from the real axis. So no band is narrow enough to be missed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf, pi, sqrt, tan
 from typing import Any, NamedTuple
@@ -46,25 +44,9 @@ class Crossing(NamedTuple):
 
 
 def modal_crossing(four: Four, neutral: float) -> Crossing | None:
-    """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes.
-
-    |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
-    Stiffness up to `neutral` is 0.
-
-    Examples
-    --------
-    x'' = −x'(t − τ) crosses at π/2:
-
-    >>> one, zero = np.ones((1, 1)), np.zeros((1, 1))
-    >>> modal_crossing((zero, zero, zero, one), 0.0)
-    Crossing(delay=1.5707963267948966, frequency=1.0, least=1.5707963267948966)
-
-    A balanced directed cycle of three, p' = −L p(t − τ), has λ = (3 ± j√3)/2 and (π/2 − π/6)/√3:
-
-    >>> cycle = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
-    >>> round(modal_crossing((0 * cycle, 0 * cycle, 0 * cycle, cycle), 0.0).delay, 4)
-    0.6046
-    """
+    """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
+    # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
+    # Stiffness up to `neutral` is 0.
     values = _common_modes(four)
     if values is None:
         return _triangular_crossing(four)
@@ -207,11 +189,9 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
 
 
 def _crossing_free(at: _Spectrum, angle: float) -> float:
-    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle.
-
-    Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less than
-    s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
-    """
+    """Return a distance from a frequency within which there certainly is no crossing with ωτ up to an angle."""
+    # Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less
+    # than s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
     gaps = _distances(at, 1.0 / tan(0.5 * angle) if angle < 2.0 * pi else -inf)
     if not np.isfinite(at.first).all() or gaps.min() <= 0.0:
         return 0.0
@@ -226,19 +206,9 @@ def _crossing_free(at: _Spectrum, angle: float) -> float:
 def least_crossing(
     four: Four, low: float, high: float, advance: Callable[[float], object] = lambda _: None
 ) -> Crossing:
-    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular.
-
-    The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are needed.
-    `advance` is called with the share of the frequencies that is done.
-
-    Examples
-    --------
-    >>> turn = np.array([[0.8, -0.6], [0.6, 0.8]])
-    >>> prompt, late = np.diag([3.0, 1.0]), turn @ np.diag([2.0, 0.5]) @ turn.T
-    >>> found = least_crossing((prompt, np.eye(2), late, np.zeros((2, 2))), 0.0, 4.0)
-    >>> bool(0.0 < found.least <= found.delay <= 1.00001 * found.least)
-    True
-    """
+    """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular."""
+    # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
+    # needed. `advance` is called with the share of the frequencies that is done.
     best, todo, left = Crossing(inf, float("nan"), inf), [(low, high)], MOST
     while todo:
         a, b = todo.pop()

@@ -76,15 +76,7 @@ class Decay:
 
 
 def slowest_seen(flock: Linearisation) -> Mode:
-    """Return the slowest mode that shows in velocities relative to the centre of mass.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.stability.linearise import linearise
-    >>> slowest_seen(linearise(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])).name
-    'breathing'
-    """
+    """Return the slowest mode that shows in velocities relative to the centre of mass."""
     for mode in flock.modes:
         if float(np.linalg.norm(mode.shape - mode.shape.mean(axis=0))) >= _SEEN:
             if mode.decays:
@@ -98,19 +90,9 @@ def slowest_seen(flock: Linearisation) -> Mode:
 
 @check_kinds
 def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
-    """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one.
-
-    K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
-    periods, and exact for a pure mode.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> from flockana.stability.linearise import linearise
-    >>> pair = decay(linearise(Algorithm1(), [[0.0], [7.0]]))
-    >>> pair.difference < 1e-3
-    True
-    """
+    """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one."""
+    # K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
+    # periods, and exact for a pure mode.
     mode = slowest_seen(flock)
     size = ensure_positive("amplitude", amplitude) * _length(flock)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate

@@ -6,8 +6,6 @@ only what it hears of other agents ("neighbours": it knows its own state at once
 itself are prompt).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf, nan, pi
@@ -101,8 +99,6 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
     ----------
     law : Law
         Algorithm 1 or 2, gains one for all or one per agent; with ``"all"`` any law that `linearise` takes.
-    q : array_like, shape (n, m)
-        Equilibrium.
     delayed : {"all", "pairs", "neighbours"}
         Everything, an agent's own state included; the terms between agents, its own state in them included; or only
         what these terms hear of other agents.
@@ -184,8 +180,6 @@ def delay_margin(system: DelaySystem, *, progress: bool = False) -> DelayMargin:
     ----------
     system : DelaySystem
         Stable without delay, but for neutral motions.
-    progress : bool
-        Show a progress bar on the terminal.
 
     Examples
     --------
@@ -242,10 +236,8 @@ def _strong_parts(system: DelaySystem) -> Iterator[DelaySystem]:
 
 
 def _stable(system: DelaySystem) -> bool:
-    """Return whether every root without delay decays beyond rounding, neutral roots excepted.
-
-    These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
-    """
+    """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
+    # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     found = []
     for part in _strong_parts(system):
         (k0, d0), (k1, d1) = part.prompt, part.late
@@ -306,14 +298,7 @@ def rightmost_roots(system: DelaySystem, delay: float, *, nodes: int = 16, count
 
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:
-    """Return an error bound of a refined root, from the residual and rounding.
-
-    Examples
-    --------
-    >>> one = DelaySystem((np.zeros((1, 1)), np.zeros((1, 1))), (np.zeros((1, 1)), np.ones((1, 1))), neutral=1)
-    >>> bool(root_error(one, 1j, 0.5 * pi) < 1e-14)
-    True
-    """
+    """Return an error bound of a refined root, from the residual and rounding."""
     (k0, d0), (k1, d1) = system.prompt, system.late
     u, sizes, vh = np.linalg.svd(system.characteristic(s, delay))
     late, turn = np.exp(-s * delay), abs(complex(u[:, -1].conj() @ system.slope(s, delay) @ vh[-1].conj()))

@@ -3,8 +3,6 @@
 What was found for thirty agents is in docs/gain-design.md.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product

@@ -13,8 +13,6 @@ so that the speed of turning is still to die out, as it is in a flock at rest; a
 and speed alike: what is rated is the flock's shape and its centre, and nothing of how it turns.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any
@@ -38,16 +36,7 @@ ROTATIONS = ("apart", "neutral", "counted")
 
 @dataclass(frozen=True)
 class GainProblem:
-    """State matrix of the gain design problem, and its eigenvalues as functions of the gains.
-
-    Examples
-    --------
-    One agent, c1γ = 2 and c2γ = 3, has the roots −1 and −2:
-
-    >>> alone = GainProblem(np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 0)), 1)
-    >>> round(alone.abscissa(np.array([2.0, 3.0])), 12)
-    -1.0
-    """
+    """State matrix of the gain design problem, and its eigenvalues as functions of the gains."""
 
     stiffness: FloatArray  # shape (N, N): c1α ∇²V, or zero in the simplified form
     damping: FloatArray  # shape (N, N): c2α L̂
@@ -79,10 +68,8 @@ class GainProblem:
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n).
-
-        dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
-        """
+        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n)."""
+        # dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
         from scipy.linalg import eig
 
         values, left, right = eig(self.matrix(gains), left=True, right=True)  # type: ignore[misc]

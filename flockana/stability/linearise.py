@@ -209,10 +209,8 @@ def _ratio(value: float, scale: float) -> float:
 
 
 def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:
-    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time.
-
-    Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
-    """
+    """Raise if the Jacobian changes along the steady motion: the linear system would depend on time."""
+    # Looked at after a little less than one, ten and a hundred of the flock's own times, that of its stiffest motion.
     if law.centre_decouples:
         return
     size = q.size

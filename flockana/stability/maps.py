@@ -49,8 +49,6 @@ class MapMode:
         Displacements of the agents (of a map of headings: turns), of unit length together.
     name : str
         As of a `Mode`; numbers count from the slowest.
-    dt : float
-        Step.
     error : float
         Largest rounding error of the multiplier.
 
@@ -98,8 +96,6 @@ class MapLinearisation:
         The map.
     q, p : ndarray, shape (n, m)
         Positions and velocities, all agents with the velocity of the frame.
-    t : float
-        Time.
     residual : float
         Distance from a fixed motion, relative to the law's forces (of headings: in radians).
     A, B : ndarray, shapes (N, N) and (N, F)
@@ -222,15 +218,7 @@ class MapLinearisation:
 def stepped_equation(
     stiffness: Any, damping: Any, dt: float, factor: float, m: int, *, in_place: bool = False
 ) -> tuple[Any, Any]:
-    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse.
-
-    Examples
-    --------
-    >>> from scipy.sparse import csr_array
-    >>> one = csr_array(np.array([[2.0]]))
-    >>> [part.toarray().tolist() for part in stepped_equation(one, one, 0.5, 1.0, 1)]
-    [[[2.0]], [[3.0]]]
-    """
+    """(K, D) of the equation of w = (z − 1)/dt of a map that steps δq'' = −K δq − D δq', sparse."""
     k, d = stiffness.tocsr(), damping + factor * dt * stiffness
     if not in_place:
         return k, d

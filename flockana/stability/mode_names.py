@@ -1,7 +1,5 @@
 """Names of modes: translation, rotation, breathing, or a number."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,13 +11,7 @@ _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found 
 
 
 def translations(n: int, m: int) -> FloatArray:
-    """Return unit translations along the axes, one per column, shape (n m, m).
-
-    Examples
-    --------
-    >>> translations(4, 1).ravel().tolist()
-    [0.5, 0.5, 0.5, 0.5]
-    """
+    """Return unit translations along the axes, one per column, shape (n m, m)."""
     unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
     return unit
 

@@ -5,8 +5,6 @@ it moves by itself. Both are taken out exactly, by the left eigenvectors, before
 comes out as 0, and a double one does not smear over ±√(rounding).
 """
 
-from __future__ import annotations
-
 from cmath import sqrt
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -102,13 +100,7 @@ class Split(NamedTuple):
 
 
 def split(stiffness: Any, damping: Any, m: int) -> Split:
-    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do.
-
-    Examples
-    --------
-    >>> split(np.diag([2.0, 2.0]), np.zeros((2, 2)), 1).exact, split(np.diag([2.0, 1.0]), np.zeros((2, 2)), 1).exact
-    (True, False)
-    """
+    """Look for the split into centre of mass and shape: K and D map translations to translations, and Kᵀ, Dᵀ do."""
     unit = translations(stiffness.shape[0] // m, m)
     own, leak, errors = [], 0.0, []
     for matrix in (stiffness, damping):
@@ -141,16 +133,7 @@ class Invariant(NamedTuple):
 
 
 class SecondOrder:
-    """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration.
-
-    Examples
-    --------
-    >>> from scipy.sparse import csr_array
-    >>> spring = csr_array(np.array([[1.0, -1.0], [-1.0, 1.0]]))
-    >>> modes = SecondOrder(np.array([[0.0], [1.0]]), spring, 1.5 * spring).modes  # λ² + 3λ + 2 = 0
-    >>> [(mode.name, round(mode.decay_rate, 9)) for mode in modes]
-    [('breathing', 1.0), ('breathing', 2.0)]
-    """
+    """The quadratic eigenproblem (λ² + λ D + K) v = 0 at a configuration."""
 
     def __init__(self, q: FloatArray, stiffness: Any, damping: Any, *, zero: float = ZERO) -> None:
         self.q, self.stiffness, self.damping, self.zero = q, stiffness, damping, zero
@@ -217,11 +200,9 @@ class SecondOrder:
 
     @cached_property
     def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
-        """Return eigenvalues, displacements and rounding errors of the remaining modes.
-
-        Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
-        the user's choice of a time unit.
-        """
+        """Return eigenvalues, displacements and rounding errors of the remaining modes."""
+        # Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
+        # the user's choice of a time unit.
         left, size, pace = self.invariant.left.copy(), self.q.size, self.pace
         left[:size] /= pace
         apart, turn = left.shape[1], _orthogonal_factor(left)
@@ -311,10 +292,8 @@ class SecondOrder:
 
 
 def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
-    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right.
-
-    Q is never formed: a few reflections cost a few passes over what they act on.
-    """
+    """Multiply by Q, or its transpose, whose first columns span the basis, from the left or right."""
+    # Q is never formed: a few reflections cost a few passes over what they act on.
     from scipy.linalg.lapack import dgeqrf, dormqr
 
     if not basis.shape[1]:

@@ -1,7 +1,5 @@
 """Motion of the flock along one of its modes, for pictures and films."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

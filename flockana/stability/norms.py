@@ -151,18 +151,10 @@ def stationary_covariance(system: StateSpace, intensity: float = 1.0) -> FloatAr
 
 
 def h2_bounds(flock: Blocks) -> tuple[float, float]:
-    """Return closed-form bounds √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)) of the H₂ norm to the shape.
-
-    With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since
-    d_min ≤ D ≤ d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a
-    multiple of 1.
-
-    Examples
-    --------
-    >>> low, high = h2_bounds(law_blocks(Algorithm1(), [[0.0], [7.0]]))
-    >>> bool(abs(high / low - 1.0) < 1e-12)
-    True
-    """
+    """Return closed-form bounds √(tr K⁺/(2 d_max)) and √(tr K⁺/(2 d_min)) of the H₂ norm to the shape."""
+    # With noise of intensity 2 D in place of 1 the stationary law is Gibbs's, with covariance K⁻¹; since d_min ≤ D ≤
+    # d_max and covariance grows with the noise, that brackets it. They meet, but for rounding, where D is a multiple of
+    # 1.
     ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     positions, velocities, shapes = (complement(x) for x in (flock.neutral, flock.drifting, flock.rigid))
     rates = np.linalg.eigvalsh(velocities.T @ flock.damping @ velocities)

@@ -30,28 +30,15 @@ _BEYOND = 100.0  # times the fastest pole, and a hundredth of the slowest: the r
 
 @dataclass(frozen=True)
 class LoopMargins:
-    """Margins of the loop broken at one component of one agent's input.
+    """Margins of the loop broken at one component of one agent's input."""
 
-    Parameters
-    ----------
-    agent, axis : int
-        Where it is broken.
-    gain : (float, float)
-        Factors of the input between which the flock stays stable; 0 and infinity where there is no limit.
-    phase : float
-        Phase margin in degrees; infinite without a crossover.
-    disk : float
-        Disk margin (balanced): gain and phase may vary together within it.
-    sensitivity : float
-        Peak of the sensitivity 1/|1 + L(jω)|.
-    """
-
-    agent: int
+    agent: int  # agent, axis: Where it is broken
     axis: int
+    # Factors of the input between which the flock stays stable; 0 and infinity where there is no limit
     gain: tuple[float, float]
-    phase: float
-    disk: float
-    sensitivity: float
+    phase: float  # Phase margin in degrees; infinite without a crossover
+    disk: float  # Disk margin (balanced): gain and phase may vary together within it
+    sensitivity: float  # Peak of the sensitivity 1/|1 + L(jω)|
 
 
 @dataclass(frozen=True)

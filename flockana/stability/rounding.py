@@ -8,8 +8,6 @@ No eigenvalue of an N x N matrix moves by more than (2 ‖A‖)^(1 − 1/N) ‖�
 eigenvectors say: of a few coalesced roots that bound is the better one where rounding was kind and left them close.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
@@ -31,15 +29,6 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
     ----------
     off : float
         By what share of its size the matrix itself may be off.
-
-    Examples
-    --------
-    >>> values, _, errors = eigen(np.array([[0.0, 1.0], [-1.0, 0.0]]))
-    >>> bool(np.all(np.abs(values.real) <= errors) and errors.max() < 1e-13)
-    True
-    >>> double = eigen(np.array([[1.0, 1.0], [0.0, 1.0]]))[2]
-    >>> bool(1e-8 < double.min() and double.max() < 1e-6)
-    True
     """
     from scipy.linalg import eig
     from scipy.linalg.lapack import dgebal
@@ -57,10 +46,8 @@ def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexAr
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
-    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one.
-
-    Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
-    """
+    """Return the largest error of each eigenvalue as one of a cluster; infinite for a single one."""
+    # Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     from scipy.spatial import cKDTree
 
     plane = np.column_stack([values.real, values.imag])
@@ -70,24 +57,16 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
-    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients.
-
-    Examples
-    --------
-    >>> root_error(-1.0, 2.0, 3.0, (1e-12, 0.0)), root_error(-1.0, 1.0, 2.0, (1e-12, 0.0))
-    (1e-12, 1e-06)
-    """
+    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients."""
     push, slope = errors[0] + abs(value) * errors[1], abs(2.0 * value + damping)
     double = float(np.sqrt(push))
     return min(push / slope, double) if slope > 0.0 else double
 
 
 def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: ComplexArray) -> FloatArray:
-    """Return error bounds of roots λ of (λ² + λD + K) v = 0, from rounding and residuals; D and K symmetric.
-
-    To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
-    square root of the push.
-    """
+    """Return error bounds of roots λ of (λ² + λD + K) v = 0, from rounding and residuals; D and K symmetric."""
+    # To first order by ‖(λ² + λD + K) v‖/|vᵀ(2λ + D) v|, for vᵀ is then the left eigenvector; of a double root by the
+    # square root of the push.
     rows = [float(abs(matrix).sum(axis=1).max()) for matrix in (stiffness, damping)]
     errors = np.empty(len(values))
     for k, value in enumerate(values.tolist()):
@@ -101,13 +80,7 @@ def mode_errors(stiffness: Any, damping: Any, values: ComplexArray, shapes: Comp
 
 
 def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
-    """Return the order of eigenvalues by decay rate, then frequency, equal up to rounding.
-
-    Examples
-    --------
-    >>> slowest_first(np.array([-1.0 + 5.0j, -1.0 - 1e-16 + 2.0j, -0.5]), np.full(3, 1e-15))
-    [2, 1, 0]
-    """
+    """Return the order of eigenvalues by decay rate, then frequency, equal up to rounding."""
     order: list[int] = []
     for level in _levels(range(len(values)), -np.real(values), errors):
         for pair in _levels(level, np.abs(np.imag(values)), errors):

@@ -12,8 +12,6 @@ singular, so that for f >= 1 the margin is the least h with a singular M. Explic
 its margin is the least −2 Re λ/|λ|². Else the margin lies between the bound and the first growth that a search meets.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf, nan, sqrt

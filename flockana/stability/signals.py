@@ -20,24 +20,12 @@ if TYPE_CHECKING:
 
 
 def labels(name: str, n: int, m: int) -> list[str]:
-    """Names of a quantity of n agents by component, in the order of ``q.ravel()``.
-
-    Examples
-    --------
-    >>> labels("q", 2, 2)
-    ['q0_x', 'q0_y', 'q1_x', 'q1_y']
-    """
+    """Names of a quantity of n agents by component, in the order of ``q.ravel()``."""
     return [f"{name}{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
 
 
 def axes_of(name: str, m: int) -> list[str]:
-    """Names of the components of one vector.
-
-    Examples
-    --------
-    >>> axes_of("qc", 2)
-    ['qc_x', 'qc_y']
-    """
+    """Names of the components of one vector."""
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 

@@ -1,7 +1,5 @@
 """The slowest modes of a large flock: sparse shift-invert about zero, with zero modes set apart."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -92,11 +90,9 @@ def slowest_modes(linearisation: Linearisation, count: int = 12) -> SlowModes:
 
 
 def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count: int) -> float:
-    """Return the largest rate up to which every mode has |λ| <= radius: 0 if none, NaN if unknown.
-
-    Of the bounds K < a + b D one is looked for that serves the rate that matters, number `count`, or else the smallest;
-    how far it goes beyond is found by bisection.
-    """
+    """Return the largest rate up to which every mode has |λ| <= radius: 0 if none, NaN if unknown."""
+    # Of the bounds K < a + b D one is looked for that serves the rate that matters, number `count`, or else the
+    # smallest; how far it goes beyond is found by bisection.
     if not problem.symmetric:
         return float("nan")
     if abs(problem.damping).max() == 0.0:

@@ -1,7 +1,5 @@
 """Specifications of a flock (decay, delay, sampling period, noise, overshoot): how far each is met, which binds."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from math import exp, inf, pi, sqrt

@@ -32,10 +32,8 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 
 
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
-    """Return the complex amplitude at ω and its error, by least squares on each coordinate of x.
-
-    The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
-    """
+    """Return the complex amplitude at ω and its error, by least squares on each coordinate of x."""
+    # The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
     since = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
     basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), since])
     fit, _, _, sizes = np.linalg.lstsq(basis, x, rcond=None)
@@ -68,10 +66,8 @@ def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
 
 
 def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
-    """Return the remaining transient at these times in closed form; of a map its flow's.
-
-    Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
-    """
+    """Return the remaining transient at these times in closed form; of a map its flow's."""
+    # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
     start, place, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
     turn = np.exp(1j * moving.omega * start)

@@ -159,20 +159,9 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
 
 
 def map_system(law: MSNDiscretisation) -> StateSpace:
-    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`.
-
-    Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
-    agents obeys no equation of its own.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> from flockana.environment.targets import StaticTarget
-    >>> pull = Algorithm2(gains=Gains(c1_gamma=1.0, c2_gamma=2.0), target=StaticTarget((0.0,)))
-    >>> system = map_system(MSNDiscretisation(pull, dt=0.1, in_place=False))
-    >>> system.dt, round(float(system.dcgain()[0, 0]), 12)
-    (0.1, 1.0)
-    """
+    """Return the MSN project's map of the centre of mass from (q_r, p_r) to q_c as a `control.StateSpace`."""
+    # Exact if all agents move at once; agent by agent, action and reaction differ within a step, and the sum over
+    # agents obeys no equation of its own.
     import control
 
     if not isinstance(law, MSNDiscretisation) or law.target is None:
@@ -187,17 +176,7 @@ def map_system(law: MSNDiscretisation) -> StateSpace:
 
 
 def map_gain(law: MSNDiscretisation, omega: float, *, factor: float = 1.0) -> float:
-    """Return `predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> from flockana.environment.targets import StaticTarget
-    >>> pull = Algorithm2(gains=Gains(c1_gamma=70.0, c2_gamma=16.733200530681511), target=StaticTarget((0.0, 0.0)))
-    >>> omega = 2.0 * pi * 0.025 / 0.045
-    >>> [round(map_gain(MSNDiscretisation(pull, dt=0.009), omega, factor=f), 4) for f in (0.009, 1.0)]
-    [0.8375, 1.0907]
-    """
+    """Return `predicted_gain` for the MSN project's map: |G_q(e^jωh) + factor jω G_p(e^jωh)|."""
     omega = ensure_finite_scalar("omega", omega)
     by_position, by_velocity = map_system(law)(np.exp(1j * omega * law.dt)).ravel()
     return float(abs(by_position + factor * 1j * omega * by_velocity))

@@ -3,8 +3,6 @@
 Three agents show every kind of pair, and a pull on one, two or all of them, so the identities are those of every n.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp
@@ -38,11 +36,9 @@ def _between_agents(q: list[sp.Matrix], p: list[sp.Matrix]) -> tuple[list[sp.Mat
 
 
 def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
-    """Derive dH/dt in the given frame, of a γ-agent at rest that pulls some, and of speed control of all.
-
-    H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² +
-    Σ (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
-    """
+    """Derive dH/dt in the given frame, of a γ-agent at rest that pulls some, and of speed control of all."""
+    # H = Σ ψ + c_1/2 Σ of the informed ‖q_i − q_r‖² + ½ Σ‖p_i‖² changes at −c pᵀLp − c_2 Σ of the informed ‖p_i‖² + Σ
+    # (α − β‖p_i‖²)‖p_i‖²: drag (α < 0) takes energy, and a thrust adds it where agents are slower than √(α/β).
     q, p, (q_r, _, _) = _state(m)
     u, energy, rate = _between_agents(q, p)
     for i in range(_N):
@@ -58,11 +54,9 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
 
 
 def moving_frame_identity(m: int = 2) -> Derivation:
-    """Derive dH/dt in the moving frame, for a γ-agent on any path that pulls all, with feedforward and drag.
-
-    H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
-    acts on all alike does no work there.
-    """
+    """Derive dH/dt in the moving frame, for a γ-agent on any path that pulls all, with feedforward and drag."""
+    # H = Σ ψ + c_1/2 Σ‖x_i‖² + ½ Σ‖v_i‖² changes at −c vᵀLv − c_2 Σ‖v_i‖² + α Σ‖v_i‖², whatever the γ-agent does: what
+    # acts on all alike does no work there.
     q, p, (q_r, p_r, a_r) = _state(m)
     u, energy, rate = _between_agents(q, p)
     centre, drift = (sum(x[1:], x[0]) / _N for x in (q, p))

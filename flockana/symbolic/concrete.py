@@ -5,8 +5,6 @@ with the graph Laplacian as a matrix. So it tests the lifting of `flockana.symbo
 values come from it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Agents that follow copies of a γ-agent with dynamics: energy balance, and separation of the copies."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
@@ -30,13 +28,7 @@ def copies_balance() -> Derivation:
 
 
 def copies_part() -> Derivation:
-    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation, whatever the number of copies.
-
-    Examples
-    --------
-    >>> copies_part().holds, copies_part().result
-    (True, Eq(Derivative(d(t), (t, 2)), (-b - k_2)*Derivative(d(t), t) + (-k - k_1)*d(t)))
-    """
+    """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3
     pulled = {

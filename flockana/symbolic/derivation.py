@@ -1,7 +1,5 @@
 """Derivations: steps of text, equation and condition, LaTeX output, and computed residuals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import sympy as sp
@@ -38,13 +36,7 @@ class Step:
 
 
 def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
-    r"""Return a titled sequence of steps as one ``aligned`` environment.
-
-    Examples
-    --------
-    >>> latex_steps("T", (Step("One.", sp.Integer(1)),)).startswith(r"\begin{aligned}")
-    True
-    """
+    r"""Return a titled sequence of steps as one ``aligned`` environment."""
     rows = [rf"& \textbf{{{title}}}", *(step.latex() for step in steps)]
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 

@@ -4,8 +4,6 @@ An enclosure exists only where every operation of the formula is analytic on the
 no argument of a root or logarithm may reach 0. So it proves that the formula has all derivatives there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction

@@ -5,8 +5,6 @@ own term. So dH/dt is a sum over pairs of one expression plus a sum over agents 
 between those two expressions is one for every n.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """Erratum E1: the slides print H = V + sum |p_i|^2; the kinetic energy needs the factor 1/2."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import sympy as sp

@@ -16,13 +16,7 @@ from flockana.symbolic.parameters import ALPHA, BETA, AlphaSymbols, BetaSymbols
 
 
 def taper(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
-    """Return the half-cosine of the bump on h <= z <= 1.
-
-    Examples
-    --------
-    >>> taper(sp.Rational(3, 4), h=sp.Rational(1, 2))
-    1/2
-    """
+    """Return the half-cosine of the bump on h <= z <= 1."""
     return written(Taper(Place(z, h)))
 
 
@@ -51,11 +45,6 @@ def bump(z: sp.Expr, *, h: sp.Expr = AlphaSymbols.h) -> sp.Expr:
 def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the uneven sigmoid ((a + b) sigma_1(s/l**2 + c) + (a - b))/2, which vanishes at 0 if a <= b.
 
-    Parameters
-    ----------
-    s : sympy.Expr
-        Its argument.
-
     Examples
     --------
     >>> phi(sp.Integer(0), alpha=AlphaSymbols(a=1, b=9))
@@ -68,11 +57,6 @@ def phi(s: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the action function rho_h(z/r_alpha) phi(z - d_alpha) (Olfati-Saber 2006).
 
-    Parameters
-    ----------
-    z : sympy.Expr
-        A sigma-norm, z >= 0.
-
     Examples
     --------
     >>> phi_alpha(sp.Integer(1), alpha=AlphaSymbols(eps=1, h=0.5, a=1, b=1, d=sp.sqrt(8), r=sp.sqrt(24)))
@@ -84,11 +68,6 @@ def phi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 @check_kinds
 def adjacency(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the weight a_ij = rho_h(z/r_alpha) of a pair at sigma-distance z (Olfati-Saber 2006).
-
-    Parameters
-    ----------
-    z : sympy.Expr
-        A sigma-norm, z >= 0.
 
     Examples
     --------
@@ -104,8 +83,6 @@ def phi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 
     Parameters
     ----------
-    z : sympy.Expr
-        A sigma-norm, z >= 0.
     beta : BetaSymbols
         Parameters; all symbolic if not given.
 

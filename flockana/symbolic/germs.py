@@ -1,7 +1,5 @@
 """Leading behaviour of a formula just above a point: a power of the distance times an enclosed factor."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -27,15 +25,7 @@ class _UnknownError(ArithmeticError):
 
 
 def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
-    """Return the leading behaviour of a formula on (0, width]; None where it is not known.
-
-    Examples
-    --------
-    >>> s = sp.Symbol("s", positive=True)
-    >>> found = germ(s**-12 - s**-6, s, fmpq(1, 2))
-    >>> int(found.power), round(float(found.factor.lower()), 3), round(float(found.factor.upper()), 3)
-    (-12, 0.984, 1.0)
-    """
+    """Return the leading behaviour of a formula on (0, width]; None where it is not known."""
     try:
         return _GermVisitor(variable, width).of(expression)
     except (_UnknownError, ValueError, ZeroDivisionError, OverflowError):

@@ -4,8 +4,6 @@ Known are names, numbers, + - * / ** and brackets, comparisons with the distance
 and the functions in `FUNCTIONS`. Nothing is evaluated as Python, and nothing that is written small can grow large.
 """
 
-from __future__ import annotations
-
 import ast
 import operator
 from collections.abc import Callable, Mapping
@@ -67,14 +65,7 @@ def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the
 
 
 def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
-    """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers.
-
-    Examples
-    --------
-    >>> s = sp.Symbol("s")
-    >>> expression_size(sp.exp(sp.exp(s)) + s**8, {})
-    (7, 2, 8)
-    """
+    """Return the number of nodes of an expression, its height of exponentials, and the degree of its powers."""
     if value not in known:
         rows = [expression_size(each, known) for each in value.args] or [(0, 0, 1)]
         nodes = 1 + sum(nodes for nodes, _, _ in rows)

@@ -1,7 +1,5 @@
 """Bounds of a potential given by its slope: sums of Taylor integrals with enclosed remainders."""
 
-from __future__ import annotations
-
 from math import inf
 
 from flint import arb, fmpq

@@ -1,7 +1,5 @@
 """The dead-zone law with leaders in sympy: its energy in their frames, written out for a small flock."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp
@@ -21,11 +19,9 @@ GROUP, PINNED = (0, 0, 1), (0,)  # three agents: two of one leader, the first of
 
 
 def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
-    """Derive dH/dt of three agents and two leaders, with all kinds of pairs, pinned and not.
-
-    H = sum |p_i - p_l|^2/2 + sum psi(rho_ij^2) + c_1/2 sum of the pinned |q_i - q_l|^2; its rate has -k_2 p^T L p
-    within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
-    """
+    """Derive dH/dt of three agents and two leaders, with all kinds of pairs, pinned and not."""
+    # H = sum |p_i - p_l|^2/2 + sum psi(rho_ij^2) + c_1/2 sum of the pinned |q_i - q_l|^2; its rate has -k_2 p^T L p
+    # within groups, -c_2 |p_i - p_l|^2 of the pinned, and what agents of different leaders exchange, -sum f_i . p_l.
     ensure_dimension(m)
     q, p = ([vector(f"{name}_{i}", m) for i in range(3)] for name in "qp")
     leaders = [[vector(f"{name}_{number}", m) for number in "gh"] for name in ("q", "p", "a")]

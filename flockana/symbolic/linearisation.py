@@ -4,8 +4,6 @@ u_i is a sum over the other agents, one own term and a sum over obstacles, so it
 blocks for every n. The action functions and weights stay generic: φ' and a' are functions of the σ-distance.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy as sp
@@ -38,12 +36,10 @@ def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma
 
 
 def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
-    """Derive agent j's part of ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j.
-
-    w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j),
-    side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
-    residuals hold each of them.
-    """
+    """Derive agent j's part of ∂u_i/∂(q, p): c1 (w I + 2 w' ΔΔᵀ) + 2 c2 a' (p_j − p_i) Δᵀ in q_j, c2 a I in p_j."""
+    # w is the weight of Δ = q_j − q_i in the force; w' and a' are derivatives in ‖Δ‖². The result is (∂/∂q_j, ∂/∂p_j),
+    # side by side; those in q_i, p_i are their negatives, and those of the force on j are the opposite of all: the
+    # residuals hold each of them.
     pair = GenericPair(m)
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
     delta, slip, z = q_j - q_i, p_j - p_i, pair.z
@@ -106,17 +102,8 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
 
 
 def turn(obstacle: GenericObstacle) -> sp.Matrix:
-    """Return d(p_hat)/dq at fixed p: the turning rate of the β-agent's velocity.
-
-    Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
-
-    Examples
-    --------
-    >>> turn(GenericObstacle("wall", 2))
-    Matrix([
-    [0, 0],
-    [0, 0]])
-    """
+    """Return d(p_hat)/dq at fixed p: the turning rate of the β-agent's velocity."""
+    # Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
     m, x, p = obstacle.m, obstacle.x, obstacle.p
     if obstacle.kind == "wall":
         return sp.zeros(m, m)
@@ -128,12 +115,9 @@ def turn(obstacle: GenericObstacle) -> sp.Matrix:
 
 
 def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
-    """Derive an obstacle's part of ∂u_i/∂(q_i, p_i), its β-agent moving with the agent.
-
-    With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i
-    −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2 b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i
-    c2 b (D − I).
-    """
+    """Derive an obstacle's part of ∂u_i/∂(q_i, p_i), its β-agent moving with the agent."""
+    # With the gap g = q̂ − q, D = ∂q̂/∂q and w the weight of g: in q_i −c1 [w (I − D) + 2 w' g gᵀ] + c2 [b ∂p̂/∂q − 2
+    # b' (p̂ − p) gᵀ], since the gradient of ‖g‖² is −2g; in p_i c2 b (D − I).
     one = GenericObstacle(kind, m)
     gap, slip, z = one.gap, one.rate - one.p, one.z
     table = {PHI_BETA: PHI_BETA_SLOPE, WEIGHT: WEIGHT_SLOPE}

@@ -1,7 +1,5 @@
 """Energy balance of velocity consensus with any weight of the distance and any pair potential."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import sympy as sp
@@ -15,10 +13,8 @@ WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
 
 
 def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
-    """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n.
-
-    H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
-    """
+    """Derive dH/dt of three agents that match velocities, which gives the identity in pairs for every n."""
+    # H = sum |p_i - p|^2/2 + sum psi(rho_ij^2), p the mean velocity; its rate is -sum a(rho_ij^2) |p_j - p_i|^2.
     ensure_dimension(m)
     q, p = ([vector(f"{name}_{i}", m) for i in range(3)] for name in "qp")
     mean = (p[0] + p[1] + p[2]) / 3

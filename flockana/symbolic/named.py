@@ -5,8 +5,6 @@ Where a law is composed of `Named` functions, generated code calls these by name
 floating point computes.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.norms import sigma_1, sigma_norm
@@ -35,13 +33,7 @@ class Named(sp.Function):
 
 
 def written(expression: sp.Expr) -> sp.Expr:
-    """Return an expression with the printed formulas of its named functions.
-
-    Examples
-    --------
-    >>> written(Sigma1(sp.Rational(3, 4)))
-    3/5
-    """
+    """Return an expression with the printed formulas of its named functions."""
     return expression.replace(lambda node: isinstance(node, Named), lambda node: node.formula)
 
 

@@ -4,8 +4,6 @@ Slow and exact, for tests that hold a fast kernel against the formula itself. ps
 derived pieces, the rate of the energy from the chain rule, not from the closed form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

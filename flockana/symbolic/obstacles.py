@@ -4,8 +4,6 @@ The normal of a wall is any nonzero vector here, the centre and radius of a sphe
 q = y + x, with y a point of the wall or the centre. What is computed is rational in x and, at a sphere, |x|.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -31,27 +29,13 @@ PSI_BETA = UndefinedFunction("psi_beta", real=True, __dict__={"fdiff": lambda se
 
 
 def wall_beta(q: sp.Matrix, p: sp.Matrix, point: sp.Matrix, normal: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return (q_hat, p_hat) = (P q + (I - P) y, P p), the beta-agent on a wall (Olfati-Saber 2006).
-
-    Examples
-    --------
-    >>> column = lambda *x: sp.Matrix(x)
-    >>> wall_beta(column(4, 3), column(1, 1), column(0, 0), column(0, 2))[0].T
-    Matrix([[4, 0]])
-    """
+    """Return (q_hat, p_hat) = (P q + (I - P) y, P p), the beta-agent on a wall (Olfati-Saber 2006)."""
     projection = sp.eye(len(q)) - normal * normal.T / normal.dot(normal)
     return projection * q + (sp.eye(len(q)) - projection) * point, projection * p
 
 
 def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return (q_hat, p_hat) = (mu q + (1 - mu) y, mu P p), the beta-agent on a sphere (Olfati-Saber 2006).
-
-    Examples
-    --------
-    >>> column = lambda *x: sp.Matrix(x)
-    >>> sphere_beta(column(4, 0), column(1, 1), column(0, 0), 2)[1].T
-    Matrix([[0, 1/2]])
-    """
+    """Return (q_hat, p_hat) = (mu q + (1 - mu) y, mu P p), the beta-agent on a sphere (Olfati-Saber 2006)."""
     x = q - centre
     mu = radius / sp.sqrt(x.dot(x))
     projection = sp.eye(len(q)) - x * x.T / x.dot(x)
@@ -116,17 +100,10 @@ class GenericObstacle:
 
 
 def derive_envelope(kind: str, m: int = 2) -> Derivation:
-    """Derive that the gradient of psi_beta needs no derivative of q_hat, and that p_hat is the rate of q_hat.
-
-    With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
-    surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
-    obstacle too, except at a sphere's centre, where q_hat does not exist.
-
-    Examples
-    --------
-    >>> derive_envelope("sphere", 3).holds
-    True
-    """
+    """Derive that the gradient of psi_beta needs no derivative of q_hat, and that p_hat is the rate of q_hat."""
+    # With D = dq_hat/dq the gradient of |q_hat - q|^2/2 is (D - I)^T (q_hat - q). The gap q_hat - q is normal to the
+    # surface and D maps into its tangent space, so D^T (q_hat - q) = 0 and -(q_hat - q) is left. This holds inside the
+    # obstacle too, except at a sphere's centre, where q_hat does not exist.
     generic = GenericObstacle(kind, m)
     gap, jacobian = generic.gap, generic.derivative
     squared = HALF * gap.dot(gap)
@@ -149,13 +126,7 @@ def derive_envelope(kind: str, m: int = 2) -> Derivation:
 
 @dataclass(frozen=True)
 class Braking:
-    """Effect of an obstacle on the kinetic energy, <p, p_hat - p>, and its sign.
-
-    Examples
-    --------
-    >>> derive_braking("sphere").holds
-    True
-    """
+    """Effect of an obstacle on the kinetic energy, <p, p_hat - p>, and its sign."""
 
     kind: str
     residual: sp.Expr  # <p, p_hat - p> less its geometric form (mu - 1) |P p|^2 - <a, p>^2, computed: 0

@@ -21,13 +21,7 @@ PSI = UndefinedFunction("psi_alpha", real=True, __dict__={"fdiff": lambda self, 
 
 
 def vector(name: str, m: int) -> sp.Matrix:
-    """Return a column of m real symbols.
-
-    Examples
-    --------
-    >>> vector("p", 2).T
-    Matrix([[p1, p2]])
-    """
+    """Return a column of m real symbols."""
     return sp.ImmutableMatrix([sp.Symbol(f"{name}{k}", real=True) for k in range(1, m + 1)])
 
 
@@ -73,24 +67,10 @@ def pair_force(
 def own_force(
     q_i: sp.Matrix, p_i: sp.Matrix, q_r: sp.Matrix, p_r: sp.Matrix, *, gains: GainSymbols = GAINS
 ) -> sp.Matrix:
-    """Return the navigational feedback of Algorithm 2: -c1_gamma (q_i - q_r) - c2_gamma (p_i - p_r).
-
-    Examples
-    --------
-    >>> zero = sp.Matrix([0])
-    >>> own_force(sp.Matrix([2]), zero, zero, zero)
-    Matrix([[-2*c_1^gamma]])
-    """
+    """Return the navigational feedback of Algorithm 2: -c1_gamma (q_i - q_r) - c2_gamma (p_i - p_r)."""
     return -gains.c1_gamma * (q_i - q_r) - gains.c2_gamma * (p_i - p_r)
 
 
 def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], u: Sequence[sp.Expr]) -> sp.Expr:
-    """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u.
-
-    Examples
-    --------
-    >>> q, p = sp.symbols("q p")
-    >>> along_flow(q**2 / 2 + p**2 / 2, [q], [p], [-q])
-    0
-    """
+    """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u."""
     return sp.Add(*(sp.diff(energy, qk) * pk + sp.diff(energy, pk) * uk for qk, pk, uk in zip(q, p, u, strict=True)))

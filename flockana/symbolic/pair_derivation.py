@@ -1,7 +1,5 @@
 """Derivation of potential, force, weight and adjacency from a pair law's formula, step by step."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
@@ -18,7 +16,7 @@ def pair_derivation(formula: PairFormula) -> Derivation:
     potential = sp.Integral(formula.main, y) if formula.forces else formula.main
     square = sp.Symbol("x", positive=True)
     at = sp.sqrt(square) if y == S else (sp.sqrt(1 + EPS * square) - 1) / EPS
-    residuals = () if formula.forces else (_along(formula.main, at, y, square) - _at(weight, at, y),)
+    residuals = () if formula.forces else (2 * sp.diff(formula.main.subs(y, at), square) - weight.subs(y, at),)
     steps = (
         Step(f"The potential of a pair, in ${named}$,", sp.Eq(psi, potential, evaluate=False)),
         Step("its derivative, negative where the pair repels,", sp.Eq(psi.diff(y), derivative, evaluate=False)),
@@ -28,23 +26,8 @@ def pair_derivation(formula: PairFormula) -> Derivation:
     return Derivation("The pair law", steps, weight, tuple(sp.simplify(each) for each in residuals))
 
 
-def _at(expression: sp.Expr, at: sp.Expr, y: sp.Symbol) -> sp.Expr:
-    return expression.subs(y, at)
-
-
-def _along(potential: sp.Expr, at: sp.Expr, y: sp.Symbol, square: sp.Symbol) -> sp.Expr:
-    """Return 2 dψ/d(s²), which must equal the weight."""
-    return 2 * sp.diff(potential.subs(y, at), square)
-
-
 def alpha_steps() -> tuple[Step, ...]:
-    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form.
-
-    Examples
-    --------
-    >>> len(alpha_steps())
-    2
-    """
+    """Return force and adjacency of Olfati-Saber's pair law, whose potential has no closed form."""
     return (
         Step("The pair law's derivative of the potential, in the sigma-norm,", phi_alpha(Z)),
         Step("and its adjacency", adjacency(Z)),

@@ -1,7 +1,5 @@
 """Facts proved of a pair law given by a formula: smoothness, sign of the adjacency, least potential."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,8 +4,6 @@ A formula is in the distance s or in the σ-norm z = (√(1 + εs²) − 1)/ε. 
 between two cuts it is smooth, and sympy derives there, in y = s² or y = z, what the sums over pairs need.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,14 +27,7 @@ RESERVED = frozenset((*OWN, "s", "z", "s2", "root", "pi", "Piecewise", *FUNCTION
 
 @dataclass(frozen=True)
 class PairFormula:
-    """Potential or force, and adjacency, as parsed from text.
-
-    Examples
-    --------
-    >>> formula = read_pair("k*(s - d)**2/2", "", "0", ["k"])
-    >>> formula.distance, formula.derivative
-    (s, k*(-2*d + 2*s)/2)
-    """
+    """Potential or force, and adjacency, as parsed from text."""
 
     main: sp.Expr  # ψ, or ψ' where `forces`, as a function of the distance
     adjacency: sp.Expr  # a_ij, of the same distance
@@ -94,14 +85,7 @@ class Piece:
 
 
 def derive_piece(main: sp.Expr, adjacency: sp.Expr, distance: sp.Symbol, *, forces: bool) -> Piece:
-    """Return weight w of q_j − q_i, dw/d(s²), adjacency and da/d(s²) of smooth expressions.
-
-    Examples
-    --------
-    >>> piece = derive_piece(S**2 * (S - 1) ** 2 / 2, sp.Integer(1), S, forces=False)
-    >>> sp.expand(piece.weight)
-    -3*sqrt(s2) + 2*s2 + 1
-    """
+    """Return weight w of q_j − q_i, dw/d(s²), adjacency and da/d(s²) of smooth expressions."""
     _ensure_derived(sp.diff(main, distance), _SLOPE)
     if distance == Z:
         action = main if forces else sp.diff(main, Z)
@@ -127,14 +111,7 @@ def _ensure_derived(derivative: sp.Expr, most: int) -> None:
 
 @dataclass(frozen=True)
 class PiecewiseFormula:
-    """Pair formula with numbers for its parameters, divided where its pieces meet.
-
-    Examples
-    --------
-    >>> formula = read_pair("Piecewise((s**2, s < k), (0, True))", "", "0", ["k"])
-    >>> PiecewiseFormula(formula, {sp.Symbol("k", real=True): 2.0}, 5.0).marks
-    (0.0, 2.0, 5.0)
-    """
+    """Pair formula with numbers for its parameters, divided where its pieces meet."""
 
     formula: PairFormula  # as read
     numbers: Mapping[sp.Symbol, float]  # of the parameters, r, d and their σ-norms

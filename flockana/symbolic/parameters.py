@@ -1,7 +1,5 @@
 """Parameters of the formulas as frozen bundles: symbols by default, exact numbers where given."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -16,13 +14,7 @@ _C1_BETA, _C2_BETA = sp.symbols("c_1^beta c_2^beta", nonnegative=True)
 
 
 def exact(name: str, value: Any) -> sp.Expr:
-    """Return a number or expression as an exact sympy expression: the float 0.1 becomes 1/10.
-
-    Examples
-    --------
-    >>> exact("eps", 0.1)
-    1/10
-    """
+    """Return a number or expression as an exact sympy expression: the float 0.1 becomes 1/10."""
     try:
         expression = sp.sympify(value, strict=True)
         if isinstance(expression, sp.Float):  # the shortest decimal that reads back as this float

@@ -90,11 +90,6 @@ class _Potential:
 def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
     """Return the integral of phi(z - d_alpha) from d_alpha, a closed form.
 
-    Parameters
-    ----------
-    z : sympy.Expr
-        A sigma-norm.
-
     Examples
     --------
     >>> z = sp.Symbol("z")
@@ -140,8 +135,6 @@ def psi_alpha(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
     Parameters
     ----------
-    z : sympy.Expr
-        A sigma-norm, z >= 0.
     alpha : AlphaSymbols
         Parameters; all symbolic if not given. With numbers, ``.evalf(digits)`` gives the value.
 
@@ -166,8 +159,6 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 
     Parameters
     ----------
-    z : sympy.Expr
-        A sigma-norm, z >= 0.
     beta : BetaSymbols
         Parameters; all symbolic if not given.
 

@@ -1,7 +1,5 @@
 """Source of compiled scalar functions from sympy expressions, with common subexpressions shared."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 
@@ -14,15 +12,7 @@ _WHOLE = 8  # powers up to it are products
 
 
 class Constants:
-    """Constant subexpressions, numbered among the parameters.
-
-    Examples
-    --------
-    >>> x, k = sp.symbols("x k")
-    >>> constants = Constants([x], 2)
-    >>> constants.extract_constants(sp.sqrt(k) * x + 1), constants.values
-    (c2*x + 1, [sqrt(k)])
-    """
+    """Constant subexpressions, numbered among the parameters."""
 
     def __init__(self, variables: Iterable[sp.Symbol], first: int) -> None:
         self.variables, self.first = frozenset(variables), first
@@ -108,19 +98,7 @@ class FloatCode(PythonCodePrinter):
 
 
 def function_text(name: str, arguments: str, before: list[str], expressions: list[list[sp.Expr]], after: str) -> str:
-    """Return the text of a function of several results, piecewise by expression.
-
-    Examples
-    --------
-    >>> x = sp.Symbol("x")
-    >>> print(function_text("f", "x", ["y, m0 = x, 1.0"], [[x**2, sp.sin(x) + x**2]], "v0"))
-    def f(x):
-        y, m0 = x, 1.0
-        x0 = (x*x)
-        p0, p1 = x0, x0 + sine(x)
-        v0 = p0 if y < m0 else p1
-        return v0
-    """
+    """Return the text of a function of several results, piecewise by expression."""
     printer = FloatCode()
     flat = [each for row in expressions for each in row]
     shared, reduced = sp.cse(flat, symbols=sp.numbered_symbols("x"), order="none")

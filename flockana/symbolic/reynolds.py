@@ -1,7 +1,5 @@
 """Reynolds' rules in Algorithm 1, and erratum E14: the slides lose the term -S_i q_i."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.derivation import Derivation, Step
@@ -25,11 +23,9 @@ def gradient_part(shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-.
-
-    S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
-    means.
-    """
+    """Return S+ (<q>+ - q_i) + S- (<q>- - q_i), or what the slides print, S+ <q>+ + S- <q>-."""
+    # S+ and S- are the sums of the stresses of positive and of negative friends, <q>+ and <q>- their stress-weighted
+    # means.
     total = sp.S.Zero
     for part in _PARTS:
         stress = _sum_over(STRESS[_J], part)
@@ -39,15 +35,7 @@ def friends_form(*, printed: bool, shift: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def reynolds_form(*, printed: bool = False) -> Derivation:
-    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is.
-
-    Examples
-    --------
-    >>> reynolds_form().holds, reynolds_form(printed=True).holds
-    (True, False)
-    >>> reynolds_form(printed=True).residuals[0].subs(OWN, 0)
-    0
-    """
+    """Derive the friends' form of u_i^g; as printed, -S_i q_i is left over, which depends on where the origin is."""
     true, stated = gradient_part(), friends_form(printed=printed)
     moved = friends_form(printed=printed, shift=SHIFT)
     steps = (

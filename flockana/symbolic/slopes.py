@@ -1,7 +1,5 @@
 """Bounds of a pair law's slopes on parts of its range."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import inf
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Split of Algorithm 2 into structural dynamics in the moving frame and linear translational dynamics."""
 
-from __future__ import annotations
-
 from itertools import chain
 
 import sympy as sp

@@ -62,13 +62,7 @@ def over_agents(summand: sp.Expr) -> sp.Expr:
 
 
 def sigma_distance(base: sp.IndexedBase = Q, m: sp.Expr = M) -> sp.Basic:
-    """Return the definition of z_ij, the sigma-distance of agents i and j.
-
-    Examples
-    --------
-    >>> sigma_distance(m=1).lhs
-    z[i, j]
-    """
+    """Return the definition of z_ij, the sigma-distance of agents i and j."""
     square = sp.Sum((base[I_, K_] - base[J_, K_]) ** 2, (K_, 1, m))
     return sp.Eq(Z[I_, J_], (sp.sqrt(1 + EPS * square) - 1) / EPS, evaluate=False)
 

@@ -4,8 +4,6 @@ As for Algorithms 1 and 2, H and the u_i are sums: over pairs, over agents with 
 obstacles. One generic term of each kind gives dH/dt for every n and any number of obstacles.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -60,13 +58,7 @@ def theorem6_identity(
     moving: bool = False,
     copies: sp.Expr = _ONE,
 ) -> EnergyIdentity:
-    """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6).
-
-    Examples
-    --------
-    >>> theorem6_identity(2).residual
-    0
-    """
+    """Derive dH/dt along Algorithm 3: consensus, damping at obstacles, drag towards p_r (Olfati-Saber, Theorem 6)."""
     pair = GenericPair(m)
     (q_i, q_j), (p_i, p_j) = pair.q, pair.p
     total = pair.tidy(
@@ -104,13 +96,7 @@ def theorem6_identity(
 
 
 def condition_76_residual(m: int = 2) -> sp.Expr:
-    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag.
-
-    Examples
-    --------
-    >>> condition_76_residual(3)
-    0
-    """
+    """Return sum <p_i, p_i - p_d> - (2 T - n <p_c, p_d>), which vanishes: condition (76) is the sign of the drag."""
     axes = range(1, m + 1)
     p_d = vector("p_d", m)
     drag = over_agents(sp.Add(*(P[I_, k] ** 2 - P[I_, k] * p_d[k - 1] for k in axes)))
@@ -128,10 +114,8 @@ def e2_identity(m: int = 2) -> EnergyIdentity:
 
 
 def e2_counterexample() -> RisingEnergy:
-    """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises.
-
-    The gamma-agent rests at the origin; no obstacle is near.
-    """
+    """Return two agents on a line, too close and approaching, at which the printed H of Algorithm 3 rises."""
+    # The gamma-agent rests at the origin; no obstacle is near.
     alpha = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
     gains = GainSymbols(c1_alpha=1, c2_alpha=1, c1_gamma=1, c2_gamma=1, c1_beta=1, c2_beta=1)
     q, p = (sp.Integer(0), sp.Integer(2)), (sp.Integer(0), -sp.Rational(1, 5))

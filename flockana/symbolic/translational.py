@@ -1,7 +1,5 @@
 """Transfer functions of the centre of mass under Algorithm 2: a linear second-order system."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from flockana.symbolic.pair import own_force
@@ -100,11 +98,5 @@ def gain_slope(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, square:
 
 
 def falling_condition(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS) -> sp.Expr:
-    """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with every omega iff it is >= 0 (erratum E15).
-
-    Examples
-    --------
-    >>> falling_condition(0, gains=GainSymbols(c1_gamma=4, c2_gamma=4))
-    8
-    """
+    """Return c2_gamma^2 (1 - scale^2) - 2 c1_gamma: |G(j omega)| falls with omega iff it is >= 0 (erratum E15)."""
     return gains.c2_gamma**2 * (1 - exact("scale", scale) ** 2) - 2 * gains.c1_gamma

@@ -1,7 +1,5 @@
 """Claims about limits that several theorems share: velocities match, the flock ends as a lattice."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import sqrt
 
@@ -47,11 +45,9 @@ def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
 
 
 def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
-    """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum.
-
-    There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
-    link, so that a small strain verifies nothing.
-    """
+    """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum."""
+    # There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
+    # link, so that a small strain verifies nothing.
     end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
     caught = final_basin(seen)
     pressed = not isinstance(seen.law, Algorithm1) and seen.law.gains.c1_gamma > 0.0

@@ -20,8 +20,6 @@ No tolerance enters: the flock's own scales come in through λ, L and the barrie
 its Hessian and the third derivatives of its pair potential, is in `olfati_saber.attraction` and `dead_zone.hold`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf, nan, sqrt
@@ -42,27 +40,13 @@ _GROWTH = 10.0  # factor by which the energy of a map of steps may rise
 
 @dataclass(frozen=True)
 class Basin:
-    """Basin of the strict minimum beside a state, with the state's energy above the minimum.
+    """Basin of the strict minimum beside a state, with the state's energy above the minimum."""
 
-    Attributes
-    ----------
-    excess : float
-        Bound of the energy above the minimum; ∞ where there is none.
-    barrier : float
-        Energy that the flock needs at least to leave; 0 where nothing is known.
-    distance : float
-        Bound δ of the distance to the minimum, over all coordinates; ∞ where there is none.
-    curvature : float
-        Least eigenvalue λ of ∇²U off the rigid motions, less its rounding.
-    stability : float
-        Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow.
-    """
-
-    excess: float = inf
-    barrier: float = 0.0
-    distance: float = inf
-    curvature: float = nan
-    stability: float = 1.0
+    excess: float = inf  # Bound of the energy above the minimum; ∞ where there is none
+    barrier: float = 0.0  # Energy that the flock needs at least to leave; 0 where nothing is known
+    distance: float = inf  # Bound δ of the distance to the minimum, over all coordinates; ∞ where there is none
+    curvature: float = nan  # Least eigenvalue λ of ∇²U off the rigid motions, less its rounding
+    stability: float = 1.0  # Of a map of steps, positive where every mode of it decays, with room to spare; 1 of a flow
 
     @property
     def reach(self) -> float:
@@ -96,25 +80,13 @@ def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
 
 
 def kinetic(p: FloatArray, off: float = 0.0) -> float:
-    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added.
-
-    Examples
-    --------
-    >>> 1.0 <= kinetic(np.array([[1.0], [-1.0]])) < 1.0 + 1e-12
-    True
-    """
+    """Return K(v) = ½ Σ‖p_i − p_c‖² at most, of velocities known to a distance, with the rounding of v added."""
     rounding = sqrt(p.size) * 8.0 * EPS * float(np.abs(p).max())
     return 0.5 * (float(np.linalg.norm(moving_frame(p))) + rounding + off) ** 2
 
 
 def gyration(q: FloatArray) -> float:
-    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line.
-
-    Examples
-    --------
-    >>> gyration(np.array([[-1.0, 0.0], [1.0, 0.0]]))
-    1.4142135623730951
-    """
+    """Return the least size of a unit rotation's motion, over all coordinates; ∞ on a line."""
     x, m = moving_frame(q), q.shape[1]
     turns = []
     for a in range(m):
@@ -139,11 +111,9 @@ def barrier(
     *,
     off: float = 0.0,
 ) -> tuple[float, float]:
-    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none.
-
-    A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when even
-    with L = 0 they were no better.
-    """
+    """Return the highest barrier over a choice of windows w, and its constant L; 0 and ∞ where there is none."""
+    # A wide window has a large L, a narrow one a small ρ. The widest is taken first, and the rest are left out when
+    # even with L = 0 they were no better.
     best, constant = 0.0, inf
     for window in sorted(windows, reverse=True):
         reach = window - distance
@@ -168,12 +138,10 @@ def excess(
 
 
 def lipschitz_constant(n: int, pairs: LinkArray, third: FloatArray) -> float:
-    """Return a Lipschitz constant L of ∇²U from bounds T of the pair potentials' third derivatives.
-
-    A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length by
-    at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted by T,
-    which is at most the largest sum of the weights at both ends of a link.
-    """
+    """Return a Lipschitz constant L of ∇²U from bounds T of the pair potentials' third derivatives."""
+    # A displacement a of all agents changes the Hessian's block of a pair by at most T |a_j - a_i| and a pair's length
+    # by at most √2 |a|. So L <= √2 max Σ T |b_j - b_i|² over unit b: the largest eigenvalue of the Laplacian weighted
+    # by T, which is at most the largest sum of the weights at both ends of a link.
     if not len(pairs):
         return 0.0
     ends = np.bincount(pairs.ravel(), weights=np.repeat(third, 2), minlength=n)

@@ -85,18 +85,15 @@ def theorem(name: str) -> Theorem:
 def _printed_as(name: str) -> Theorem:
     """Return the theorem that its source prints under a name such as "Theorem 3"."""
     wanted = re.compile(rf"\b{re.escape(name.strip())}$", re.IGNORECASE)
-    found = {i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(_printed(x.source))}
+    found = {
+        i: x.source for i, x in catalogue().items() if i[0].islower() and wanted.search(re.split(r";| \(", x.source)[0])
+    }
     if len(found) == 1:
         return catalogue()[next(iter(found))]
     if found:
         listed = "; ".join(f"{i} ({source})" for i, source in found.items())
         raise ArgumentError(f"several theorems are printed as {name!r}: expected one of {listed}")
     raise UnknownNameError("theorem", name, theorems())
-
-
-def _printed(source: str) -> str:
-    """Return the part of a source's text that says where a statement is printed."""
-    return re.split(r";| \(", source)[0]
 
 
 class _Case(TypedDict, total=False):

@@ -4,8 +4,6 @@ A claim about a run holds if a margin, an enclosure over time, is nowhere negati
 decides instead, and the numbers stand beside it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -20,16 +18,7 @@ from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Stat
 
 
 def judged(
-    name: str,
-    margin: Enclosure,
-    needs: Iterable[Hypothesis] = (),
-    *,
-    about: About = "run",
-    rigour: Rigour = "numeric",
-    proof: str | None = None,
-    disproof: str | None = None,
-    detail: str = "",
-    **fields: Any,
+    name: str, margin: Enclosure, needs: Iterable[Hypothesis] = (), *, about: About = "run", **fields: Any
 ) -> Claim:
     """Return a claim that holds if no entry of its margin is negative.
 
@@ -38,8 +27,6 @@ def judged(
 
     Parameters
     ----------
-    name : str
-        Of the claim.
     margin : Enclosure
         At least 0 where the claim holds: a number, or one for each instant.
     needs : iterable of Hypothesis
@@ -62,19 +49,7 @@ def judged(
     >>> judged("i", Enclosure.around(0.05, 0.1), proof="cohesion").status
     'verified'
     """
-    by_numbers, worst = _status_of(margin, about), margin.worst
-    return conclude(
-        name,
-        by_numbers,
-        worst,
-        needs,
-        about=about,
-        rigour=rigour,
-        proof=proof,
-        disproof=disproof,
-        detail=detail,
-        **fields,
-    )
+    return conclude(name, _status_of(margin, about), margin.worst, needs, about=about, **fields)
 
 
 def conclude(
@@ -185,55 +160,27 @@ def counted(
 def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
     """Return a claim about eigenvalues, roots or integrals, whose margin is known to an error by their residual.
 
+    So are claims about stored numbers, such as a configuration (`of_state`), and about the orbit of a map in floating
+    point (`of_map`), whose margins have rounding errors alone.
+
     Parameters
     ----------
     margin, error : float
-        The margin and how far it may be off: by a residual, Weyl's bound or the quadrature's estimate.
+        The margin and how far it may be off: by a residual, Weyl's bound, the quadrature's estimate or rounding.
     needs, **fields
         As in `judged`.
 
     Examples
     --------
-    >>> spectral("stable", 0.5, 1e-12).status
-    'verified'
+    >>> spectral("stable", 0.5, 1e-12).status, of_state("apart", -1.0, 1e-12).status
+    ('verified', 'refuted')
+    >>> of_map("reunite", float("nan"), 0.0).status
+    'inconclusive'
     """
     return judged(name, Enclosure.around(margin, error), needs, **fields)
 
 
-def of_state(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about stored numbers, such as a configuration, whose margin has only rounding errors.
-
-    Parameters
-    ----------
-    margin, rounding : float
-        The margin and its rounding.
-    needs, **fields
-        As in `judged`.
-
-    Examples
-    --------
-    >>> of_state("apart", -1.0, 1e-12).status
-    'refuted'
-    """
-    return judged(name, Enclosure.around(margin, rounding), needs, **fields)
-
-
-def of_map(name: str, margin: float, rounding: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
-    """Return a claim about the orbit of a map in floating point, which has rounding but no integration error.
-
-    Parameters
-    ----------
-    margin, rounding : float
-        The margin and the rounding of what it compares.
-    needs, **fields
-        As in `judged`.
-
-    Examples
-    --------
-    >>> of_map("reunite", float("nan"), 0.0).status
-    'inconclusive'
-    """
-    return judged(name, Enclosure.around(margin, rounding), needs, **fields)
+of_state = of_map = spectral
 
 
 def by_count(name: str, failures: int, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
@@ -351,8 +298,6 @@ def erratum(
 
     Parameters
     ----------
-    name : str
-        Its id.
     title, statement, source : str
         As in `Theorem`; of an erratum the title is what is printed (`flockana.theorems.errata`).
     check : callable

@@ -1,7 +1,5 @@
 """The delay at which a flock loses stability."""
 
-from __future__ import annotations
-
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch

@@ -1,7 +1,5 @@
 """Input-to-state stability: a bounded disturbance leaves a flock near its certified equilibrium."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -46,13 +44,7 @@ def _law(seen: Observed) -> Hypothesis:
 
 
 def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
-    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise.
-
-    Examples
-    --------
-    >>> round(largest_push(Disturbed(Algorithm1(), force=[[0.3], [-0.3]]), (2, 1)), 12)
-    0.424264068712
-    """
+    """Bound of √Σ‖d_i − mean‖² at all times, of a disturbance d without noise."""
     parts = [(part,) for part in (law.force, law.swing) if part is not None]  # each at the times when it is largest
     parts += [] if law.table is None else [law.table]  # linear between its rows
     sizes = (max(np.linalg.norm(moving_frame(np.broadcast_to(row, shape))) for row in part) for part in parts)

@@ -23,12 +23,6 @@ class Enclosure:
 
     All operations round outwards, so that a formula on enclosures encloses the formula. An end that is NaN, such as
     ∞ − ∞, becomes infinite. Sums and differences that are exactly 0 stay 0.
-
-    Examples
-    --------
-    >>> x = Enclosure.around(2.0, 0.5)
-    >>> [round(float(end), 12) for end in ((1.0 / x).lo, (x * x - 4.0).hi, x.sqrt().mid)]
-    [0.4, 2.25, 1.414213562373]
     """
 
     lo: Real

@@ -3,8 +3,6 @@
 That a run is whole its seal says. What no seal can say is that the law is the same function now as it was then.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.errors import ArgumentError, FlockanaError

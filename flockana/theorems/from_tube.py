@@ -28,21 +28,11 @@ Pair = tuple[int, int]
 
 @dataclass(frozen=True)
 class TubeAndBasin:
-    """A tube, and the basin that it ends in, if it certainly ends in one.
+    """A tube, and the basin that it ends in, if it certainly ends in one."""
 
-    Attributes
-    ----------
-    tube : Tube
-        The tube.
-    basin : BasinLike, optional
-        A certified basin that holds all of its end; None if none is known to.
-    doubt : str
-        Why there is none.
-    """
-
-    tube: Tube
-    basin: BasinLike | None
-    doubt: str
+    tube: Tube  # The tube
+    basin: BasinLike | None  # A certified basin that holds all of its end; None if none is known to
+    doubt: str  # Why there is none
 
     @classmethod
     def of(cls, tube: Tube, basin: BasinLike | None) -> TubeAndBasin:
@@ -77,28 +67,14 @@ def enclosed_by(name: str, module: str = "enclosed") -> Callable[..., Checked]:
 
 
 def ends(ball: arb) -> Enclosure:
-    """Return a ball as an enclosure in floating point, with infinite ends if it is not finite.
-
-    Examples
-    --------
-    >>> from flint import arb
-    >>> [round(float(end), 6) for end in (ends(arb(1, 0.5)).lo, ends(arb("inf")).hi)]
-    [0.5, inf]
-    """
+    """Return a ball as an enclosure in floating point, with infinite ends if it is not finite."""
     from flockana.certified.tube import down, up
 
     return Enclosure.between(*((down(ball.lower()), up(ball.upper())) if ball.is_finite() else (-inf, inf)))
 
 
 def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), *, detail: str = "", **fields: Any) -> Claim:
-    """Return a claim that holds if its margin is certainly not negative, and fails if it is certainly negative.
-
-    Examples
-    --------
-    >>> from flint import arb
-    >>> [decided("i", x).status for x in (arb(1, 0.5), arb(0, 1), arb(-1, 0.5))]
-    ['verified', 'inconclusive', 'refuted']
-    """
+    """Return a claim that holds if its margin is certainly not negative, and fails if it is certainly negative."""
     room = ends(margin)
     if room.lo < 0.0 <= room.hi:
         wide = f"the enclosure alone is too wide to tell: the margin is between {room.lo:.3g} and {room.hi:.3g}"
@@ -188,13 +164,7 @@ def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair]
 
 
 def groups(n: int, pairs: Sequence[Pair]) -> list[int]:
-    """Sizes of the connected components of n agents, largest first.
-
-    Examples
-    --------
-    >>> groups(4, [(0, 1), (1, 3)])
-    [3, 1]
-    """
+    """Sizes of the connected components of n agents, largest first."""
     label = list(range(n))
     for i, j in pairs:
         label = [label[j] if x == label[i] else x for x in label]

@@ -48,13 +48,7 @@ def _reason(verdict: Verdict, claims: tuple[Claim, ...]) -> str:
 
 
 def does_not_hold(need: str) -> str:
-    """Return the sentence that a hypothesis does not hold; a name in words is quoted.
-
-    Examples
-    --------
-    >>> does_not_hold("H(0) < c*"), does_not_hold("connected")
-    ('H(0) < c* does not hold', "'connected' does not hold")
-    """
+    """Return the sentence that a hypothesis does not hold; a name in words is quoted."""
     return f"{need if re.search('[<>=≤≥]', need) else repr(need)} does not hold"
 
 

@@ -1,7 +1,5 @@
 """How much faster a flock settles with gains for each agent."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -47,10 +45,9 @@ def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
 
 
 def _ratio_error(design: GainDesign) -> float:
-    """Error of the ratio of the two rates, from the rounding of the eigenvalues that certify them.
-
-    At the best gains roots coalesce, and a rate depends on them as a root: where they are found to 2e-9, it is to 1e-4.
-    """
+    """Error of the ratio of the two rates, from the rounding of the eigenvalues that certify them."""
+    # At the best gains roots coalesce, and a rate depends on them as a root: where they are found to 2e-9, it is to
+    # 1e-4.
     slow = []
     for gains in (design.homogeneous, design.heterogeneous):
         values, _, errors = eigen(design.problem.matrix(gains))

@@ -43,7 +43,9 @@ def condition(
     return Hypothesis(name, "met" if holds else "unmet", margin, detail, error)
 
 
-def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
+def law_is(
+    name: str, *laws: type, formulas: bool = False, composed: bool = False, one_gain: bool = False
+) -> Callable[[Observed], Hypothesis]:
     """Return the hypothesis that a run is of one of these laws; a theorem's `law`.
 
     Parameters
@@ -54,6 +56,10 @@ def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed
         Classes of laws; what descends from one of them may push otherwise and is another law.
     formulas : bool
         Whether the pair law may be a user's, by its formula (`flockana.pair_law`).
+    composed : bool
+        Whether a composition of the laws' terms meets it too, or a pair law from a formula.
+    one_gain : bool
+        Whether all agents must have one c1γ and one c2γ.
 
     Examples
     --------
@@ -63,59 +69,11 @@ def law_is(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed
     """
 
     def applied_to(run: Observed) -> Hypothesis:
-        return applied(run, name, *laws, formulas=formulas)
-
-    return applied_to
-
-
-def law_is_or_composed(name: str, *laws: type) -> Callable[[Observed], Hypothesis]:
-    """Return `law_is`, also met by a composition of the laws' terms, or with a pair law from a formula.
-
-    Parameters
-    ----------
-    name : str
-        The laws, as the hypothesis names them.
-    *laws : type
-        Classes of laws.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> law_is_or_composed("Algorithm 1", Algorithm1).__name__
-    'applied_to'
-    """
-
-    def applied_to(run: Observed) -> Hypothesis:
-        if type(run.law) is not Composition:
-            return applied(run, name, *laws, formulas=True)
-        terms = ", ".join(type(term).__name__ for term in run.law.terms)
-        return condition("a composition of terms is applied", True, detail=terms)
-
-    return applied_to
-
-
-def law_with_common_gains(name: str, *laws: type, formulas: bool = False) -> Callable[[Observed], Hypothesis]:
-    """Return `law_is`, with one c1γ and one c2γ for all agents.
-
-    Parameters
-    ----------
-    name : str
-        The laws, as the hypothesis names them.
-    *laws : type
-        Classes of laws with gains.
-    formulas : bool
-        As in `law_is`.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm2
-    >>> law_with_common_gains("Algorithm 2", Algorithm2).__name__
-    'applied_to'
-    """
-
-    def applied_to(run: Observed) -> Hypothesis:
-        law = applied(run, name, *laws, formulas=formulas)
-        return law if law.status == "unmet" or not run.law.gains.per_agent else common_gains(run)
+        if composed and type(run.law) is Composition:
+            terms = ", ".join(type(term).__name__ for term in run.law.terms)
+            return condition("a composition of terms is applied", True, detail=terms)
+        law = applied(run, name, *laws, formulas=formulas or composed)
+        return common_gains(run) if one_gain and law.status == "met" and run.law.gains.per_agent else law
 
     return applied_to
 

@@ -1,7 +1,5 @@
 """Surrogate objectives for counterexample searches where a claim's margin has no slope."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 import numpy as np
@@ -37,10 +35,8 @@ def bridge(run: Trajectory, claim: Claim) -> float:
 
 
 def strained(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a lattice as a limit: 1 less the mean over time of the largest strain.
-
-    Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
-    """
+    """Return the surrogate for a lattice as a limit: 1 less the mean over time of the largest strain."""
+    # Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
     (d, r), series = run.law.lattice, []
     for q in run.q:
         pairs = links(q, r)

@@ -5,8 +5,6 @@ A claim about t → ∞ is verified by a certificate alone: a state in the basin
 later times, such as two groups that part. A run that decays is evidence, which the text tells, and decides nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from math import isnan
@@ -26,21 +24,11 @@ _LEAST = 1e-300  # below it an amplitude is 0
 
 @dataclass(frozen=True)
 class Certificate:
-    """Evidence for a limit as t → ∞, certain if the margin exceeds its error.
+    """Evidence for a limit as t → ∞, certain if the margin exceeds its error."""
 
-    Attributes
-    ----------
-    margin : float
-        Between -1 and 1.
-    text : str
-        In words.
-    error : float
-        Rounding of the margin.
-    """
-
-    margin: float
-    text: str
-    error: float = _ROUNDING
+    margin: float  # Between -1 and 1
+    text: str  # In words
+    error: float = _ROUNDING  # Rounding of the margin
 
     @property
     def certain(self) -> bool:
@@ -49,26 +37,13 @@ class Certificate:
 
 
 def best_of(certificates: Iterable[Certificate]) -> Certificate:
-    """Return the certificate with the largest margin; an undecided one if there is none.
-
-    Examples
-    --------
-    >>> best_of([Certificate(-1.0, "a saddle"), Certificate(0.5, "a minimum")]).text
-    'a minimum'
-    """
+    """Return the certificate with the largest margin; an undecided one if there is none."""
     given = [each for each in certificates if not isnan(each.margin)]
     return max(given, key=lambda each: each.margin - each.error, default=Certificate(-1.0, ""))
 
 
 def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
-    """Return in words by how much an amplitude has fallen from its largest value to the last eighth of a run.
-
-    Examples
-    --------
-    >>> t = np.linspace(0.0, 40.0, 401)
-    >>> evidence(t, np.exp(-t), "K̃"), evidence(t, np.ones(401), "K̃")
-    ('in this run K̃ falls by a factor of 1.6e+15', 'K̃ does not fall')
-    """
+    """Return in words by how much an amplitude has fallen from its largest value to the last eighth of a run."""
     times, values = np.asarray(t, dtype=np.float64), np.maximum(np.asarray(amplitude, dtype=np.float64), _LEAST)
     late = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
     factor = float(values.max() / late)
@@ -86,15 +61,7 @@ def limit_claim(
     detail: str = "",
     **fields: Any,
 ) -> Claim:
-    """Return a claim about a limit: verified by a certificate or a proof, refuted by an escape, else inconclusive.
-
-    Examples
-    --------
-    >>> limit_claim("i", [], [Certificate(-1.0, "no basin is known")], detail="x").status
-    'inconclusive'
-    >>> limit_claim("i", [], escape=Certificate(0.5, "they part")).status
-    'refuted'
-    """
+    """Return a claim about a limit: verified by a certificate or a proof, refuted by an escape, else inconclusive."""
     best = best_of(certificates)
     by_numbers: Status = "verified" if best.certain else "inconclusive"
     margin = Enclosure.around(best.margin, best.error)
@@ -114,14 +81,6 @@ def without_assumed(needs: Iterable[Hypothesis], make: Callable[[list[Hypothesis
     """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
 
     A certificate of the limit itself does not rest on what is only assumed; a refutation would.
-
-    Examples
-    --------
-    >>> needs = [Hypothesis("all solutions stay together", "assumed")]
-    >>> without_assumed(needs, lambda given: limit_claim("i", given, [Certificate(0.5, "a basin")])).status
-    'verified'
-    >>> without_assumed(needs, lambda given: limit_claim("i", given, escape=Certificate(0.5, "parted"))).status
-    'inconclusive'
     """
     needs = list(needs)
     sure = make([need for need in needs if need.status != "assumed"])

@@ -1,7 +1,5 @@
 """Consistency of a map's run with the map, checked at some samples."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Energy needed for two agents to meet: c1α ψ_α(0) under the paper's pair law, whose potential is never negative."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -15,18 +13,11 @@ from flockana.theorems.theorem import Hypothesis
 
 
 class PairEnergies(NamedTuple):
-    """Energies of a law's pairs, gain included.
+    """Energies of a law's pairs, gain included."""
 
-    Attributes
-    ----------
-    c_star : float
-        By how much a coincident pair has more than the least that a pair has; infinite of a singular potential.
-    floor : float
-        The least potential energy of all pairs together: their number times that of one.
-    """
-
+    # By how much a coincident pair has more than the least that a pair has; infinite of a singular potential
     c_star: float
-    floor: float
+    floor: float  # The least potential energy of all pairs together: their number times that of one
 
 
 def meeting(run: Trajectory | Observed) -> PairEnergies:

@@ -47,30 +47,14 @@ class End(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observed(ResultCache):
-    """Run paired with a second one from the same start, with enclosures of the observables of both.
+    """Run paired with a second one from the same start, with enclosures of the observables of both."""
 
-    Parameters
-    ----------
-    given : Trajectory
-        The run that is judged.
-    run : Trajectory
-        The tighter of the two, at the same samples: best values are its own.
-    other : Trajectory
-        The looser of the two.
-    errors : tuple
-        Half widths at the steps that both have in common.
-    doubt : str
-        Why nothing is known, or an empty text.
-    unresolved : str
-        Where both runs may leap over a feature of a formula, or an empty text.
-    """
-
-    given: Trajectory
-    run: Trajectory
-    other: Trajectory
-    errors: Errors
-    doubt: str = ""
-    unresolved: str = ""
+    given: Trajectory  # The run that is judged
+    run: Trajectory  # The tighter of the two, at the same samples: best values are its own
+    other: Trajectory  # The looser of the two
+    errors: Errors  # Half widths at the steps that both have in common
+    doubt: str = ""  # Why nothing is known, or an empty text
+    unresolved: str = ""  # Where both runs may leap over a feature of a formula, or an empty text
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
@@ -280,15 +264,7 @@ class Observed(ResultCache):
 
 
 def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options: Any) -> Observed:
-    """Simulate a law and return the run with its numerical error; for the cases that errata show.
-
-    Examples
-    --------
-    >>> from flockana.laws.olfati_saber import Algorithm1
-    >>> seen = observed(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> bool(0.0 < seen.radius.half_width[-1] < 1e-6)
-    True
-    """
+    """Simulate a law and return the run with its numerical error; for the cases that errata show."""
     return Observed.of(simulate(law, q0, p0, t_span, **options))
 
 
@@ -327,11 +303,9 @@ def _with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
 
 
 def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
-    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs.
-
-    For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
-    made from enclosures of its parts instead.
-    """
+    """Return a claim that a function makes of one run, its margin enclosed by the difference between the two runs."""
+    # For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
+    # made from enclosures of its parts instead.
     best, *others = (check(run) for run in (seen.run, seen.other, *seen.allowed))
     if best.margin is None or best.status not in ("verified", "refuted"):
         return best

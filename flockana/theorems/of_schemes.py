@@ -5,8 +5,6 @@ identity and of Theorem 6 the library says more: the energy loses in each step w
 by the scheme's own defect; whether it falls nevertheless is seen.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -7,8 +7,6 @@ differs between the solution and states at the ends of the enclosure. Limits are
 whole enclosure lies in a basin. Without a law, definitions about samples are judged alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -41,11 +39,7 @@ class ObservedRecording(Observed):
     """The law's solution from a recorded start, with enclosures that hold the recording; `given` is the recording."""
 
     place: float = 0.0  # accuracy of the last positions
-
-    @property
-    def begins_exactly(self) -> bool:
-        """Never: the recorded start is known to its accuracy."""
-        return False
+    begins_exactly = False  # the recorded start is known to its accuracy
 
     @property
     def accuracy_of_end(self) -> float:
@@ -139,7 +133,7 @@ def verify_recording(
     name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
     named = f"{name}: {rec.accuracy}"
     if follow.status == "unmet":
-        claims = tuple(vacuous(each, first, by=item.by(each)) for each in _names(item))
+        claims = tuple(vacuous(each, first, by=item.by(each)) for each in item.claims or ("all",))
         return Verdict(item.id, (first,), claims, tolerances, named, item.author)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
@@ -157,10 +151,6 @@ def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: An
     assert p is not None
     names = theorems_about(ensure_law(law), rec.q[0], p[0], float(rec.t[0]))
     return Verdicts(verify_recording(theorem(name), rec, tolerances, law=law, **case) for name in names).about_the_law()
-
-
-def _names(item: Theorem) -> tuple[str, ...]:
-    return item.claims or ("all",)
 
 
 def _of_samples(

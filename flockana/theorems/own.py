@@ -1,7 +1,5 @@
 """A claim of the user's own, from a function that says how far a run fulfils it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Rigour of the executable proofs that claims name, and what they cite; a test holds both against the proofs."""
 
-from __future__ import annotations
-
 from flockana.theorems.theorem import Rigour
 
 RIGOUR: dict[str, Rigour] = {

@@ -5,8 +5,6 @@ of two numbers by ε times the larger of the two. Nothing here says how far the 
 tighter run tells.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any
 
@@ -37,20 +35,17 @@ def spread_error(x: FloatArray) -> FloatArray:
 
 
 def pair_force_error(alpha: AlphaInteraction) -> float:
-    """Return a bound of the rounding of φ_α(‖x‖_σ) x/√(1 + εx²) at any distance up to r.
-
-    φ loses nothing to cancellation, but its argument (‖x‖_σ − d_α)/ℓ² does: by a few ε of both terms, times its slope.
-    """
+    """Return a bound of the rounding of φ_α(‖x‖_σ) x/√(1 + εx²) at any distance up to r."""
+    # φ loses nothing to cancellation, but its argument (‖x‖_σ − d_α)/ℓ² does: by a few ε of both terms, times its
+    # slope.
     argument = (alpha.r_alpha + alpha.d_alpha) / alpha.unit**2
     longest = alpha.r / sqrt(1.0 + alpha.eps * alpha.r**2)
     return 4.0 * EPS * (0.5 * (alpha.a + alpha.b) * argument * longest + alpha.strength)
 
 
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
-    """Return a bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition, by instant.
-
-    All terms of the three are >= 0; those of another pair law may cancel, and count by their own size.
-    """
+    """Return a bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition, by instant."""
+    # All terms of the three are >= 0; those of another pair law may cancel, and count by their own size.
     n, m = q.shape[1:]
     alpha, gains, pairs = law.alpha, law.gains, n * (n - 1) // 2
     pull = float(np.max(gains.c1_gamma)) if law.target is not None else 0.0
@@ -73,15 +68,8 @@ def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> 
 
 
 def deepest_of(pair: PairInteraction) -> float:
-    """Return the size of a pair's potential: c* of the paper's, else the largest at 0, d and the range.
-
-    A potential that has no bound at 0 counts by what it is at a tenth of d.
-
-    Examples
-    --------
-    >>> deepest_of(AlphaInteraction()) == AlphaInteraction().c_star
-    True
-    """
+    """Return the size of a pair's potential: c* of the paper's, else the largest at 0, d and the range."""
+    # A potential that has no bound at 0 counts by what it is at a tenth of d.
     if isinstance(pair, AlphaInteraction):
         return float(pair.c_star)
     with np.errstate(all="ignore"):
@@ -90,15 +78,7 @@ def deepest_of(pair: PairInteraction) -> float:
 
 
 def energy_rounding(run: Trajectory) -> FloatArray:
-    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size.
-
-    Examples
-    --------
-    >>> from flockana import Algorithm1, simulate
-    >>> run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    >>> bool(energy_rounding(run).max() < 1e-9)
-    True
-    """
+    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size."""
     energy = run.energy()
     if isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition):
         return energy_error(run.law, run.q, run.p, energy)

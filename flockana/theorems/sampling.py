@@ -6,8 +6,6 @@ w²/ℓ + c at most where the distance is ℓ. Control polygons of the paths bou
 allowance for the paths' own error (`flockana.kernels.paths`) is added.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any
@@ -131,26 +129,16 @@ def _polygons(seen: Observed) -> Iterator[tuple[FloatArray, FloatArray]]:
 
 @dataclass(frozen=True)
 class Nets:
-    """Bounds on the net at samples, or throughout the intervals between them; one number for each.
+    """Bounds on the net at samples, or throughout the intervals between them; one number for each."""
 
-    Attributes
-    ----------
-    components, components_least : ndarray
-        Number of components at most, and at least: without and with the pairs of which it is open.
-    giant, giant_most : ndarray
-        Agents in the largest component at least, and at most.
-    links : ndarray
-        Pairs that are linked for certain.
-    open_links : ndarray
-        Pairs of which it is open, at r but for rounding or for what they may do between samples.
-    """
-
+    # components, components_least: Number of components at most, and at least: without and with the pairs of which it
+    # is open
     components: FloatArray
     components_least: FloatArray
-    giant: FloatArray
+    giant: FloatArray  # giant, giant_most: Agents in the largest component at least, and at most
     giant_most: FloatArray
-    links: FloatArray
-    open_links: FloatArray
+    links: FloatArray  # Pairs that are linked for certain
+    open_links: FloatArray  # Pairs of which it is open, at r but for rounding or for what they may do between samples
 
 
 def reach(seen: Observed) -> float:

@@ -1,7 +1,5 @@
 """Distance of the sources' time steps from instability."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,13 +37,7 @@ class SourceMap:
 
 
 def sources_steps() -> tuple[SourceMap, ...]:
-    """Return the sources' maps with the equilibria at which they are linearised.
-
-    Examples
-    --------
-    >>> [(step.name, step.law.dt) for step in sources_steps()][:2]
-    [('msn-few', 0.009), ('msn-few-in-place', 0.009)]
-    """
+    """Return the sources' maps with the equilibria at which they are linearised."""
     rest = StaticTarget((0.0, 0.0))
     msn = Algorithm2(_MSN, _MSN_GAINS, rest)
     at_once = MSNDiscretisation(msn, 0.009, in_place=False)

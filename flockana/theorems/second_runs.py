@@ -5,8 +5,6 @@ same method its steps are bounded by a part of the first's longest, so that the 
 by a formula also by what the formula's slopes ask for where pairs come by, so that it leaps over no feature.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -89,10 +87,8 @@ def _longest_step(run: Trajectory) -> float | None:
 
 
 def second_run(run: Trajectory, times: FloatArray, factor: float, longest: float | None) -> Trajectory:
-    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor.
-
-    A run with a fixed step is followed by an adaptive method.
-    """
+    """Return the law integrated from the run's start through some times, its tolerances multiplied by a factor."""
+    # A run with a fixed step is followed by an adaptive method.
     stats, span = run.stats, (float(times[0]), float(times[-1]))
     options: dict[str, Any] = {"method": "DOP853", "rtol": RK4_SECOND}
     if "rtol" in stats:

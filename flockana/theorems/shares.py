@@ -1,7 +1,5 @@
 """Claims about the share of random starts for which something holds, with exact confidence intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
@@ -17,28 +15,15 @@ INTERVAL_ERROR = 1e-9  # of the ends of an interval, which are quantiles of a be
 
 
 def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float]:
-    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`.
-
-    Outcomes that are undecided count against the lower end and for the upper one.
-
-    Examples
-    --------
-    >>> interval(20, 20)[1], interval(0, 20)[0], interval(19, 20, undecided=1)[1]
-    (1.0, 0.0, 1.0)
-    """
+    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`."""
+    # Outcomes that are undecided count against the lower end and for the upper one.
     low, _ = clopper_pearson(count, size, level=CONFIDENCE)
     _, high = clopper_pearson(count + undecided, size, level=CONFIDENCE)
     return float(low), float(high)
 
 
 def share(holds: Iterable[bool | None]) -> tuple[int, int, tuple[float, float]]:
-    """Return how often something holds, of how many starts, and the interval of its share; None is undecided.
-
-    Examples
-    --------
-    >>> share([True] * 20)[2][1], share([False] * 20)[0], share([True, None, False])[:2]
-    (1.0, 0, (1, 3))
-    """
+    """Return how often something holds, of how many starts, and the interval of its share; None is undecided."""
     outcomes = list(holds)
     unknown = sum(each is None for each in outcomes)
     count = sum(bool(each) for each in outcomes)

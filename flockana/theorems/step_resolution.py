@@ -6,8 +6,6 @@ What hides in the step then moves the two by at most (hω)² ℓ. A step with h�
 w < ℓ changes velocities by at most the share 4 (w/ℓ)². So does a step that hides less than the run's own error.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any, NamedTuple
 

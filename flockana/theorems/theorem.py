@@ -1,7 +1,5 @@
 """Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -29,8 +27,6 @@ class Hypothesis:
 
     Parameters
     ----------
-    name : str
-        The condition.
     status : {"met", "unmet", "assumed"}
         ``"assumed"`` where it quantifies over more than one run can show.
     margin : float, optional
@@ -200,11 +196,6 @@ class Verdict:
     def claim(self, name: str) -> Claim:
         """The claim of that name.
 
-        Parameters
-        ----------
-        name : str
-            Such as ``"iii"``.
-
         Raises
         ------
         KeyError
@@ -252,8 +243,6 @@ class Theorem:
     ----------
     id : str
         Such as ``"os-1"``.
-    title : str
-        One line.
     statement : str
         What it says, in our words.
     source : str

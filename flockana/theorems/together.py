@@ -18,14 +18,7 @@ _HEADS = ("theorem", "status", "rigour", "decided by", "title")
 
 
 class Verdicts(tuple[Verdict, ...]):
-    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook.
-
-    Examples
-    --------
-    >>> print(Verdicts([verify("E8")]))
-    theorem  status     rigour  decided by  title
-    E8       ✗ refuted  smt     printed     Rank(A)/n is 1 on a connected net (as printed)
-    """
+    """Verdicts on one run: a tuple that prints as a table, and shows itself as one in a notebook."""
 
     __slots__ = ()
 
@@ -71,14 +64,7 @@ def _title(name: str) -> str:
 
 
 def theorems_about(law: Any, q0: Any, p0: Any, t0: float = 0.0) -> tuple[str, ...]:
-    """Return the ids of theorems whose law hypothesis a law meets; errata are left out.
-
-    Examples
-    --------
-    >>> from flockana.laws.cucker_smale import CuckerSmale
-    >>> "cucker-smale" in (found := theorems_about(CuckerSmale(), [[0.0], [1.0]], [[0.0], [1.0]])), "os-1" in found
-    (True, False)
-    """
+    """Return the ids of theorems whose law hypothesis a law meets; errata are left out."""
     still = np.zeros(np.shape(q0))
     seen = Observed.alone(Trajectory(np.array([t0]), np.array([q0]), np.array([p0]), still[None], law))
     return tuple(name for name, item in catalogue().items() if name[0].islower() and _is_about(item, seen))
@@ -93,16 +79,7 @@ def _is_about(item: Theorem, seen: Observed) -> bool:
 def verify_together(
     run: Trajectory, *, tolerances: Tolerances | None = None, subject: str = "", progress: bool = False
 ) -> Verdicts:
-    """Check every theorem about the law of a run.
-
-    Examples
-    --------
-    >>> from flockana.dynamics.simulate import simulate
-    >>> from flockana.laws.cucker_smale import CuckerSmale
-    >>> run = simulate(CuckerSmale(), [[0.0], [1.0]], [[0.0], [1.0]], (0.0, 5.0))
-    >>> "cucker-smale" in [verdict.theorem for verdict in verify_together(run)]
-    True
-    """
+    """Check every theorem about the law of a run."""
     names = theorems_about(run.law, run.q[0], run.p[0], float(run.t[0]))
     made: list[Verdict] = []
     with progress_bar(len(names), enabled=progress) as advance:

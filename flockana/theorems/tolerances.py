@@ -1,7 +1,5 @@
 """Thresholds of verdicts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 
 from flockana.base.checks import ensure_nonnegative, ensure_positive

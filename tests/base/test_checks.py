@@ -10,9 +10,11 @@ from flockana.base.checks import (
     ensure_count,
     ensure_dimension,
     ensure_fits,
+    ensure_kind,
     ensure_positive,
     ensure_seed,
     ensure_series,
+    real_array,
 )
 from flockana.base.errors import ArgumentError, UnknownNameError, format_value
 from flockana.lattice import fcc, honeycomb, triangular
@@ -79,3 +81,14 @@ def test_counts_beyond_every_float_are_refused():
 )
 def test_an_array_is_no_choice(made, text):
     assert message(ArgumentError, made, np.array([1.0, 2.0])).startswith(text)
+
+
+def test_numbers_become_an_array_and_texts_do_not():
+    assert real_array([1, 2.5]).tolist() == [1.0, 2.5]
+    with pytest.raises(TypeError, match="<U3 are no real numbers"):
+        real_array(["1", "2.5"])
+
+
+def test_a_value_of_another_kind_is_refused_by_name():
+    with pytest.raises(ArgumentError, match=r"system = None: expected a control\.StateSpace"):
+        ensure_kind("system", None, "StateSpace", "a control.StateSpace")

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from flockana.base.errors import FileError
-from flockana.base.files import atomic_write
+from flockana.base.files import atomic_write, ensure_target, read_text_file
 
 
 def write(target, text, *, error=None, **options):
@@ -46,3 +46,10 @@ def test_where_nothing_can_be_written_is_told_with_the_remedy(name, tmp_path):
     with pytest.raises(FileError, match=r"cannot write '.*': .+; choose a shorter way$"):
         write(tmp_path / name, "whole", remedy="choose a shorter way")
     assert os.listdir(tmp_path) == ["folder"]
+
+
+def test_a_device_is_neither_read_nor_written():
+    with pytest.raises(FileError, match="it is no regular file; choose another file"):
+        ensure_target(os.devnull)
+    with pytest.raises(FileError, match="it is no regular file; expected a file"):
+        read_text_file(os.devnull)

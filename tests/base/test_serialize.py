@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError, FileError
-from flockana.base.serialize import from_data, parameter_classes, to_data
+from flockana.base.serialize import from_data, parameter_classes, to_data, to_data_mapping
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -103,3 +103,7 @@ def test_functions_cannot_be_written():
 def test_strange_data(data, message):
     with pytest.raises(FileError, match=re.escape(message)):
         from_data(data)
+
+
+def test_numbers_of_numpy_become_plain_ones():
+    assert type(to_data_mapping({"steps": np.int64(3)})["steps"]) is int

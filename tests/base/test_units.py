@@ -12,7 +12,6 @@ from flockana.base.units import rescale
 from flockana.environment.capsule import Capsule
 from flockana.environment.polygon import Polygon
 from flockana.environment.targets import CallableTarget, RescaledVelocity, SineTarget
-from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm2
@@ -97,7 +96,7 @@ def test_every_law_of_the_catalogue_steps_alike_in_other_units(name: str) -> Non
 
 
 def test_the_unit_of_sigma_1_stands_in_the_formulas_too() -> None:
-    """Kernel, sympy and CasADi agree on the law whose σ₁ counts in lengths of 3."""
+    """Kernel and sympy agree on the law whose σ₁ counts in lengths of 3, and so do its vectors."""
     numbers = {"eps": 0.02, "h": 0.3, "a": 1.0, "b": 4.0, "d": 5.0, "r": 7.0, "unit": 3.0}
     alpha, symbols = fl.AlphaInteraction(**numbers), symbolic.AlphaSymbols(**numbers)
     beta, beta_symbols = fl.BetaInteraction(4.0, 5.0, 0.02, 0.5, unit=3.0), symbolic.BetaSymbols(0.02, 0.5, 4, unit=3)
@@ -113,7 +112,10 @@ def test_the_unit_of_sigma_1_stands_in_the_formulas_too() -> None:
             )
     q = np.array([[0.0, 0.0], [3.0, 2.0]])
     force = alpha.forces(q, 0.0 * q, stiffness=1.0, damping=0.0)[0][0]
-    np.testing.assert_allclose(np.array(pair_term(alpha, 2)(q[1])[0]).ravel(), force, rtol=1e-12)
+    x = np.linalg.norm(q[1])
+    np.testing.assert_allclose(
+        force, alpha.phi_alpha(alpha.sigma_norm(x)) * q[1] / np.sqrt(1.0 + 0.02 * x**2), rtol=1e-12
+    )
     law = fl.Algorithm3(
         alpha=alpha,
         beta=beta,
@@ -122,11 +124,10 @@ def test_the_unit_of_sigma_1_stands_in_the_formulas_too() -> None:
         obstacles=(fl.Wall((0.0, 0.0), (0.0, 1.0)),),
     )
     here = np.array([[1.0, 2.5]])
-    slopes = [
-        np.array(term[0]).ravel()
-        for term in (pull_term(2, 3.0)(here[0] - [0.0, 9.0]), obstacle_term(law.obstacles[0], beta)(here[0]))
-    ]
-    np.testing.assert_allclose(law.flow(0.0, here, 0.0 * here)[0][0], -sum(slopes), rtol=1e-12)
+    away, gap = here[0] - [0.0, 9.0], np.array([0.0, -2.5])
+    pull = -away / np.sqrt(1.0 + away @ away / 9.0)
+    push = beta.phi_beta((np.sqrt(1.0 + 0.02 * 2.5**2) - 1.0) / 0.02) * gap / np.sqrt(1.0 + 0.02 * 2.5**2)
+    np.testing.assert_allclose(law.flow(0.0, here, 0.0 * here)[0][0], pull + push, rtol=1e-12)
 
 
 @pytest.mark.parametrize("units", [{"k": (-2, -2)}, {"k": (-2, 0)}])

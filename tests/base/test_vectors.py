@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.base.vectors import centres, lengths
+from flockana.base.vectors import centres, lengths, scaled_near_one
 
 SHAPES = [(1, 1, 2), (1, 300, 3), (7, 1, 1), (40, 150, 1), (40, 150, 2), (33, 40, 3), (5, 0, 2), (0, 4, 2)]
 
@@ -44,3 +44,9 @@ def test_what_is_not_finite_or_overflows_shows(bad):
     with np.errstate(over="ignore", invalid="ignore"):
         np.testing.assert_array_equal(lengths(x), np.linalg.norm(x, axis=2))
         np.testing.assert_array_equal(centres(x), x.mean(axis=1))
+
+
+def test_numbers_whose_squares_overflow_are_scaled_by_a_power_of_two():
+    x, (r,), unit = scaled_near_one(np.array([3.0, 4.0]) * 2.0**600, 2.0**599)
+    assert (x.tolist(), r, unit) == ([0.75, 1.0], 0.125, 2.0**602)
+    assert scaled_near_one(np.array([3.0]), 2.0)[2] == 1.0

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.iterate import _nearest
+from flockana.dynamics.iterate import _nearest, count_steps
 from flockana.dynamics.simulate import simulate
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.olfati_saber import Algorithm1
@@ -157,3 +157,7 @@ def test_a_map_ends_no_later_than_its_span():
 def test_what_a_map_has_no_use_for_is_refused(law, options, message):
     with pytest.raises(ArgumentError, match=message):
         simulate(law, [[0.0]], [[0.0]], (0.0, 1.0), **options)
+
+
+def test_steps_are_counted_whatever_the_rounding_of_the_times():
+    assert [count_steps(a, b, 0.1) for a, b in ((0.0, 0.3), (1e6, 1e6 + 0.3), (0.0, 0.31))] == [3, 3, 4]

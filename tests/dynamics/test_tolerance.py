@@ -5,7 +5,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.tolerance import options_in_units
+from flockana.dynamics.tolerance import ensure_atol, options_in_units
 
 Q0, P0 = np.array([[0.0, 0.0], [7.5, 0.0], [3.0, 6.0]]), np.zeros((3, 2))
 METHODS = ("DOP853", "RK45", "scipy-DOP853", "Radau", "LSODA")
@@ -55,3 +55,7 @@ def test_no_step_is_longer_than_asked(method):
 def test_what_cannot_be_asked_for_is_refused(knobs, message):
     with pytest.raises(ArgumentError, match=message):
         fl.simulate(fl.Algorithm1(), Q0, P0, (0.0, 1.0), **knobs)
+
+
+def test_an_absolute_tolerance_may_be_a_length_and_a_speed():
+    assert ensure_atol("atol", [1e-9, 1e-8]) == (1e-9, 1e-8)

@@ -179,7 +179,7 @@ def test_weighted_sums():
 
 
 def test_the_program_that_ipopt_solves_knows_each_gain():
-    """Gradient and Hessian from the expressions against the law's own kernels, in the program's units."""
+    """Gradient and Hessian as IPOPT gets them against the law's own, in the program's units."""
     law = law2(SOME, StaticTarget((1.0, 2.0)))
     program = Program(Potential(law), (N, 2), all_pairs(N), 1)
     slope, upper = (np.array(part) for part in program.derivatives(Q.ravel() / program.d))

@@ -10,7 +10,7 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2, alpha_scales
 from flockana.measures.frame import moving_frame
 
 TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))
@@ -111,3 +111,7 @@ def test_huge_positions_do_not_break_the_law():
     with np.errstate(over="ignore"):
         assert law.acceleration(0.0, q, p).tolist() == [[0.0, 0.0], [0.0, 0.0]]
         assert law.energy(0.0, q, p) == 30.0 * law.alpha.far_potential + 2.0
+
+
+def test_the_time_of_a_law_is_that_of_its_leading_term():
+    assert alpha_scales(AlphaInteraction(d=4.0, r=5.0), Gains(c1_alpha=0.0, c1_gamma=0.25)) == (4.0, 2.0)

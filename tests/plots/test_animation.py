@@ -13,7 +13,7 @@ from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.plots.animation import ensure_film, equal_times, film_size, film_view
+from flockana.plots.animation import ensure_film, equal_times, film_size, film_view, frame_count
 from tests.plots.artists import Halving, frame, title
 
 
@@ -149,3 +149,7 @@ def test_the_axes_hold_still_in_the_file(tmp_path):
             edges.append((int(np.argmax(dark.sum(axis=0) > 100)), int(np.argmax(dark.sum(axis=1) > 300))))
     assert len(edges) == 5
     assert len(set(edges)) == 1  # the spines: left and bottom
+
+
+def test_frames_of_a_film():
+    assert [frame_count(2.5, 20.0), frame_count(0.0, 20.0)] == [50, 1]

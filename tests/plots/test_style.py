@@ -15,6 +15,7 @@ from flockana.plots.style import (
     finish_over_time,
     frame_space,
     in_plane,
+    line_width_and_opacity,
     lines,
     write_title,
 )
@@ -147,3 +148,8 @@ def test_films_are_asked_for_alike():
 def test_a_grid_has_rows_and_columns(grid, message):
     with pytest.raises(ArgumentError, match=message):
         plots.subplots(*grid)
+
+
+def test_lines_are_fainter_the_more_there_are():
+    assert line_width_and_opacity(3) == (1.2, 0.9)
+    assert line_width_and_opacity(150) == (0.4, 0.4)

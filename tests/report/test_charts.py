@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from flockana.report.charts import _BELOW, _HEIGHT, _LEFT, _RIGHT, _TOP, _WIDTH, Chart, Curve, _round
+from flockana.report.charts import _BELOW, _HEIGHT, _LEFT, _RIGHT, _TOP, _WIDTH, Chart, Curve, _path, _round
 
 
 def points(text, kind="c0"):
@@ -64,3 +64,8 @@ def test_numbers_on_the_axis_are_told_apart():
         texts = [text for _, text in _round(low, high, 4)]
         assert len(set(texts)) == len(texts) >= 2
         assert [float(text) for text in texts] == pytest.approx([at for at, _ in _round(low, high, 4)], rel=1e-3)
+
+
+def test_a_path_breaks_where_points_are_not_finite_and_leaves_out_those_on_a_line():
+    assert _path(np.arange(4.0), np.array([0.0, 1.0, np.nan, 3.0])) == "M0 0L1 1M3 3"
+    assert _path(np.arange(4.0), np.array([5.0, 5.0, 5.0, 7.0])) == "M0 5L2 5L3 7"

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from flockana.report.coverage import coverage, faults
+from flockana.report.coverage import coverage
 from flockana.scenarios import scenarios
 from flockana.theorems import theorems
+from tools.coverage_references import faults
 
 SOURCES = {source.key: source for source in coverage()}
 ROOT = Path(__file__).parents[2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import control
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import StaticTarget
@@ -20,6 +21,7 @@ from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.taylor_step import TaylorStep
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.stability import linearise
+from flockana.stability.maps import stepped_equation
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_patch(1, 7.0)).q
@@ -163,3 +165,8 @@ def alignment_slope(law):
 def test_what_cannot_be_linearised_is_refused(law, q, p, message):
     with pytest.raises(ArgumentError, match=message):
         linearise(law, q, p)
+
+
+def test_the_equation_of_steps_of_one_degree_of_freedom():
+    one = csr_array(np.array([[2.0]]))
+    assert [part.toarray().tolist() for part in stepped_equation(one, one, 0.5, 1.0, 1)] == [[[2.0]], [[3.0]]]

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic.grammar import read_formula, write_formula
+from flockana.symbolic.grammar import expression_size, read_formula, write_formula
 
 S, K = sp.symbols("s k", positive=True)
 NAMES = {"s": S, "k": K}
@@ -88,3 +88,8 @@ def test_a_float_keeps_its_last_bit():
 def test_a_size_is_two_pieces():
     kink = read_formula("abs(s - 1)", NAMES)
     assert [kink.subs(S, x) for x in (0, 1, 3)] == [1, 0, 2]
+
+
+def test_the_size_of_an_expression():
+    s = sp.Symbol("s")
+    assert expression_size(sp.exp(sp.exp(s)) + s**8, {}) == (7, 2, 8)

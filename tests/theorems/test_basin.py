@@ -12,6 +12,7 @@ from flockana.theorems.basin import (
     connected_within,
     curvatures,
     excess,
+    gyration,
     lipschitz_constant,
 )
 
@@ -109,3 +110,7 @@ def test_of_many_windows_the_best_is_taken_as_if_each_were_looked_into(rise, dis
 
     each = [barrier(2.0, distance, [window], lipschitz)[0] for window in windows.tolist()]
     assert barrier(2.0, distance, windows, lipschitz)[0] == max(each) > 0.0
+
+
+def test_a_pair_turns_by_the_root_of_two():
+    assert gyration(np.array([[-1.0, 0.0], [1.0, 0.0]])) == np.sqrt(2.0)

@@ -20,7 +20,6 @@ from flockana.theorems.hypotheses import (
     common_gains,
     has_lattice,
     law_is,
-    law_with_common_gains,
     positive,
     positive_room,
 )
@@ -66,7 +65,7 @@ def test_gains_that_a_theorem_needs():
 def test_the_law_of_a_theorem_is_declared_before_there_is_a_run():
     target = fl.StaticTarget((0.0, 0.0))
     each = run_of(Algorithm2(gains=Gains(c1_gamma=[1.0, 2.0]), target=target))
-    one, two = law_is("Algorithm 2", Algorithm2), law_with_common_gains("Algorithm 2", Algorithm2)
+    one, two = law_is("Algorithm 2", Algorithm2), law_is("Algorithm 2", Algorithm2, one_gain=True)
     assert (one(each).name, one(each).status) == ("Algorithm 2 is applied", "met")
     assert (two(each).name, two(each).status) == ("one c1γ and one c2γ for all agents", "unmet")
     assert two(run_of(Algorithm2(target=target))) == one(run_of(Algorithm2(target=target)))

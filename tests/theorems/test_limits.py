@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana.theorems.limits import Certificate, best_of, evidence, limit_claim
+from flockana.theorems.limits import Certificate, best_of, evidence, limit_claim, without_assumed
+from flockana.theorems.theorem import Hypothesis
 
 T = np.linspace(0.0, 80.0, 801)
 
@@ -42,3 +43,10 @@ def test_a_limit_that_a_proof_alone_verifies_has_no_margin():
     assert (caught.margin, caught.detail) == (0.5, "x; a basin")
     parted = limit_claim("i", [], escape=Certificate(0.5, "they part"), proof="cohesion")
     assert (parted.status, parted.contradicts, parted.margin) == ("inconclusive", "cohesion", -0.5)
+
+
+def test_a_certificate_rests_on_no_assumption_and_a_refutation_would():
+    needs = [Hypothesis("all solutions stay together", "assumed")]
+    basin, parted = Certificate(0.5, "a basin"), Certificate(0.5, "parted")
+    assert without_assumed(needs, lambda given: limit_claim("i", given, [basin])).status == "verified"
+    assert without_assumed(needs, lambda given: limit_claim("i", given, escape=parted)).status == "inconclusive"

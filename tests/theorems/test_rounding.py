@@ -9,7 +9,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems.rounding import energy_error, frame_error, pair_force_error, spread_error
+from flockana.theorems.rounding import deepest_of, energy_error, frame_error, pair_force_error, spread_error
 
 PAIRS = [
     AlphaInteraction(d=7.0, r=8.4),
@@ -124,3 +124,7 @@ def test_a_pull_and_an_obstacle_add_theirs():
     each = 1e-13 * float(beta.psi_beta(0.0)) + 16.0 * eps * 2.0 / np.sqrt(beta.eps) * (beta.r + 70.0)
     more = energy_error(among, q, 0.0 * q, np.zeros(1))[0] - bound
     assert more == pytest.approx(2.0 * among.gains.c1_beta * 2 * each, rel=1e-9)
+
+
+def test_the_depth_of_olfati_saber_s_pair_is_c_star():
+    assert deepest_of(AlphaInteraction()) == AlphaInteraction().c_star

@@ -1,7 +1,5 @@
 """Forces along an agent's own velocity: drag, which brakes it, and speed control, which holds it at a speed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

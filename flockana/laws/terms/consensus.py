@@ -23,13 +23,6 @@ class Consensus(Term):
     """u_i = c Σ_j a_ij (p_j − p_i) with the adjacency of a pair interaction, whose forces are left out.
 
     It has no potential, and takes energy: its power is −c pᵀL̂p, in every frame.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction
-    >>> u, p = np.zeros((2, 1)), np.array([[1.0], [-1.0]])
-    >>> Consensus(AlphaInteraction(), 2.0).act(0.0, np.array([[0.0], [1.0]]), p, u), u.tolist()
-    (-8.0, [[-4.0], [4.0]])
     """
 
     net: PairInteraction

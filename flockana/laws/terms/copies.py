@@ -1,7 +1,5 @@
 """Navigational feedback to copies of the γ-agent, one for each agent."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,14 +19,6 @@ class CopiesTerm(Term):
 
     Its energy is ½ Σ c1γ_i ‖q_i − q_r^i‖² in the given frame, and what it adds to dH/dt is
     −Σ c2γ_i ⟨p_i, p_i − p_r^i⟩ − Σ c1γ_i ⟨q_i − q_r^i, p_r^i⟩.
-
-    Examples
-    --------
-    >>> from flockana.environment.spring import Spring
-    >>> copies, u = Copies([[3.0]], [[1.0]], Spring((0.0,), 0.0)), np.zeros((1, 1))
-    >>> term = CopiesTerm(copies, Gains(c1_gamma=2.0, c2_gamma=1.0))
-    >>> term.act(0.0, np.zeros((1, 1)), np.zeros((1, 1)), u), u.tolist()
-    (6.0, [[7.0]])
     """
 
     copies: Copies

@@ -1,7 +1,5 @@
 """Feedforward of the γ-agent's acceleration to every agent, needed to follow a varying velocity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,15 +13,7 @@ from flockana.laws.terms.term import Term, TermKernel
 
 
 def acceleration(path: Harmonic, t: float) -> FloatArray:
-    """d²q_r/dt² of a harmonic path, shape (m,).
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import CircleTarget
-    >>> circle = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi)
-    >>> acceleration(circle.harmonic, 0.0).tolist()
-    [-2.0, 0.0]
-    """
+    """d²q_r/dt² of a harmonic path, shape (m,)."""
     turn = np.cos(path.omega * t) * path.terms[2] + np.sin(path.omega * t) * path.terms[3]
     push: FloatArray = 0.0 - path.omega**2 * turn
     return push
@@ -35,13 +25,6 @@ class TargetFeedforward(Term):
 
     It moves the centre of mass alone: its power is 0 under an energy in the moving frame, and Σ⟨p_i, d²q_r/dt²⟩ under
     one in the given frame.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import CircleTarget
-    >>> circle, u = CircleTarget((0.0, 0.0), radius=2.0, frequency=0.5 / np.pi), np.zeros((1, 2))
-    >>> TargetFeedforward(circle, True).act(0.0, 0.0 * u, 0.0 * u, u), u.tolist()
-    (0.0, [[-2.0, 0.0]])
     """
 
     target: Target

@@ -1,7 +1,5 @@
 """Coupling to leaders: velocity matching within each leader's group, and pinned agents."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, sin
@@ -102,21 +100,13 @@ class Leaders(Term):
         pins = block_diagonal(self._pins[:, :, None] * np.eye(m))
         return by_position.tocsr() - self.pull * pins, by_velocity.tocsr() - self.drag * pins
 
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:
-        """Return the second derivative of `energy`."""
+    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
         blocks: FloatArray = self.pull * self._pins[:, :, None] * np.eye(q.shape[1])
         return blocks
 
 
 def known_path(leader: Any) -> Harmonic:
-    """Return the harmonic path of a leader; raise unless it reports its true velocity.
-
-    Examples
-    --------
-    >>> from flockana.environment.targets import LinearTarget
-    >>> known_path(LinearTarget((0.0,), (2.0,))).factor
-    1.0
-    """
+    """Return the harmonic path of a leader; raise unless it reports its true velocity."""
     path = leader.harmonic if isinstance(leader, Target) else None
     if path is None or path.factor != 1.0 or path.terms[4].any():
         raise ArgumentError(

@@ -18,17 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LinkTerm(Term):
-    """u_i = c1 Σ_j w (q_j − q_i) + c2 Σ_j a (p_j − p_i) over the links {i, j} of a net, with the energy c1 Σ ψ.
-
-    Examples
-    --------
-    >>> from flockana.interactions import AlphaInteraction
-    >>> u = np.zeros((3, 1))
-    >>> term = LinkTerm(AlphaInteraction(), ((0, 1),), 1.0, 1.0)
-    >>> power = term.act(0.0, np.array([[0.0], [8.0], [7.0]]), np.zeros((3, 1)), u)
-    >>> bool(u[0, 0] == -u[1, 0] > 0.0), float(u[2, 0])
-    (True, 0.0)
-    """
+    """u_i = c1 Σ_j w (q_j − q_i) + c2 Σ_j a (p_j − p_i) over the links {i, j} of a net, with the energy c1 Σ ψ."""
 
     pair: PairInteraction
     links: tuple[tuple[int, int], ...]

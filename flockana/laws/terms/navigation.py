@@ -1,7 +1,5 @@
 """The γ-term: the pull of every agent to the γ-agent, linear (Algorithm 2) or bounded (Algorithm 3)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

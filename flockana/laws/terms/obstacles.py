@@ -1,7 +1,5 @@
 """The β-term: repulsion from obstacles and damping of what moves towards them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

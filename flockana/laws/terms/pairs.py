@@ -18,14 +18,7 @@ if TYPE_CHECKING:
 
 
 def ensure_apart(q: FloatArray) -> None:
-    """Raise if two agents coincide, for a force that has no limit there.
-
-    Examples
-    --------
-    >>> ensure_apart(np.array([[0.0], [0.0]]))
-    Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: agents 0 and 1 coincide: the pair force has no limit there; ...
-    """
+    """Raise if two agents coincide, for a force that has no limit there."""
     order = np.lexsort(q.T)
     same = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
     if same.size:

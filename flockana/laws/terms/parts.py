@@ -1,7 +1,5 @@
 """Terms of Algorithms 1 to 3 and of compositions, and the frame of their energy."""
 
-from __future__ import annotations
-
 from flockana.environment.beta import ObstacleField
 from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction
@@ -28,11 +26,10 @@ def parts(
     thrust: float = 0.0,
     brake: float = 0.0,
 ) -> tuple[Term, ...]:
-    """Return the terms of a law, in the order of addition.
-
-    The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
-    nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given frame.
-    """
+    """Return the terms of a law, in the order of addition."""
+    # The energy is that of the shape, in the moving frame, where a γ-agent pulls all agents alike and linearly, and
+    # nothing else ties the shape to a place (obstacles) or to a speed (β of speed control); else that in the given
+    # frame.
     terms: list[Term] = []
     if pair is not None:
         terms.append(PairTerm(pair, gains.c1_alpha, gains.c2_alpha if net is None else 0.0))

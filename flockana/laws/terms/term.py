@@ -1,7 +1,5 @@
 """Interface of the terms of a law: force, power, share of the energy, and derivatives."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Literal, NamedTuple
 

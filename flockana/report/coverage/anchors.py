@@ -1,22 +1,13 @@
 """Anchors of references in a report: scenarios, verdicts and source reports."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
-from flockana.report.coverage.references import is_erratum
 from flockana.report.pages import Page, ScenarioPage
 from flockana.scenarios.checks import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
-    """Return the ids in the report by reference; a theorem checked on several runs leads to the first.
-
-    Examples
-    --------
-    >>> anchors([])
-    {}
-    """
+    """Return the ids in the report by reference; a theorem checked on several runs leads to the first."""
     found: dict[str, str] = {}
     for page in pages:
         run = isinstance(page, ScenarioPage)
@@ -35,26 +26,17 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
 
 
 def verdict_id(subject: str, theorem: str) -> str:
-    """Return the id of a verdict in the report.
-
-    Examples
-    --------
-    >>> verdict_id("fixed", "E1")
-    'fixed-E1'
-    >>> verdict_id("collapse", "E11")
-    'scenario-collapse--E11'
-    """
+    """Return the id of a verdict in the report."""
     if subject == "fixed":
         return f"fixed-{theorem}".replace(" ", "-")
     return f"{scenario_id(subject)}--{theorem}".replace(" ", "-")  # another's name may be this one's with a theorem's
 
 
 def scenario_id(name: str) -> str:
-    """Return the id of a scenario's section in the report.
-
-    Examples
-    --------
-    >>> scenario_id("statistics")
-    'scenario-statistics'
-    """
+    """Return the id of a scenario's section in the report."""
     return f"scenario-{name}"
+
+
+def is_erratum(name: str) -> bool:
+    """Return whether an id is an erratum's: those begin with a capital letter."""
+    return name[:1].isupper()

@@ -1,33 +1,42 @@
 """Coverage tables: one row for each item of a source, with what in flockana covers it."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-from flockana.base.errors import ArgumentError, FlockanaError
+from flockana.base.errors import ArgumentError
 from flockana.base.references import bibliography
-from flockana.report.coverage.references import Reference, locate
 
 Standing = Literal["held", "weaker", "absent", "prose"]
 
+KINDS = ("function", "plot", "scenario", "report", "theorem", "claim", "erratum", "proof", "notebook")
 OURS = "flockana"  # the key of what is in no source
 _COLUMNS = ("place", "what", "standing", "held by", "remark")
 _MARK = "|"  # between columns; texts write a norm as ‖
 
 
 @dataclass(frozen=True)
-class Row:
-    """Item of a source with the references behind it.
+class Reference:
+    """Reference to a name in flockana, with its kind."""
 
-    Examples
-    --------
-    >>> Row("Theorem 1", "flocks of Algorithm 1", "held", (Reference("theorem", "os-1"),)).held_by[0].name
-    'os-1'
-    """
+    kind: str  # one of `KINDS`
+    name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS or not self.name:
+            raise ArgumentError(
+                f"reference '{self}': expected kind:name, such as theorem:os-1; the kinds are {', '.join(KINDS)}"
+            )
+
+    def __str__(self) -> str:
+        return f"{self.kind}:{self.name}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """Item of a source with the references behind it."""
 
     place: str  # where it stands in the source: section, slide, equation, figure, theorem
     what: str  # what it is, in our words
@@ -53,13 +62,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Source:
-    """Source with its coverage rows, in the source's order.
-
-    Examples
-    --------
-    >>> Source("jond-2025", "A paper", (Row("section 1", "related work", "prose", remark="no claim"),)).count("prose")
-    1
-    """
+    """Source with its coverage rows, in the source's order."""
 
     key: str
     title: str  # what it is
@@ -71,13 +74,7 @@ class Source:
 
 
 def coverage() -> tuple[Source, ...]:
-    """Return all coverage tables, the longest first, items without a source last.
-
-    Examples
-    --------
-    >>> [source.key for source in coverage()][-1]
-    'flockana'
-    """
+    """Return all coverage tables, the longest first, items without a source last."""
     tables = [read_table(path) for path in sorted(Path(__file__).parent.glob("*.csv"))]
     return tuple(sorted(tables, key=lambda source: (source.key == OURS, -len(source.rows))))
 
@@ -91,25 +88,6 @@ def read_table(path: str | os.PathLike[str]) -> Source:
     if not title.startswith("# ") or not lines or _cells(lines[0]) != _COLUMNS:
         raise ArgumentError(f"{path.name}: expected '# title' and '{f' {_MARK} '.join(_COLUMNS)}' to begin with")
     return Source(path.stem, title.removeprefix("# "), tuple(_rows(path.name, lines[1:])))
-
-
-def faults(sources: Iterable[Source]) -> tuple[str, ...]:
-    """Return a line for each reference that leads nowhere, with its source and place.
-
-    Examples
-    --------
-    >>> faults([Source("a", "A", (Row("Fig. 1", "a run", "held", (Reference("theorem", "os-0"),)),))])[0][:40]
-    "a, Fig. 1: unknown theorem 'os-0'; did y"
-    """
-    found = []
-    for source in sources:
-        for row in source.rows:
-            for reference in row.held_by:
-                try:
-                    locate(reference)
-                except FlockanaError as error:
-                    found.append(f"{source.key}, {row.place}: {error}")
-    return tuple(found)
 
 
 def _rows(name: str, lines: list[str]) -> Iterator[Row]:

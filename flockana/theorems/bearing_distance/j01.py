@@ -1,7 +1,5 @@
 """Erratum J1: on a directed tree edges converge to their desired lengths, not to zero as Theorem 1 says."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

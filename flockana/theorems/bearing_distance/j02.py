@@ -1,7 +1,5 @@
 """Erratum J2: the matrix A_cl of Theorem 1 is Hurwitz only while every edge is longer than desired."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking

@@ -1,7 +1,5 @@
 """Erratum J3: the eigenvalues of the two edge matrices pair off index by index on rooted trees only."""
 
-from __future__ import annotations
-
 from itertools import permutations
 
 import numpy as np

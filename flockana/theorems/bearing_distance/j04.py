@@ -1,7 +1,5 @@
 """Erratum J4: two wrong signs on the way to (34) cancel, and the closed loop holds D_in Dᵀ, not D Dᵀ."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking

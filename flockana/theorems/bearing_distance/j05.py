@@ -1,7 +1,5 @@
 """Erratum J5: agents with different numbers of neighbours want two lengths of one edge, and the flock runs away."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

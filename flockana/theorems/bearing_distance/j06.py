@@ -1,7 +1,5 @@
 """J6: the corrected Theorem 1 holds on a directed and on an undirected tree, in the plane and in space."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking

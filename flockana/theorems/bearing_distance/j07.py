@@ -1,7 +1,5 @@
 """Erratum J7: the velocity bound (10), applied to the state in every step, is a drag below the desired speed."""
 
-from __future__ import annotations
-
 from math import tanh
 
 import numpy as np

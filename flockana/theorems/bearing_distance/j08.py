@@ -1,7 +1,5 @@
 """Erratum J8: the velocity estimate (17) of the bearing form drifts away from the velocity, and the flock disperses."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.bearing_distance import ZoneFlocking

@@ -1,7 +1,5 @@
 """Erratum J9: an alien nearer than a_i exerts no force on an agent as printed, and passes through the flock."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.environment.zone_world import Alien, ZoneWorld

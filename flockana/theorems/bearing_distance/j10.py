@@ -1,7 +1,5 @@
 """Erratum J10: the distances and the order that section 5.1 reports do not come out of random starts."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

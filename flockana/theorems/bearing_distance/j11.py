@@ -1,7 +1,5 @@
 """Erratum J11: the minimal model's two runs of 60 agents are said to align and to hold together."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -30,13 +28,7 @@ def minimal_start(m: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def perceived_components(law: MinimalFlocking, q: FloatArray) -> int:
-    """Return the number of components of the undirected graph of perception.
-
-    Examples
-    --------
-    >>> perceived_components(MinimalFlocking(1.5), np.array([[0.0], [1.0], [3.0]]))
-    2
-    """
+    """Return the number of components of the undirected graph of perception."""
     return int(components(len(q), np.array(law.perceived(q), dtype=np.int32).reshape(-1, 2)).max()) + 1
 
 

@@ -1,7 +1,5 @@
 """Erratum J12: repulsion pulls inwards inside an obstacle or beyond a wall, and the printed weights allow contact."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.environment.zone_obstacles import Box, SimplePolygon

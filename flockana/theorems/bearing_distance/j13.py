@@ -1,7 +1,5 @@
 """Erratum J13: an obstacle zone that grows with speed makes no agent react earlier, as (8) measures from c_i."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """J14, confirmed: a new global speed emerges; it is the desired one as soon as somebody is informed of it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Erratum J15: separation ensures no minimum distance c_i, since cohesion pulls within the zone of conflict."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

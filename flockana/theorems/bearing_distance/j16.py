@@ -1,7 +1,5 @@
 """Erratum J16: in a box fragments need not reunite, and growing radii find one flockmate, not the flock."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
@@ -29,11 +27,9 @@ def _positions(law: ZoneFlocking, q: FloatArray, p: FloatArray, steps: int) -> F
 
 
 def _at_walls() -> Claim:
-    """Two agents head on at opposite walls: each slows down before its wall, and both stay there.
-
-    With e = d - d*, the speed and e obey v' = (1 - gδ)v + wδe and e' = e - δv'. Of a matrix with two real eigenvalues
-    in (0, 1) all states with e/v above that of the faster mode stay so, with v > 0: e falls, and never to 0.
-    """
+    """Two agents head on at opposite walls: each slows down before its wall, and both stay there."""
+    # With e = d - d*, the speed and e obey v' = (1 - gδ)v + wδe and e' = e - δv'. Of a matrix with two real eigenvalues
+    # in (0, 1) all states with e/v above that of the faster mode stay so, with v > 0: e falls, and never to 0.
     law = ZoneFlocking(_RADII, _PRINTED, _WALLED, u_max=_UNBOUNDED)
     q, p = np.array([[_C, 25.0], [_SIDE - _C, 25.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     g, w, dt = float(np.max(_PRINTED.speed)), float(np.max(_PRINTED.obstacle)), law.dt

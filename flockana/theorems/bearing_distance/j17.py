@@ -1,7 +1,5 @@
 """J17, confirmed: agents that see an alien later than it sees them react late and lose distance."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

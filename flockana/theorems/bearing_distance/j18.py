@@ -1,7 +1,5 @@
 """The bearing-distance paper's "scalable": flocks of 10 to 500 agents at one density, and what grows with them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Random starts of ten agents as in section 5.1 of the bearing-distance paper, and runs from twenty of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -34,10 +32,8 @@ def separated_start(seed: int, n: int = 10, *, least: float = 2.0, reach: float 
 
 
 def crowd_start(seed: int, n: int, *, least: float = 2.0, any_direction: bool = False) -> tuple[FloatArray, FloatArray]:
-    """Return a start of n agents as dense as ten in (0, 10)² m, no two closer than `least`.
-
-    Velocities are in (0, 1)² m/s, as printed, or in (−1, 1)².
-    """
+    """Return a start of n agents as dense as ten in (0, 10)² m, no two closer than `least`."""
+    # Velocities are in (0, 1)² m/s, as printed, or in (−1, 1)².
     rng = np.random.default_rng(seed)
     side = 10.0 * np.sqrt(n / 10.0)
     q = rng.uniform(0.0, side, (1, 2))

@@ -1,7 +1,5 @@
 """A frozen tree of the minimal model, edge by edge: lengths, energies, equilibria, linearisation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,8 +4,6 @@ A bound that is attained, as ρ - √(2V/μ) is by an edge pressed and let go, l
 bound of an energy larger by the tolerance on energies, which leaves half of that.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase

@@ -15,8 +15,6 @@ So, from the root outwards, all these integrals are finite if θ < 1 on every ed
 are bounded, every |x_e| goes to ρ_e and every x_e' to 0 (Barbalat's lemma). Bearings are free.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

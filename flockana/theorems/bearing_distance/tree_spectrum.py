@@ -1,7 +1,5 @@
 """The spectrum of the minimal model on a frozen tree at equilibrium, compared with the stated one within rounding."""
 
-from __future__ import annotations
-
 from math import nan, sqrt
 from typing import Any, NamedTuple
 
@@ -27,10 +25,8 @@ class Spectrum(NamedTuple):
 
 
 def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the spectrum of the law linearised at a point of the manifold, with its slowest rate.
-
-    Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
-    """
+    """Return the spectrum of the law linearised at a point of the manifold, with its slowest rate."""
+    # Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
     return _undirected(case, q) if case.root is None else _directed(case, q)
 
 
@@ -50,11 +46,9 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the spectrum of an undirected tree from s² + γs + κ = 0, with quotients κ, γ >= 0 of each mode.
-
-    All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has the
-    multiplicity of the kernel of K, less translations.
-    """
+    """Return the spectrum of an undirected tree from s² + γs + κ = 0, with quotients κ, γ >= 0 of each mode."""
+    # All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has
+    # the multiplicity of the kernel of K, less translations.
     m, unit = q.shape[1], 1.0 / sqrt(float(case.mu.max()))
     jacobian = np.asarray(case.law.jacobian(0.0, q, np.zeros_like(q)))[q.size :]
     K, C = -jacobian[:, : q.size] * unit**2, -jacobian[:, q.size :] * unit
@@ -76,11 +70,9 @@ def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
 
 
 def _kernel(values: npt.NDArray[np.floating[Any]], expected: int) -> tuple[int, float, float]:
-    """Return (number of zeros, margin, rounding) among eigenvalues that should be zero or positive.
-
-    The margin is the least of the others over the largest, negative if there are other zeros than expected, NaN if it
-    is not clear which are.
-    """
+    """Return (number of zeros, margin, rounding) among eigenvalues that should be zero or positive."""
+    # The margin is the least of the others over the largest, negative if there are other zeros than expected, NaN if it
+    # is not clear which are.
     largest = float(np.abs(values).max())
     rounding = 64.0 * len(values) * EPS
     zero, clear = np.abs(values) <= rounding * largest, np.abs(values) >= _CLEAR * rounding * largest

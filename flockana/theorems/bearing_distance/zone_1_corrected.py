@@ -1,7 +1,5 @@
 """Theorem 1 of the bearing-distance paper as it can be corrected: edges of a tree take their desired lengths."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
@@ -64,11 +62,9 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
 
 
 def _exponential(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hypothesis]) -> Claim:
-    """The claim that length errors fall at half the slowest rate of the spectrum at least in the end.
-
-    A flock that certainly goes to the manifold, which is normally hyperbolic by that spectrum, comes to it at any rate
-    below the slowest. Near it is too late to measure: a chain of equal edges starts more slowly.
-    """
+    """The claim that length errors fall at half the slowest rate of the spectrum at least in the end."""
+    # A flock that certainly goes to the manifold, which is normally hyperbolic by that spectrum, comes to it at any
+    # rate below the slowest. Near it is too late to measure: a chain of equal edges starts more slowly.
     hyperbolic = Certificate(spectrum.margin, "the spectrum is not as stated", spectrum.error)
     errors = _errors(case, seen)
     return limit_claim(

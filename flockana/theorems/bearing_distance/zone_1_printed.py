@@ -1,7 +1,5 @@
 """Theorem 1 of the bearing-distance paper as printed: that the edges of a spanning tree vanish (false)."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np
@@ -59,10 +57,8 @@ def _abscissa(case: TreeCase, lengths: np.ndarray) -> float:
 
 
 def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that A_cl is Hurwitz along the run, which holds if every edge is longer than desired.
-
-    det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
-    """
+    """Return the claim that A_cl is Hurwitz along the run, which holds if every edge is longer than desired."""
+    # det(sI - A_cl) is the product of s² + a s + w_e, and w_e has the sign of |x_e| - ρ_e: the lengths decide.
     at = case.lengths(seen.run.q) / case.rho
     sampled = (case.edges_of(seen.run.q, seen.shape_error) / case.rho - 1.0).worst
     k = int(np.argmin(at.min(axis=1)))

@@ -1,7 +1,5 @@
 """Section 4 of the bearing-distance paper: separation alone oscillates, and alignment is said to settle it."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 from typing import Any
 

@@ -4,8 +4,6 @@ With y = c s/ℓ and y = sinh w the integral of φ(s) = λ (1 + (c s/ℓ)²)^−
 is as smooth at all distances.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import asinh, cosh, inf
@@ -27,21 +25,11 @@ _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
 
 @dataclass(frozen=True)
 class AlignmentRate:
-    """φ(s) = λ (1 + (c s/ℓ)²)^−β, at which a velocity spread falls when the position spread is s.
+    """φ(s) = λ (1 + (c s/ℓ)²)^−β, at which a velocity spread falls when the position spread is s."""
 
-    Parameters
-    ----------
-    weight : RationalWeight
-        β and ℓ.
-    strength : float
-        λ.
-    stretch : float
-        c: 2 as printed, √2 where it is sharp, 1 for the distance of two agents.
-    """
-
-    weight: RationalWeight
-    strength: float
-    stretch: float
+    weight: RationalWeight  # β and ℓ
+    strength: float  # λ
+    stretch: float  # c: 2 as printed, √2 where it is sharp, 1 for the distance of two agents
 
     def __call__(self, s: float) -> float:
         """φ(s)."""
@@ -107,18 +95,10 @@ class AlignmentRate:
 
 @dataclass(frozen=True, eq=False)
 class Guarantee:
-    """What the functional guarantees of a run of the law: ‖x‖ <= x_M and ‖v‖ <= ‖v(0)‖ e^(−φ(x_M) t).
+    """What the functional guarantees of a run of the law: ‖x‖ <= x_M and ‖v‖ <= ‖v(0)‖ e^(−φ(x_M) t)."""
 
-    Parameters
-    ----------
-    seen : Observed
-        A run of `CuckerSmale`, or of steps of it.
-    stretch : float
-        c of φ.
-    """
-
-    seen: Observed
-    stretch: float
+    seen: Observed  # A run of `CuckerSmale`, or of steps of it
+    stretch: float  # c of φ
 
     @cached_property
     def phi(self) -> AlignmentRate:

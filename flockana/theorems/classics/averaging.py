@@ -1,7 +1,5 @@
 """Certificates for averaged headings: permanent nets, permanent separation, contraction."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
@@ -62,13 +60,11 @@ def blocks(nets: Sequence[LinkArray], headings: FloatArray, windows: Sequence[tu
 
 
 def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Return a certificate that a connected net never changes again, so that all headings tend to one.
-
-    With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
-    of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
-    steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
-    less than what each distance is away from r, the net stays; by induction for ever.
-    """
+    """Return a certificate that a connected net never changes again, so that all headings tend to one."""
+    # With an unchanged net √w (θ − θ∞) shrinks by ρ in each step, w_i counting agent i and its neighbours, θ∞ the mean
+    # of θ by w, ρ the second largest modulus of the eigenvalues of a matrix similar to a symmetric one. Summed over all
+    # steps to come, the distance of i and j changes by at most v dt √(1/w_i + 1/w_j) ‖√w (θ − θ∞)‖/(1 − ρ). If that is
+    # less than what each distance is away from r, the net stays; by induction for ever.
     n, pairs = len(q), law.links(q)
     if components(n, pairs).max() > 0:
         return Certificate(-1.0, "the net is not connected")
@@ -99,13 +95,7 @@ def neighbourhood_sizes(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
-    """Return the weighted mean heading that a constant connected net preserves and tends to.
-
-    Examples
-    --------
-    >>> final_heading(np.array([0.0, 1.0]), np.array([1.0, 3.0]))
-    0.75
-    """
+    """Return the weighted mean heading that a constant connected net preserves and tends to."""
     return float(weights @ heading / weights.sum())
 
 
@@ -116,12 +106,10 @@ def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray
 
 
 def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:
-    """Return a certificate that a component of the net never meets the other agents again.
-
-    There is a direction in which all its agents are more than r ahead of all others, and in which each of its headings
-    advances faster than each of theirs. No heading leaves the span of those of its own side while the sides do not
-    meet, so that they never do, and the spans stay apart.
-    """
+    """Return a certificate that a component of the net never meets the other agents again."""
+    # There is a direction in which all its agents are more than r ahead of all others, and in which each of its
+    # headings advances faster than each of theirs. No heading leaves the span of those of its own side while the sides
+    # do not meet, so that they never do, and the spans stay apart.
     labels = components(len(q), law.links(q))
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     places = q @ np.array([np.cos(angles), np.sin(angles)])

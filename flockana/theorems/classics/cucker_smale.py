@@ -1,7 +1,5 @@
 """Cucker and Smale (2007): with an influence that decays slowly every start becomes a flock, exponentially fast."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale

@@ -1,10 +1,7 @@
 """Two agents of the Cucker-Smale law on a line: an invariant decides which pairs match and which separate."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
@@ -20,7 +17,10 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     if unmet(needs):
         return needs, []
     way = float(np.sign(seen.run.p[0, 1, 0] - seen.run.p[0, 0, 0]))
-    x, w = (_along(way, series, error) for series, error in _states(seen))
+    x, w = (
+        Enclosure.around(way * (series[:, 1, 0] - series[:, 0, 0]), error.sum(axis=1))
+        for series, error in ((seen.run.q, seen.shape_error), (seen.run.p, seen.speed_error))
+    )
     needs.append(condition("different velocities", way != 0.0, float(w.mid[0]), f"w(0) = {w.mid[0]:g}"))
     if unmet(needs):
         return needs, []
@@ -31,16 +31,6 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
     fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
     return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, rest, needs, slow, fast)]
-
-
-def _states(seen: Observed) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
-    """Positions and velocities with their errors."""
-    return (seen.run.q, seen.shape_error), (seen.run.p, seen.speed_error)
-
-
-def _along(way: float, series: FloatArray, error: FloatArray) -> Enclosure:
-    """Difference of the two agents along their relative velocity, over time."""
-    return Enclosure.around(way * (series[:, 1, 0] - series[:, 0, 0]), error.sum(axis=1))
 
 
 def _invariant(

@@ -1,7 +1,5 @@
 """The Cucker-Smale law in steps of time: the flock of the continuous law, if a step is not too long."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale

@@ -1,7 +1,5 @@
 """Olfati-Saber and Murray: consensus tolerates a delay up to π/(2 λ_n), compared with the library's delay margin."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import pi
@@ -96,10 +94,8 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
 
 
 def root_enclosure(share: Fraction) -> Any:
-    """Return a ball around the rightmost root of s + e^(−sτ) = 0, from Lambert's W.
-
-    Of another λ the root is λ times this one, at τ over λ: λτ alone counts.
-    """
+    """Return a ball around the rightmost root of s + e^(−sτ) = 0, from Lambert's W."""
+    # Of another λ the root is λ times this one, at τ over λ: λτ alone counts.
     from flint import acb, arb, ctx
 
     from flockana.certified.balls import ball

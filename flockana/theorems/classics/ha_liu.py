@@ -1,7 +1,5 @@
 """Ha and Liu (2009): flocks of the Cucker-Smale law whose velocity spread is below an integral of the weight."""
 
-from __future__ import annotations
-
 from functools import partial
 from math import sqrt
 

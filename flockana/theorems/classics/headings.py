@@ -1,7 +1,5 @@
 """Jadbabaie, Lin and Morse: headings agree if the nets are jointly connected over window after window of time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

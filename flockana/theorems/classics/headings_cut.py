@@ -1,7 +1,5 @@
 """Averaged headings depend on where angles are counted from: two agents side by side may turn round."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from flockana.theorems.claims import erratum, exact

@@ -1,7 +1,5 @@
 """Run in the frame of its virtual leader: informed agents, lasting links, velocities that decay."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
@@ -64,10 +62,9 @@ def constant_velocity(run: Trajectory) -> Hypothesis:
 
 
 def as_the_leader_sees(seen: Observed) -> Observed:
-    """Return a run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run.
-
-    Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs away.
-    """
+    """Return a run in the frame of its leader, where Algorithm 2 has a γ-agent at rest; kept with the run."""
+    # Of a leader that accelerates, this is so where all agents are told: the acceleration of the frame takes theirs
+    # away.
     return seen.cached("leader's frame", lambda: seen.transformed(_seen))
 
 
@@ -95,10 +92,8 @@ def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
 
 
 def linked_to_informed(run: Trajectory) -> np.ndarray:
-    """Return a mask (n,) of agents linked to an informed one in each window of the last half of a run.
-
-    A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
-    """
+    """Return a mask (n,) of agents linked to an informed one in each window of the last half of a run."""
+    # A link counts in a window if it is there at one of its samples; the chain may be made of links of different times.
     known, start = np.ones(run.n, dtype=bool), 0.5 * (run.t[0] + run.t[-1])
     who, edges = informed(run), np.linspace(start, run.t[-1], WINDOWS + 1)
     for low, high in pairwise(edges):

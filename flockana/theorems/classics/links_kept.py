@@ -1,7 +1,5 @@
 """Links that a tension keeps: below an energy level none reaches the range, so the net stays connected and agrees."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.vectors import lengths

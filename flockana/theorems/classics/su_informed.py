@@ -1,7 +1,5 @@
 """Su, Wang and Lin (2009): Algorithm 2 with few informed agents and a virtual leader of constant velocity."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

@@ -1,7 +1,5 @@
 """Su, Wang and Lin (2009): a virtual leader of varying velocity, with acceleration feedforward."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import sqrt
 
@@ -18,7 +16,7 @@ from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is_or_composed, positive
+from flockana.theorems.hypotheses import condition, law_is, positive
 from flockana.theorems.limits import Certificate
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.observed import Observed
@@ -48,10 +46,6 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
     alike = terms == [PairTerm, Navigation, TargetFeedforward] and law.unit is None
     known = alike and type(law.alpha) is AlphaInteraction
     return condition(name, known, detail=", ".join(term.__name__ for term in terms))
-
-
-def _all_alike(run: Trajectory) -> Hypothesis:
-    return condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent)
 
 
 def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
@@ -98,7 +92,10 @@ def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
 
 def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     run = observed.run
-    needs = [_all_alike(run), _is_feedforward(run)]
+    needs = [
+        condition("all agents feel the leader, with one c1 and one c2", not run.law.gains.per_agent),
+        _is_feedforward(run),
+    ]
     if unmet(needs):
         return needs, []
     needs = [*needs, positive(observed, c1_alpha="c1α", c2_alpha="c2α", c1_gamma="c1", c2_gamma="c2")]
@@ -128,7 +125,7 @@ THEOREM = Theorem(
     ),
     source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
     kind="trajectory",
-    law=law_is_or_composed("Algorithm 2", Algorithm2),
+    law=law_is("Algorithm 2", Algorithm2, composed=True),
     check=_check,
     claims=CLAIMS,
     references=("su-2009", "olfati-saber-2006"),

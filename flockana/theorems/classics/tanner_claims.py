@@ -1,7 +1,5 @@
 """Claims of Tanner, Jadbabaie and Pappas about a run: no collision, and rest in the limit."""
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

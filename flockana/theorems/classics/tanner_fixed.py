@@ -1,7 +1,5 @@
 """Tanner, Jadbabaie and Pappas (2007): potentials and velocity consensus along a fixed connected net."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.tanner import FixedNetFlocking

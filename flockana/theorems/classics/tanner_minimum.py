@@ -1,7 +1,5 @@
 """Erratum: a flock's limit is a critical point of each agent's potential, not always a minimum."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from flockana.theorems.claims import equal, erratum, exact

@@ -1,7 +1,5 @@
 """Tanner, Jadbabaie and Pappas (2007): a net of proximity whose forces jump at its range, connected at all times."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.tanner import ProximityFlocking

@@ -1,7 +1,5 @@
 """An agent that a γ-agent pulls stays near it, under every composition whose energy never rises."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
@@ -13,7 +11,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.navigation import Navigation
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.hypotheses import condition, law_is_or_composed
+from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import nothing_adds_energy
@@ -95,7 +93,7 @@ THEOREM = Theorem(
     ),
     source="ours, on Olfati-Saber 2006, Theorem 3(i)",
     kind="trajectory",
-    law=law_is_or_composed("Algorithm 2 or 3", Algorithm2, Algorithm3),
+    law=law_is("Algorithm 2 or 3", Algorithm2, Algorithm3, composed=True),
     check=_check,
     claims=("bound",),
     references=("olfati-saber-2006", "flockana"),

@@ -1,7 +1,5 @@
 """The dead-zone law of a run, and hypotheses and claims that both forms of the dead-zone theorem have."""
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 
@@ -97,10 +95,8 @@ def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
 def no_collision(
     seen: Observed, bound: Enclosure, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
 ) -> Claim:
-    """Return the claim that no two agents come closer than a bound: between samples too, except for a map.
-
-    The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
-    """
+    """Return the claim that no two agents come closer than a bound: between samples too, except for a map."""
+    # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
     if seen.is_map:
         series = seen.run.metric("min_distance")
         least, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])

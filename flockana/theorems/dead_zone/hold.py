@@ -11,8 +11,6 @@ never grows to more than six times itself on the way (measured, at random Λ and
 allowed there.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np
@@ -101,11 +99,9 @@ def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:
-    """Return an upper bound of each pair potential's third derivative, over lengths within the slack.
-
-    It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
-    makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
-    """
+    """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
+    # It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
+    # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
     third, pair = np.zeros(lengths.shape), law.interaction
     zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
     for zone in np.unique(zones):

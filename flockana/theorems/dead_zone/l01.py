@@ -1,7 +1,5 @@
 """Erratum L1: (7) and (9) multiply two vectors; by components that product depends on the axes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

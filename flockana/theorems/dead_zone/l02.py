@@ -1,7 +1,5 @@
 """Erratum L2: with n = q_i - q_j, as (8) has it, repulsion becomes attraction, and two agents meet in finite time."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from flockana.interactions.dead_zone import DeadZoneInteraction

@@ -1,7 +1,5 @@
 """Erratum L3: φ_z, called a bounded potential, is a force that is unbounded as 1/ρ² where agents meet."""
 
-from __future__ import annotations
-
 from flockana.theorems.claims import erratum, exact
 from flockana.theorems.dead_zone.case import PROOF
 from flockana.theorems.theorem import Claim, Tolerances

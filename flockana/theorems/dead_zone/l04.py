@@ -1,7 +1,5 @@
 """Erratum L4: nothing keeps the flock together: two agents may separate, and wide starts do not connect."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.dead_zone import DeadZoneFlocking

@@ -1,7 +1,5 @@
 """Erratum L5: energy summed over neighbours jumps as a pair comes into range; the saturated energy does not."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory

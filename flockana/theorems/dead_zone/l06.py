@@ -1,7 +1,5 @@
 """L6, confirmed: no two agents collide, by an explicit bound on distances, exponentially small in the energy."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

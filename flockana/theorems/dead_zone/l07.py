@@ -1,7 +1,5 @@
 """Erratum L7: velocities match within components only, and hard jumps of the force make contacts chatter."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Erratum L8: not all pairs of a flock can be at one distance, and contacts sit at r_b - δ, not at r_b."""
 
-from __future__ import annotations
-
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.theorems.claims import erratum, exact, spectral
 from flockana.theorems.dead_zone.case import PROOF

@@ -1,7 +1,5 @@
 """Erratum L9: leaders and pinned agents, which the text has and (9) has not."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Erratum L10: the conclusion's necessary and sufficient conditions, of which the paper states none."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
@@ -35,10 +33,8 @@ def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
 
 
 def _is_finite_apart() -> bool | None:
-    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0.
-
-    None if sympy cannot tell.
-    """
+    """Whether the potential of a pair is finite at every distance > 0, so that every start has an energy H0."""
+    # None if sympy cannot tell.
     import sympy as sp
 
     from flockana.symbolic.dead_zone import ETA_POSITIVE, K_DELTA, K_R, repulsive_primitive

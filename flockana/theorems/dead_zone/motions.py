@@ -1,7 +1,5 @@
 """Runs shared by several errata of the dead-zone paper."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

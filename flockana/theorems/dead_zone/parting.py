@@ -16,8 +16,6 @@ Two components never meet if their centres, at constant velocities, never come c
 is not held this is said of the flow from its last state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -159,10 +157,8 @@ class Components:
 
     @cached_property
     def separation(self) -> Certificate:
-        """Certificate that no two components ever meet, and that their centres move apart without bound.
-
-        The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
-        """
+        """Certificate that no two components ever meet, and that their centres move apart without bound."""
+        # The margin is the lesser of that of `apart` and of the drift over the square of the law's speed scale.
         if self.count == 1:
             return Certificate(-1.0, "the flock is one component")
         unit = self.members[0].law.scales.speed

@@ -1,7 +1,5 @@
 """Decision whether two agents of a run come into range of each other, also between the samples."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Theorem 1 of the dead-zone paper, repaired: saturated energy, one velocity per component, an explicit distance."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.theorems.claims import by_count, vacuous

@@ -1,7 +1,5 @@
 """Theorem 1 of the dead-zone paper as printed: one flock within r, an energy that falls, one velocity, no collision."""
 
-from __future__ import annotations
-
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
 from flockana.theorems.claims import counted
@@ -56,10 +54,8 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
 
 
 def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that the energy of neighbours never rises, which an entering pair refutes.
-
-    Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
-    """
+    """Return the claim that the energy of neighbours never rises, which an entering pair refutes."""
+    # Otherwise it is H̄ less a constant, or falls by ψ̄(r) as a pair leaves. That no pair comes in is a whole number.
     jump, entry = law.interaction.far_potential, first_entry(seen, law.interaction.r)
     enters = entry.pair is not None and jump > 0.0
     possible = int(enters or (entry.unsure and jump > 0.0))

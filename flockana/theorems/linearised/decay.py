@@ -1,7 +1,5 @@
 """Predictions of the linearisation for a flock near its equilibrium, compared with nonlinear runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
@@ -32,13 +30,7 @@ _EXPONENT = 0.05  # how far from 2: the first amplitudes still hold a share of t
 
 
 def lattice_equilibria() -> dict[str, Linearisation]:
-    """Flocks of the catalogue, linearised: hexagonal patches, an FCC site, a hexagon held against a wall.
-
-    Examples
-    --------
-    >>> list(lattice_equilibria())[0]
-    'hexagon 7, Algorithm 1'
-    """
+    """Flocks of the catalogue, linearised: hexagonal patches, an FCC site, a hexagon held against a wall."""
     d = AlphaInteraction().d
     nets: dict[str, FloatArray] = {f"hexagon {3 * k * (k + 1) + 1}": hexagonal_patch(k, d) for k in (1, 2, 3)}
     nets["FCC site 13"] = fcc_star(d)

@@ -1,7 +1,5 @@
 """Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import floor
 
@@ -30,21 +28,11 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 @dataclass(frozen=True)
 class _Window:
-    """Part of a run, with the sample before it so that bounds between samples cover its beginning.
+    """Part of a run, with the sample before it so that bounds between samples cover its beginning."""
 
-    Attributes
-    ----------
-    seen : Observed
-        Its samples, and that one.
-    first : int
-        The first sample within.
-    start : float
-        When it begins.
-    """
-
-    seen: Observed
-    first: int
-    start: float
+    seen: Observed  # Its samples, and that one
+    first: int  # The first sample within
+    start: float  # When it begins
 
 
 def _window(seen: Observed, tolerances: Tolerances) -> tuple[Hypothesis, _Window]:

@@ -4,8 +4,6 @@ They ask for a potential that is C¹ up to its range and at least L, and an adja
 said of E = H − c1α L n(n − 1)/2, the energy above the least that all pairs together can have.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import inf, sqrt
 
@@ -21,7 +19,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     condition,
     hypothesis_from_fact,
-    law_with_common_gains,
+    law_is,
     positive,
     smooth_pair,
     weight_nonnegative,
@@ -92,10 +90,8 @@ def never_meets(seen: Observed) -> Hypothesis:
 
 
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
-    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away.
-
-    ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
-    """
+    """Energy of a state at rest that is no flock: the best lattice of n − 1 agents and one agent far away."""
+    # ∞ where that lattice does not exist (κ too large) or n = 1. Under another pair law than the paper's, all are far.
     pairs, far = n * (n - 1) // 2, law.gains.c1_alpha * law.alpha.far_potential
     if n > 1 and not isinstance(law.alpha, AlphaInteraction):
         return far * pairs
@@ -218,7 +214,7 @@ THEOREM = Theorem(
     ),
     source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
     kind="trajectory",
-    law=law_with_common_gains("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True),
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),
     references=("olfati-saber-2006", "flockana"),

@@ -3,8 +3,6 @@
 The argument is that of `flockana.theorems.basin`, in the moving frame, with U the structural potential.
 """
 
-from __future__ import annotations
-
 from math import inf, pi, sqrt
 
 import numpy as np
@@ -36,11 +34,9 @@ _PIECES = 16  # into which the lengths that a link may take are divided: each is
 def attraction(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, off: float = 0.0, p_off: float = 0.0
 ) -> Basin:
-    """Return the basin of the minimum beside a state that is known to some distance.
-
-    Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's, and
-    of a flock with more coordinates than a dense Hessian is made for.
-    """
+    """Return the basin of the minimum beside a state that is known to some distance."""
+    # Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's,
+    # and of a flock with more coordinates than a dense Hessian is made for.
     if q.shape[0] == 1:
         return ALONE
     if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
@@ -93,11 +89,9 @@ def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float)
 
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:
-    """Return an upper bound of each pair potential's third derivative, over lengths within the slack.
-
-    With F(s) = ψ_α(‖s‖_σ) it is F‴ along the pair three times and (F'/s)' along it once and across twice; of unit
-    vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most.
-    """
+    """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
+    # With F(s) = ψ_α(‖s‖_σ) it is F‴ along the pair three times and (F'/s)' along it once and across twice; of unit
+    # vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most.
     ends = np.maximum(lengths + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None], 0.0)
     s = Enclosure.between(ends[:-1], ends[1:])
     root = (1.0 + alpha.eps * s.square()).sqrt()

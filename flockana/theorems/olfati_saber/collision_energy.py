@@ -1,12 +1,10 @@
 """Energy of a collision: below c* none is possible, below 2 c* one may happen."""
 
-from __future__ import annotations
-
 from flockana.interactions import AlphaInteraction
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import alpha_gain, condition, law_is_or_composed, positive
+from flockana.theorems.hypotheses import alpha_gain, condition, law_is, positive
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import below_multiple, energy_at_start, no_collision
@@ -50,7 +48,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
     kind="trajectory",
-    law=law_is_or_composed("Algorithm 1 or 2", Algorithm1, Algorithm2),
+    law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, composed=True),
     check=_check,
     enclosed=enclosed_by("collision_energy"),
     claims=tuple(_MULTIPLES),

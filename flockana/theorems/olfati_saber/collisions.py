@@ -5,8 +5,6 @@ that stays positive excludes it; two agents that stand to each other's left and 
 ever leaves, certainly met; in between it is open. In the plane a numerical run never shows a contact, only nearness.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import combinations
 
@@ -42,10 +40,8 @@ def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
-    """Return pairs that certainly met, as they changed places on a line that both keep to, and by how much.
-
-    How far they go past is known to the error of the run.
-    """
+    """Return pairs that certainly met, as they changed places on a line that both keep to, and by how much."""
+    # How far they go past is known to the error of the run.
     depths: dict[Pair, float] = {}
     noise = _noise(seen, tolerances)
     if seen.doubt:
@@ -207,11 +203,9 @@ def distinct_pairs(
 def pairs_at_one_instant(
     seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
-    """Return the corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide.
-
-    Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
-    than the contact distance at a sample, as coincident there.
-    """
+    """Return the corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide."""
+    # Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
+    # than the contact distance at a sample, as coincident there.
     c_star, above = meeting(seen).c_star, above_least(seen, seen.energy)
     allowed, at_most = np.floor(above.lo / c_star), np.floor(above.hi / c_star)
     together = np.array([len(pairs) for pairs in near(seen, tolerances)])

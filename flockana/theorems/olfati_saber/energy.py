@@ -1,7 +1,5 @@
 """The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
@@ -19,7 +17,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.claims import judged, undecided
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is_or_composed, smooth_pair, weight_nonnegative
+from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
 from flockana.theorems.rounding import EPS
@@ -60,12 +58,10 @@ def balance(
 
 
 def cancelling(run: Trajectory) -> FloatArray:
-    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample.
-
-    They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
-    of a γ-agent that moves, or whose acceleration is fed forward. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag,
-    are sums of squares.
-    """
+    """Magnitude of those terms of dH/dt that are differences, and may cancel, at each sample."""
+    # They are c2β ΣΣ b ⟨p_i, p̂_ik − p_i⟩, of β-agents no faster than their agent, c2γ Σ⟨p_i, p_i − p_r⟩, and the work
+    # of a γ-agent that moves, or whose acceleration is fed forward. The others, −c2α pᵀL̂p, −c2γ‖v‖² and those of drag,
+    # are sums of squares.
     law, q, p = run.law, run.q, run.p
     if law.moving or (law.target is None and not law.obstacles):
         return np.zeros(len(p))
@@ -80,10 +76,8 @@ def cancelling(run: Trajectory) -> FloatArray:
 
 
 def _damps_only(run: Trajectory) -> bool:
-    """Whether dH/dt is a sum of squares outside of walls, spheres and capsules, the γ-agent being at rest or absent.
-
-    ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
-    """
+    """Whether dH/dt is a sum of squares outside of walls, spheres and capsules, the γ-agent being at rest or absent."""
+    # ⟨p_i, p̂_ik − p_i⟩ = μ‖P p_i‖² − ‖p_i‖² ≤ 0, with the projection P and μ ≤ 1.
     target, known = run.law.target, all(type(each) in (Sphere, Wall, Capsule) for each in run.law.obstacles)
     return known and (
         target is None or not any(np.any(target.state(t)[1]) or np.any(target.rate(t)) for t in run.t.tolist())
@@ -124,11 +118,9 @@ def never_rises(
     name: str = "rate",
     proof: str | None = None,
 ) -> Claim:
-    """Return the claim that dH/dt ≤ 0 at every sample from `since` on, by its fall over its terms' magnitude.
-
-    A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every state.
-    Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
-    """
+    """Return the claim that dH/dt ≤ 0 at every sample from `since` on, by its fall over its terms' magnitude."""
+    # A sum of terms of one sign keeps it in floating point, so that Algorithms 1 and 2 have the margin 1 at every
+    # state. Where terms may cancel, the claim is judged as long as the agents' motion is above its error.
     cancels = (lambda run: np.zeros(len(run.t))) if squares else cancels
     one_sign = cancels is cancelling and _damps_only(seen.run)
     share = falling_share(seen, rate, cancels, one_sign=one_sign)
@@ -206,7 +198,7 @@ def is_own(law: Any) -> bool:
 def _law(seen: Observed) -> Hypothesis:
     """The hypothesis that the law is a sum of terms that give their energy and its rate."""
     if not is_own(seen.law):
-        return law_is_or_composed("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3)(seen)
+        return law_is("Algorithm 1, 2 or 3", Algorithm1, Algorithm2, Algorithm3, composed=True)(seen)
     terms = ", ".join(type(term).__name__ for term in seen.law.terms)
     return condition("the law is a sum of terms", True, detail=f"{type(seen.law).__name__}: {terms}")
 

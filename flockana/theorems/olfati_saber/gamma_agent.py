@@ -6,8 +6,6 @@ differs. A function cannot be seen everywhere: of a target of a user's own each 
 interval, and rest that was seen is assumed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
@@ -76,18 +74,10 @@ def _describe_rest(moves: bool, any_p_r: bool, p_r: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class Slip:
-    """Largest difference over a run between a declared velocity and the one that the positions show.
+    """Largest difference over a run between a declared velocity and the one that the positions show."""
 
-    Attributes
-    ----------
-    off : float
-        Largest mean difference over an interval.
-    error : float
-        Of the quadrature, and rounding.
-    """
-
-    off: float
-    error: float
+    off: float  # Largest mean difference over an interval
+    error: float  # Of the quadrature, and rounding
 
 
 def slip(run: Trajectory, velocity: Callable[[float], FloatArray]) -> Slip:

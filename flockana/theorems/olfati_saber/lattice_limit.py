@@ -1,7 +1,5 @@
 """The slides' summaries of Theorems 1 and 3 on a run: it converges to an α-lattice (false, erratum E3)."""
 
-from __future__ import annotations
-
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.hypotheses import alpha_gain, law_is

@@ -72,10 +72,8 @@ def _stays_outside(tube: Tube) -> Hypothesis:
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that dH/dt is never positive from a step on.
-
-    With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
-    """
+    """Return the claim that dH/dt is never positive from a step on."""
+    # With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
     squares = not _declared_velocity(tube).any() and needs[-1].status == "met"
     margin, highest, when = arb(1), arb(float("-inf")), tube.t[since]
     for k in range(since, len(tube.taken)):

@@ -1,7 +1,5 @@
 """Theorem 1 of Olfati-Saber (2006): Algorithm 1, if the flock stays together."""
 
-from __future__ import annotations
-
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.asymptotics import lattice_limit, velocities_match

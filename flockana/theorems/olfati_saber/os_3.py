@@ -1,14 +1,12 @@
 """Theorem 3 of Olfati-Saber (2006): Algorithm 2 keeps the flock together."""
 
-from __future__ import annotations
-
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.claims import vacuous
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, law_with_common_gains, positive
+from flockana.theorems.hypotheses import condition, law_is, positive
 from flockana.theorems.leads import pairs_apart
 from flockana.theorems.limits import limit_claim
 from flockana.theorems.observed import Observed
@@ -104,7 +102,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorem 3",
     kind="trajectory",
-    law=law_with_common_gains("Algorithm 2", Algorithm2, formulas=True),
+    law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_3"),
     claims=("i", "ii", "ii-converges", "ii-semidefinite", "iii", *_COLLISIONS),

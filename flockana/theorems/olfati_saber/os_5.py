@@ -3,8 +3,6 @@
 Checked on a configuration (``"os-5"``) or on the last state of a run (``"os-5-terminal"``).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Theorem 6 of Olfati-Saber (2006): under Algorithm 3 with a static γ-agent the energy stops rising."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray
@@ -9,7 +7,7 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import common_gains, law_with_common_gains
+from flockana.theorems.hypotheses import common_gains, law_is
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
@@ -26,11 +24,9 @@ def condition_76(run: Trajectory) -> FloatArray:
 
 
 def _condition(seen: Observed) -> tuple[Hypothesis, int]:
-    """Return condition (76), and the first sample from which it holds to the end.
-
-    It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
-    decides, it is assumed to hold.
-    """
+    """Return condition (76), and the first sample from which it holds to the end."""
+    # It must hold for the law's time scale at least: one instant at the end is no "from some t0 on". Where rounding
+    # decides, it is assumed to hold.
     run, slack = seen.run, condition_76(seen.run)
     any_p_r = np.array([np.linalg.norm(run.law.target.state(float(t))[1]) for t in run.t])
     terms = 0.5 * np.sum(run.p**2, axis=(1, 2)) + 0.5 * any_p_r * lengths(run.p).sum(axis=1)
@@ -78,7 +74,7 @@ THEOREM = Theorem(
     ),
     source="Olfati-Saber 2006, Theorem 6",
     kind="trajectory",
-    law=law_with_common_gains("Algorithm 3", Algorithm3),
+    law=law_is("Algorithm 3", Algorithm3, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_6", "obstacles_enclosed"),
     claims=("rate", "balance"),

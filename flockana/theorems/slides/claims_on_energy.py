@@ -1,7 +1,5 @@
 """Claims about an energy that a source prints wrongly (E1, E2): by algebra, at an exact state, along a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -52,10 +50,8 @@ def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -
 def run_claim(
     seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Iterable[Hypothesis] = ()
 ) -> Claim:
-    """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run.
-
-    A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
-    """
+    """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run."""
+    # A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
     above = rises(printed_energy(seen, excess))
     peak, true = int(np.argmax(above.lo)), seen.energy
     rise = float(above.mid[peak])

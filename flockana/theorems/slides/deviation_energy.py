@@ -1,7 +1,5 @@
 """The slides' remark that the deviation energy is nonsmooth while the potential V is smooth: true, and shown."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Directed nets, which the slides allow but do not treat: properties of Algorithms 1 to 3 that hold, and that fail."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

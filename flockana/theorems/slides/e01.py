@@ -1,7 +1,5 @@
 """Erratum E1: the Hamiltonian needs the factor ½ before Σ‖p_i‖²."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.laws.olfati_saber import Algorithm1

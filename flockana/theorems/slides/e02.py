@@ -1,7 +1,5 @@
 """Erratum E2: the potential V_α of Algorithm 3 counts every pair once."""
 
-from __future__ import annotations
-
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3

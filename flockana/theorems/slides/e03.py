@@ -1,7 +1,5 @@
 """Erratum E3: limits that are no α-lattice have open basins."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import inf, sqrt
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """E4: H < c* excludes collisions, but for large flocks no state is below c*; a barrier without this defect."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np
@@ -47,10 +45,8 @@ def _error(alpha: AlphaInteraction, n: int) -> float:
 
 
 def _implication(alpha: AlphaInteraction) -> Claim:
-    """The claim as printed, which is true: every other pair adds at least 0 to the c* of a coincident pair.
-
-    ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
-    """
+    """The claim as printed, which is true: every other pair adds at least 0 to the c* of a coincident pair."""
+    # ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
     z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
     off = (z - alpha.d_alpha) ** 2

@@ -1,7 +1,5 @@
 """Erratum E5: in space, edges of an α-lattice do not cross, and yet its graph need not be planar."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations, product
 from math import sqrt

@@ -1,7 +1,5 @@
 """Erratum E6: 3n − 6 bounds the links of three agents or more only, and is not sharp."""
 
-from __future__ import annotations
-
 from flockana.lattice import harborth, hexagonal_spiral, links
 from flockana.theorems.claims import by_count, counted, erratum
 from flockana.theorems.theorem import Claim, Tolerances

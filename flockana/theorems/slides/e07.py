@@ -1,7 +1,5 @@
 """Erratum E7: C* is a share of nodes, though it is printed as a share of edges."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

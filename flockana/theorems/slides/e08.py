@@ -1,7 +1,5 @@
 """Erratum E8: connectivity is the rank of the Laplacian, not of the adjacency matrix."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from flockana.measures.metrics import connectivity

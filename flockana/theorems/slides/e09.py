@@ -1,7 +1,5 @@
 """Erratum E9: the MSN project's position update counts the velocity's gain twice."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

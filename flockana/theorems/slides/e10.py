@@ -1,7 +1,5 @@
 """Erratum E10: at h = 1 the bump function is an indicator, and no longer continuous."""
 
-from __future__ import annotations
-
 from flockana.theorems.claims import erratum, exact
 from flockana.theorems.theorem import Claim, Tolerances
 

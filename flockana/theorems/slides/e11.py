@@ -1,7 +1,5 @@
 """Erratum E11: Algorithm 2 yields a lattice only while c1γ/c1α is small."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import isnan
 from typing import Any

@@ -1,7 +1,5 @@
 """Erratum E12: why the MSN project's flock describes a smaller circle and sine than its γ-agent."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import pi
 

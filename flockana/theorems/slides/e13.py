@@ -1,7 +1,5 @@
 """Erratum E13: energy bounds the pairs that coincide at one instant, not over time."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum E14: in Reynolds' form of Algorithm 1 the slides lose −S_i q_i, and with it invariance under translation."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

@@ -1,7 +1,5 @@
 """Erratum E15: two causes that the MSN project gives for the smaller circle of its case 4, start and speed."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import pi, sqrt
 from typing import Any

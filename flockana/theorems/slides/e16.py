@@ -1,7 +1,5 @@
 """Erratum E16: α coefficients above those of γ are needed for a lattice in all cases tried, and do not suffice."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import sqrt
 

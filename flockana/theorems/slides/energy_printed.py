@@ -1,7 +1,5 @@
 """The energy of Algorithm 3 as the slides print it, along a run: erratum E2 says that it can rise."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from flockana.base.checks import FloatArray

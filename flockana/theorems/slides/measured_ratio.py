@@ -1,7 +1,5 @@
 """Ratio of the circle or sine of the centre of mass to the γ-agent's, enclosed (E12, E15)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,7 +3,7 @@ import re
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.report.coverage import Reference, Row, Source, faults, read_table
+from flockana.report.coverage import Reference, Row, read_table
 
 HEAD = "# A paper\nplace | what | standing | held by | remark\n"
 GOOD = "Fig. 1 | a run | held | scenario:collapse theorem:os-3 |"
@@ -67,9 +67,3 @@ def test_what_is_absent_is_held_by_nothing():
         Row("Fig. 1", "a run", "absent", (Reference("theorem", "os-3"),), "not there")
     with pytest.raises(ArgumentError, match=r"Fig\. 1: a run: absent, without a remark that says why"):
         Row("Fig. 1", "a run", "absent")
-
-
-def test_a_wrong_name_is_told_with_its_source_and_place():
-    wrong = Row("Fig. 3", "a run", "held", (Reference("scenario", "colapse"), Reference("theorem", "os-3")))
-    (fault,) = faults([Source("jond-2025", "A paper", (wrong,))])
-    assert fault.startswith("jond-2025, Fig. 3: unknown scenario 'colapse'; did you mean 'collapse'?")

@@ -2,7 +2,9 @@ import pytest
 
 import flockana.laws
 from flockana.base.errors import ArgumentError, FileError, UnknownNameError
-from flockana.report.coverage import Reference, locate, references
+from flockana.report.coverage import Reference, Row, Source
+from tools import coverage_references
+from tools.coverage_references import faults, locate
 
 
 @pytest.mark.parametrize(
@@ -84,6 +86,12 @@ def test_a_reference_has_a_kind_and_a_name(kind, name):
 
 
 def test_proofs_and_notebooks_stand_in_a_checkout(tmp_path, monkeypatch):
-    monkeypatch.setattr(references, "_CHECKOUT", tmp_path)
+    monkeypatch.setattr(coverage_references, "_CHECKOUT", tmp_path)
     with pytest.raises(FileError, match=r"there is no folder proofs .* expected a checkout"):
         locate(Reference("proof", "signs_of_phi"))
+
+
+def test_a_wrong_name_is_told_with_its_source_and_place():
+    wrong = Row("Fig. 3", "a run", "held", (Reference("scenario", "colapse"), Reference("theorem", "os-3")))
+    (fault,) = faults([Source("jond-2025", "A paper", (wrong,))])
+    assert fault.startswith("jond-2025, Fig. 3: unknown scenario 'colapse'; did you mean 'collapse'?")

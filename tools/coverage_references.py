@@ -1,10 +1,9 @@
-"""References such as ``theorem:os-1``, with the file that each leads to."""
+"""Files that references such as ``theorem:os-1`` lead to, in a checkout."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -12,41 +11,33 @@ from pkgutil import iter_modules
 from typing import Any
 
 import flockana
-from flockana.base.errors import ArgumentError, FileError, UnknownNameError
+from flockana.base.errors import ArgumentError, FileError, FlockanaError, UnknownNameError
 from flockana.base.modules import modules
+from flockana.report.coverage import Reference, Source
+from flockana.report.coverage.anchors import is_erratum
 from flockana.scenarios import scenario, scenarios
 from flockana.theorems import theorem, theorems
 from flockana.theorems.theorem import Theorem
 
-_CHECKOUT = Path(__file__).resolve().parents[3]  # the folder that holds the package
-
-
-@dataclass(frozen=True)
-class Reference:
-    """Reference to a name in flockana, with its kind.
-
-    Examples
-    --------
-    >>> locate(Reference("erratum", "E4"))
-    'flockana/theorems/slides/e04.py'
-    """
-
-    kind: str  # one of `KINDS`
-    name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``
-
-    def __post_init__(self) -> None:
-        if self.kind not in KINDS or not self.name:
-            raise ArgumentError(
-                f"reference '{self}': expected kind:name, such as theorem:os-1; the kinds are {', '.join(KINDS)}"
-            )
-
-    def __str__(self) -> str:
-        return f"{self.kind}:{self.name}"
+_CHECKOUT = Path(__file__).resolve().parents[1]  # the folder that holds the package
 
 
 def locate(reference: Reference) -> str:
     """Return the file in the package that a reference leads to; nothing is run to find it."""
-    return KINDS[reference.kind](reference.name)
+    return _KINDS[reference.kind](reference.name)
+
+
+def faults(sources: Iterable[Source]) -> tuple[str, ...]:
+    """Return a line for each reference that leads nowhere, with its source and place."""
+    found = []
+    for source in sources:
+        for row in source.rows:
+            for reference in row.held_by:
+                try:
+                    locate(reference)
+                except FlockanaError as error:
+                    found.append(f"{source.key}, {row.place}: {error}")
+    return tuple(found)
 
 
 def _function(name: str) -> str:
@@ -139,11 +130,6 @@ def _report(name: str) -> str:
     return path
 
 
-def is_erratum(name: str) -> bool:
-    """Return whether an id is an erratum's: those begin with a capital letter."""
-    return name[:1].isupper()
-
-
 def _theorem(name: str) -> str:
     return _of_catalogue("theorem", name, [known for known in theorems() if not is_erratum(known)])
 
@@ -195,7 +181,7 @@ def _relative(file: str) -> str:
     return Path(file).resolve().relative_to(_CHECKOUT).as_posix()
 
 
-KINDS: dict[str, Callable[[str], str]] = {
+_KINDS: dict[str, Callable[[str], str]] = {
     "function": _function,
     "plot": _plot,
     "scenario": _scenario,
