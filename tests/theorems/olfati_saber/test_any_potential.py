@@ -22,8 +22,9 @@ Q = np.array([[0.0, 0.0], [1.0, 0.0], [0.4, 0.9]])
 P = np.array([[0.3, 0.0], [-0.1, 0.2], [0.0, -0.2]])
 
 
-def morse(**numbers):
-    return pair_law(MORSE, adjacency="(1 - s/r)**2", range=2.0, length=1.0, parameters={"k": 1.0, "a": 3.0} | numbers)
+def morse():
+    numbers, units = {"k": 1.0, "a": 3.0}, {"k": (2, -2), "a": (-1, 0)}
+    return pair_law(MORSE, adjacency="(1 - s/r)**2", range=2.0, length=1.0, parameters=numbers, units=units)
 
 
 def parabola(top=4.0):
@@ -94,9 +95,7 @@ def test_the_paper_s_law_is_a_special_case():
 
 
 def test_in_all_units():
-    units = {"k": (2, -2), "a": (-1, 0)}
-    pair = pair_law(MORSE, adjacency="1 - s/r", range=2.0, length=1.0, parameters={"k": 1.0, "a": 3.0}, units=units)
-    run = simulate(Algorithm2(pair, GAINS, ORIGIN), Q, P, (0.0, 1.0))
+    run = simulate(Algorithm2(morse(), GAINS, ORIGIN), Q, P, (0.0, 1.0))
     same_in_all_units("any-potential", run, (1e-3, 60.0))
 
 
