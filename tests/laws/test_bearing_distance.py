@@ -148,10 +148,7 @@ def test_stand_off_at_a_wall(weight, distance):
     stated = symbolic.stand_off(desired_speed=3, drive=5, weight=weight).subs(symbolic.C, 3)
     assert float(stated) == pytest.approx(distance, rel=1e-14)
     law = ZoneFlocking(
-        weights=ZoneWeights(obstacle=weight),
-        world=ZoneWorld(box=Box((0.0, 0.0), (20.0, 20.0))),
-        u_max=1e6,
-        dt=0.01,
+        weights=ZoneWeights(obstacle=weight), world=ZoneWorld(box=Box((0.0, 0.0), (20.0, 20.0))), u_max=1e6, dt=0.01
     )
     run = simulate(law, [[10.0, 10.0]], [[3.0, 0.0]], (0.0, 12.0))
     assert 20.0 - run.q[-1, 0, 0] == pytest.approx(distance, abs=1e-4)  # at rates 2.5 and 1.6 nothing else is left
