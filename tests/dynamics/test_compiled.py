@@ -39,15 +39,12 @@ TARGETS = [
     RescaledVelocity(StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
     RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
 ]
-BODIES = [  # near a flock between 0 and 18, none of them in its way
+SPHERES = Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0)
+BODIES = [  # near a flock between 0 and 18, none of them in its way: every kind, one and several of them
     (2, ()),
-    (2, (Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0))),
-    (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0))),
-    (2, (Wall((0.0, -1.0), (0.3, 1.0)),)),
-    (3, (Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)),)),
-    (2, (Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0),)),
     (2, (Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)]),)),
-    (2, (Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), Sphere((12.0, 24.0), 4.0))),
+    (2, (Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), *SPHERES)),
+    (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0), Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)))),
 ]
 PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, 12), c2_gamma=np.linspace(1.0, 3.0, 12))
 
@@ -97,8 +94,8 @@ def laws():
     yield 2, Algorithm2(target=TARGETS[3], gains=PER_AGENT)
     yield 2, Algorithm2(target=TARGETS[3], gains=Gains(c1_gamma=np.linspace(0.5, 2.0, 12)))
     yield 2, Algorithm1(DeadZoneInteraction(ramp=0.5))
-    for m in (1, 2, 3):
-        yield m, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
+    yield 2, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
+    for m in (1, 3):
         yield m, Algorithm2(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
     for m, bodies in BODIES:
         yield m, Algorithm3(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
