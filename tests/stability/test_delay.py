@@ -20,13 +20,7 @@ from flockana.laws.delayed import Delayed
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import crossings
-from flockana.stability.delay import (
-    DelaySystem,
-    delay_margin,
-    delay_system,
-    rightmost_roots,
-    scalar_margin,
-)
+from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, scalar_margin
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)
@@ -240,8 +234,7 @@ def grown(system, q, share, law, delayed="all"):
 
 
 @pytest.mark.parametrize(
-    ("delayed", "share"),
-    [("all", 0.85), ("all", 1.15), ("pairs", 0.85), ("pairs", 1.15), ("neighbours", 1.15)],
+    ("delayed", "share"), [("all", 0.85), ("all", 1.15), ("pairs", 0.85), ("pairs", 1.15), ("neighbours", 1.15)]
 )
 def test_the_nonlinear_flock_decays_below_the_margin_and_grows_above(delayed, share):
     q = find_equilibrium(LAW, hexagonal_spiral(3, 7.0)).q

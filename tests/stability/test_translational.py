@@ -90,10 +90,7 @@ def test_gains_of_the_erratum():
 def test_the_maps_system_is_the_maps(position_factor):
     """Impulse of the γ-agent: one agent moved by the map itself against the discrete system, to rounding."""
     paths = np.random.default_rng(0).standard_normal((9, 2))
-    inner = Algorithm2(
-        gains=gains(3.0, 1.5),
-        target=CallableTarget(lambda t: np.split(paths[round(10 * t) % 9], 2)),
-    )
+    inner = Algorithm2(gains=gains(3.0, 1.5), target=CallableTarget(lambda t: np.split(paths[round(10 * t) % 9], 2)))
     law = MSNDiscretisation(inner, dt=0.1, in_place=False, position_factor=position_factor)
     q, p, seen = np.zeros((1, 1)), np.zeros((1, 1)), []
     for k in range(8):
