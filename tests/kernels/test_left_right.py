@@ -31,7 +31,7 @@ def thinned_triangulation(n: int, kept: float, seed: int) -> np.ndarray:
 
 def test_it_finds_an_embedding_exactly_where_networkx_does():
     answers = set()
-    for seed in range(60):
+    for seed in range(12):
         for n in (5, 6, 8, 12, 20, 40):
             for share in (0.9, 1.2, 1.5, 1.9, 2.4):
                 pairs = random_graph(n, round(share * n), seed)
@@ -43,9 +43,9 @@ def test_it_finds_an_embedding_exactly_where_networkx_does():
 
 @pytest.mark.parametrize("kept", [1.0, 0.8, 0.5])
 def test_planar_graphs_have_their_embedding_found(kept):
-    for seed in range(20):
+    for seed in range(5):
         assert _embeds(thinned_triangulation(200, kept, seed))
-    assert _embeds(thinned_triangulation(20_000, kept, 0))
+    assert _embeds(thinned_triangulation(4_000, kept, 0))
 
 
 @pytest.mark.parametrize("q", [triangular(3000, 7.0), hexagonal_patch(31, 7.0), honeycomb(40, 40, 7.0)])
