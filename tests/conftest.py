@@ -28,6 +28,7 @@ SLOW = (
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
     *("kernels/test_poles.py", "theorems/olfati_saber/test_attraction.py"),
     *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),
+    "theorems/bearing_distance/test_tree_limits.py",
 )
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 
