@@ -54,4 +54,5 @@ def a_run(m=2, n=4):
     """Agents from anywhere, pulled after a γ-agent in uniform motion, at tenths of a time unit."""
     target = LinearTarget((1.0,) * m, (2.0,) * m)
     q = np.random.default_rng(0).uniform(0.0, 12.0, (n, m))
-    return simulate(Algorithm2(target=target), q, 0.0 * q, (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 11))
+    law, times = Algorithm2(target=target), np.linspace(0.0, 1.0, 11)
+    return simulate(law, q, 0.0 * q, (0.0, 1.0), t_eval=times, method="scipy-DOP853")  # which compiles no integrator

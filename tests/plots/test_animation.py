@@ -20,7 +20,7 @@ from tests.plots.artists import Halving, frame, title
 def a_run(m=2):
     law = Algorithm3(target=StaticTarget((0.0,) * m), obstacles=(Sphere((30.0, *(0.0,) * (m - 1)), 5.0),))
     q = np.random.default_rng(0).uniform(0.0, 14.0, (4, m))
-    return simulate(law, q, 0.0 * q, (0.0, 2.0))
+    return simulate(law, q, 0.0 * q, (0.0, 2.0), method="scipy-DOP853")  # which compiles no integrator
 
 
 def test_between_samples_the_path_is_the_cubic_of_values_and_slopes():

@@ -96,8 +96,7 @@ def test_a_snapshot_shows_the_obstacles_of_the_law(m):
     law = Algorithm3(target=StaticTarget((0.0,) * m), obstacles=(Sphere(centre, 5.0), Wall((-30.0,) * m, (1.0,) * m)))
     q = np.zeros((2, m))
     q[1, 0] = 10.5
-    run = simulate(law, q, 0.0 * q, (0.0, 0.01))
-    ax = plots.snapshot(run, 0.0, ax=axes(m))
+    ax = plots.snapshot(Trajectory(np.zeros(1), q[None], 0.0 * q[None], 0.0 * q[None], law), 0.0, ax=axes(m))
     assert any(c.get_label() == "β-agents" for c in ax.collections)
     ax.get_figure().canvas.draw()
     assert ax.get_xlim()[1] >= 25.0

@@ -5,15 +5,7 @@ from math import inf, sqrt
 import numpy as np
 import pytest
 
-from flockana.theorems.basin import (
-    ALONE,
-    Basin,
-    barrier,
-    connected_within,
-    curvatures,
-    excess,
-    lipschitz_constant,
-)
+from flockana.theorems.basin import ALONE, Basin, barrier, connected_within, curvatures, excess, lipschitz_constant
 
 
 @pytest.mark.parametrize(

@@ -64,12 +64,7 @@ def test_at_the_largest_ratio_second_neighbours_are_no_links(name):
 
 @pytest.mark.parametrize(
     ("q", "kappa"),
-    [
-        (fcc(2, 2, 2, D), 1.2),
-        (hcp(3, 2, 2, D), 1.2),
-        (bcc(3, 3, 3, D), 1.1),
-        (simple_cubic(3, 3, 3, D), 1.2),
-    ],
+    [(fcc(2, 2, 2, D), 1.2), (hcp(3, 2, 2, D), 1.2), (bcc(3, 3, 3, D), 1.1), (simple_cubic(3, 3, 3, D), 1.2)],
 )
 def test_in_space_edges_do_not_cross_whatever_the_graph(q, kappa):
     verdict = verify("os-5", q=q, d=D, r=kappa * D)

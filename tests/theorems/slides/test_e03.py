@@ -10,13 +10,7 @@ from flockana.interactions import Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.metrics import min_distance
 from flockana.theorems import Tolerances
-from flockana.theorems.slides.e03 import (
-    _certain_strain,
-    _is_lattice,
-    _Limit,
-    random_disc,
-    rhombus_with_double_agent,
-)
+from flockana.theorems.slides.e03 import _certain_strain, _is_lattice, _Limit, random_disc, rhombus_with_double_agent
 from tests.adversarial.published import changes
 
 
