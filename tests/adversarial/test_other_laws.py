@@ -8,13 +8,7 @@ import pytest
 
 from flockana import theorem, theorems, verify
 from flockana.environment.target import Target
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    StaticTarget,
-)
+from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking

@@ -8,10 +8,7 @@ import pytest
 
 from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
-from flockana.environment.targets import (
-    RescaledVelocity,
-    StaticTarget,
-)
+from flockana.environment.targets import RescaledVelocity, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking

@@ -82,10 +82,7 @@ def cases():
     yield "Scenario p0", POINTS | {"more agents": Q + Q}, lambda v: made(p0=v)
     yield "Scenario t_span", OTHERS | {"backwards": (1.0, 0.0), "nan": (0.0, NAN)}, lambda v: made(t_span=v)
     yield "Scenario seed", without(COUNTS, "zero"), lambda v: made(seed=v)
-    statuses = OTHERS | {
-        "no status": {"energy": "fine"},
-        "none of them": {"energy": None},
-    }
+    statuses = OTHERS | {"no status": {"energy": "fine"}, "none of them": {"energy": None}}
     yield "Scenario expected", statuses, lambda v: made(expected=v)
     yield "Scenario shipped", statuses, lambda v: made(shipped=v)
     unknown = {"no theorem": {"no-such": "refuted"}, "no theorem's claim": {"no-such:i": "refuted"}}

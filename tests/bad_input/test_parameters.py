@@ -12,17 +12,7 @@ from flockana.interactions import (
     PairInteraction,
     ZoneRadii,
 )
-from tests.bad_input.values import (
-    LAW,
-    NOT_NEGATIVE,
-    NUMBERS,
-    POINTS,
-    POSITIVE,
-    VECTORS,
-    refused,
-    rows,
-    without,
-)
+from tests.bad_input.values import LAW, NOT_NEGATIVE, NUMBERS, POINTS, POSITIVE, VECTORS, refused, rows, without
 
 ORIGIN = (0.0, 0.0)
 OTHERS = {"none": None, "a text": "x", "a number": 3}

@@ -16,13 +16,7 @@ from flint import arb, ctx
 from flockana.certified.balls import AlphaParameters
 from flockana.certified.intervals import c_star, far_potential
 from flockana.dynamics.simulate import simulate
-from flockana.equilibria.barrier import (
-    bound_range,
-    energy_floor,
-    lattice_reach,
-    least_infeasible_size,
-    turan_pairs,
-)
+from flockana.equilibria.barrier import bound_range, energy_floor, lattice_reach, least_infeasible_size, turan_pairs
 from flockana.equilibria.barrier import largest_clique as numeric_clique
 from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import coincident_pairs
