@@ -11,15 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, MinimalFlocking, scenario, simulate
 from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
 from flockana.report.pages import FixedResult, ScenarioResult
-from flockana.scenarios import scenario
 from flockana.theorems import Claim, Verdict, theorem, verify
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.equilibria import find_equilibrium
-from flockana.scenarios import Scenario
+from flockana import Scenario, find_equilibrium
 from flockana.scenarios.scenario import catalogue
 from tests.bad_input.values import (
     COUNTS,

@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.interactions import (
-    AlphaInteraction,
-    BetaInteraction,
-    DeadZoneInteraction,
-    Gains,
-    PairInteraction,
-    ZoneRadii,
-)
+from flockana import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains, PairInteraction, ZoneRadii
 from tests.bad_input.values import LAW, NOT_NEGATIVE, NUMBERS, POINTS, POSITIVE, VECTORS, refused, rows, without
 
 ORIGIN = (0.0, 0.0)

@@ -7,16 +7,11 @@ import pytest
 import sympy as sp
 
 import flockana as fl
-from flockana import symbolic
+from flockana import Capsule, DiscreteLaw, MinimalFlocking, Polygon, rescale, symbolic
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
-from flockana.base.units import rescale
-from flockana.environment.capsule import Capsule
-from flockana.environment.polygon import Polygon
 from flockana.environment.targets import CallableTarget, RescaledVelocity, SineTarget
 from flockana.equilibria.terms import obstacle_term, pair_term, pull_term
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm2
 from flockana.scenarios import scenario, scenarios
 

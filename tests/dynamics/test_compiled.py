@@ -5,15 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, Capsule, ObstacleTerm, PairTerm, Polygon, Sphere, Wall, simulate
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Plan
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import Control, Floors
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -26,10 +23,7 @@ from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
 from flockana.kernels.lift import lift
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.terms.obstacles import ObstacleTerm
-from flockana.laws.terms.pairs import PairTerm
 
 TARGETS = [
     StaticTarget((5.0, -3.0), (0.3, 0.1)),

@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, Capsule, Sphere, StaticTarget, Wall
 from flockana.base.errors import ArgumentError
 from flockana.environment.beta import ObstacleField
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import StaticTarget
 from flockana.equilibria import program as program_module
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
@@ -17,8 +15,6 @@ from flockana.equilibria.solve import all_pairs
 from flockana.equilibria.terms import obstacle_term, pair_term
 from flockana.equilibria.translate import to_casadi
 from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 SETS = (
     AlphaInteraction(),

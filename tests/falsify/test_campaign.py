@@ -7,15 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
 from flockana.falsify import falsify, replay
 from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
 from flockana.falsify.space import search_space
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.scenarios import scenario
 from flockana.theorems import Hypothesis, Theorem, Tolerances, theorem, verify
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure

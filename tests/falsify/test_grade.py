@@ -5,13 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana.dynamics.trajectory import Trajectory
+from flockana import Algorithm1, Trajectory, scenario
 from flockana.falsify import falsify
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.grade import FAILED, grade, shortfall
 from flockana.falsify.space import search_space
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.scenarios import scenario
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure

@@ -8,13 +8,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana import symbolic
+from flockana import Algorithm1, Algorithm3, Capsule, Obstacle, Polygon, Sphere, Target, Wall, simulate, symbolic
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.environment.target import Target
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -24,8 +19,6 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.obstacles import sphere_beta, wall_beta
 
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.3, c1_beta=7.0, c2_beta=1.1, c1_gamma=0.9, c2_gamma=0.4)

@@ -6,16 +6,10 @@ from math import tanh
 import numpy as np
 import pytest
 
+from flockana import Alien, Box, DiscreteLaw, SimplePolygon, Trajectory, ZoneWorld, coordination, rescale, simulate
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.zone_obstacles import Box, SimplePolygon
-from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
-from flockana.measures.metrics import coordination
 from flockana.symbolic import bearing_distance as symbolic
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)

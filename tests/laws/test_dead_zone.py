@@ -3,13 +3,9 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, AlphaInteraction, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.switches import turns
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.path_bounds import closest_approach
 
 HARD = DeadZoneInteraction(ramp=0.0)

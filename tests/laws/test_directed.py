@@ -6,14 +6,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, DirectedNet, LinearTarget, Sphere, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import LinearTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.directed import DirectedNet
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0)
 

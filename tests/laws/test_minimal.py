@@ -7,13 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana import DiscreteLaw, DiscreteMinimalFlocking, MinimalFlocking, Trajectory, simulate
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.minimal import perceived_edges
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
 from flockana.measures.perception import both_ways
 
 R, BETA = (1.5, 3.0, 2.2, 4.0, 0.4), (0.5, 0.2, 0.9, 0.3, 1.0)

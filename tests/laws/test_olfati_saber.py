@@ -5,12 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Gains, Law, LinearTarget, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import Gains
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
 
 TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))

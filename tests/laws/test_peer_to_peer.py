@@ -5,15 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, Copies, Gains, LinearTarget, PeerToPeer, Spring, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.copies import Copies
-from flockana.environment.spring import Spring
-from flockana.environment.targets import LinearTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.peer_to_peer import PeerToPeer
 
 FREE, RNG = Spring((0.0, 0.0), 0.0), np.random.default_rng(4)
 Q, P = hexagonal_spiral(6, 7.0) + RNG.uniform(-0.5, 0.5, (6, 2)), RNG.uniform(-1.0, 1.0, (6, 2))

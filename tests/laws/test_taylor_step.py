@@ -3,13 +3,9 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, AlphaInteraction, Gains, StaticTarget, TaylorStep, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.notebook import PushedAlgorithm2
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.taylor_step import TaylorStep
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.0, c2_gamma=0.5)
 LAW = PushedAlgorithm2(AlphaInteraction(1.7, 2.5, 0.01, 0.2, 7.0, 15.0), UNIT, StaticTarget((5.0, 5.0), (0.7, 0.1)))

@@ -3,17 +3,10 @@
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import LinearTarget
-from flockana.interactions.gains import Gains
-from flockana.laws.algorithm3 import Algorithm3
+from flockana import Algorithm1, Algorithm3, Capsule, Gains, LinearTarget, Sphere, Wall, scenario, simulate
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.player.codec import decode
 from flockana.player.scene import kept, outlines, scene
-from flockana.scenarios import scenario
 
 Q = np.array([[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]])
 

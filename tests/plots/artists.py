@@ -5,10 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import LinearTarget
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, DiscreteLaw, LinearTarget, simulate
 
 
 @dataclass(frozen=True)

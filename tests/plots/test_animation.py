@@ -5,14 +5,8 @@ import pytest
 from PIL import Image
 
 import flockana
-from flockana import plots
+from flockana import Algorithm1, Algorithm3, Sphere, StaticTarget, Trajectory, plots, simulate
 from flockana.base.errors import ArgumentError, FileError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.plots.animation import ensure_film, equal_times, film_size, film_view
 from tests.plots.artists import Halving, frame, title
 

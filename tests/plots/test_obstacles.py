@@ -5,17 +5,9 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon as Outline
 
-from flockana import plots
+from flockana import Algorithm1, Algorithm3, Capsule, Polygon, Sphere, StaticTarget, Trajectory, Wall, plots, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.environment.targets import StaticTarget
 from flockana.interactions import BetaInteraction
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
 from flockana.plots.obstacles import bounds
 from flockana.report.figures import middle_sample, pictures

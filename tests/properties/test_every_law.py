@@ -13,20 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
+from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, SemiImplicitEuler, TaylorStep
 from flockana.base.modules import modules
 from flockana.base.serialize import from_data, to_data
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.explicit_euler import ExplicitEuler
 from flockana.laws.law import LawOfMotion
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.stepped import Stepped
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.laws.taylor_step import TaylorStep
-from flockana.laws.vicsek import HeadingAveraging
 from flockana.laws.wrapped import Wrapper
 
 N, SPREAD, TIME = 9, 12.0, 0.7

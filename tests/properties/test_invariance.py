@@ -5,12 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.measures import metrics
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget, Trajectory, metrics, simulate
 
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.8, c1_gamma=0.4, c2_gamma=0.6)
 ALPHAS = [AlphaInteraction(), AlphaInteraction(h=0.9, a=2.0, b=7.0), AlphaInteraction(d=2.0, r=9.0, eps=1.0)]

@@ -9,9 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, compose, simulate, theorems, verify
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, compose, simulate, theorem, theorems, verify
 from flockana.interactions.weights import RationalWeight
-from flockana.theorems.catalogue import theorem
 from tests.toys.formulas import breakable
 
 START = np.array([[0.0, 0.0], [1.9, 0.0], [0.9, 1.7]])

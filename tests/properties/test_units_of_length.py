@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana import lattice
+from flockana import lattice, metrics
 from flockana.base.errors import ArgumentError
-from flockana.measures import metrics
 
 Q = np.random.default_rng(0).uniform(0.0, 5.0, (12, 2))
 MANY = np.random.default_rng(1).uniform(0.0, 20.0, (320, 2))  # enough for a search tree

@@ -5,12 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import StaticTarget
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, Algorithm3, Capsule, Sphere, StaticTarget, Wall, simulate
 from flockana.report.stills import stills
 
 

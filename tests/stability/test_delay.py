@@ -10,15 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import lambertw
 
+from flockana import Algorithm1, Algorithm2, Delayed, Gains, MinimalFlocking, StaticTarget, find_equilibrium, simulate
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.delayed import Delayed
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import crossings
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, scalar_margin
 

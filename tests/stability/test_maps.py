@@ -6,20 +6,14 @@ import control
 import numpy as np
 import pytest
 
+from flockana import ExplicitEuler, MinimalFlocking, StaticTarget, TaylorStep, ZoneFlocking, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains, ZoneNoise, ZoneWeights
 from flockana.lattice import hexagonal_patch
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.explicit_euler import ExplicitEuler
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.taylor_step import TaylorStep
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.stability import linearise
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_patch(1, 7.0)).q

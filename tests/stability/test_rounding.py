@@ -8,13 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from flockana.base.units import rescale
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
+from flockana import Algorithm1, Algorithm2, DeadZoneFlocking, Gains, StaticTarget, find_equilibrium, rescale
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import linearise, slowest_modes
 from flockana.stability.blocks import law_blocks
 from flockana.stability.centre_path import centre_path

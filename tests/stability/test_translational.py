@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana import Algorithm1, Algorithm2, Gains, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -19,10 +19,7 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios import scenario
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.tracking import response_ratio, tracking
 from flockana.stability.translational import CentreOfMass, map_gain, map_system, predicted_gain

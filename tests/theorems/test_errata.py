@@ -7,10 +7,8 @@ from math import tanh
 import numpy as np
 import pytest
 
+from flockana import DeadZoneInteraction, components, scenario
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.interactions import DeadZoneInteraction
-from flockana.measures.nets import components
-from flockana.scenarios import scenario
 from flockana.theorems import theorem, theorems
 from flockana.theorems.bearing_distance.j01 import random_forest
 from flockana.theorems.bearing_distance.j03 import path_matrices

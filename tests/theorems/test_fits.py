@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import SemiImplicitEuler, verify
 from flockana.base.errors import ArgumentError
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems import verify
 from flockana.theorems.fits import ensure_fits
 from tests.toys.formulas import breakable
 

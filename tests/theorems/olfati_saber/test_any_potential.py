@@ -7,9 +7,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana import Gains, StaticTarget, pair_law, simulate
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems import verify
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, pair_law, simulate, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import any_potential
 from tests.theorems.made_up import hypothesis, made_up, same_in_all_units, statuses

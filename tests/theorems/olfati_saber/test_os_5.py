@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.dynamics.simulate import simulate
+from flockana import Algorithm1, Law, Tolerances, simulate, verify
 from flockana.lattice import (
     bcc,
     crossings,
@@ -23,9 +23,6 @@ from flockana.lattice import (
     square,
     triangular,
 )
-from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber import os_5
 from flockana.theorems.olfati_saber.os_5 import CLAIMS, Net, uncrossed
 from flockana.theorems.theorem import Hypothesis

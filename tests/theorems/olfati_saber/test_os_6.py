@@ -6,15 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.target import Target
+from flockana import Algorithm2, Algorithm3, Gains, Sphere, Target, Trajectory, Wall, simulate, verify
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems import verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.os_6 import condition_76
 from tests.theorems.made_up import judged, made_up
