@@ -157,11 +157,9 @@ def test_no_encounter_is_leapt_over():
     ("body", "beside"),
     [
         (Sphere((45.0, 1.0), 1.5), []),
-        (Wall((45.0, 0.0), (-1.0, 0.1)), []),
-        (Sphere((45.0, 1.0), 1.5), [Wall((0.0, -90.0), (0.0, 1.0)), Capsule((0.0, 90.0), (9.0, 90.0), 1.0)]),
         (Wall((45.0, 0.0), (-1.0, 0.1)), [Sphere((0.0, 90.0), 1.0), Capsule((0.0, 90.0), (9.0, 90.0), 1.0)]),
     ],
-    ids=["sphere", "wall", "sphere beside others", "wall beside others"],
+    ids=["sphere", "wall beside others"],
 )
 def test_no_obstacle_is_leapt_over(body, beside):
     """RK4's steps hang on encounters alone; the force's kink at d' makes others differ by rounding."""
