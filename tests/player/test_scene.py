@@ -11,8 +11,8 @@ from flockana.player.scene import kept, outlines, scene
 Q = np.array([[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]])
 
 
-def short(law, q=Q, until=1.0):
-    return simulate(law, q, 0.0 * q, (0.0, until))
+def short(law, q=Q, until=1.0, **how):
+    return simulate(law, q, 0.0 * q, (0.0, until), **how)
 
 
 def test_the_states_are_the_run_s_to_float32():
@@ -40,7 +40,8 @@ def test_a_series_that_is_not_a_number_everywhere_is_left_out(monkeypatch):
 
 def test_obstacles_and_target():
     solids = Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 2.0)), Capsule((30.0, 0.0), (35.0, 0.0), 1.0)
-    run = short(Algorithm3(target=LinearTarget((1.0, 2.0), (3.0, 0.0)), obstacles=solids))
+    law = Algorithm3(target=LinearTarget((1.0, 2.0), (3.0, 0.0)), obstacles=solids)
+    run = short(law, method="scipy-DOP853")  # which compiles no integrator
     header, arrays = decode(scene(run))
     assert [each["kind"] for each in header["solids"]] == ["sphere", "wall", "other"]
     assert header["solids"][0]["par"] == [20.0, 0.0, 4.0]
