@@ -8,6 +8,7 @@ from __future__ import annotations
 import gc
 import os
 import secrets
+import shutil
 import signal
 from functools import cache
 from pathlib import Path
@@ -28,6 +29,7 @@ SLOW = (
     *("falsify", "certified", "lammps", "bad_input", "test_one_file.py", "equilibria/test_descent.py"),
     *("kernels/test_poles.py", "theorems/olfati_saber/test_attraction.py"),
     *("theorems/dead_zone/test_range_limits.py", "theorems/dead_zone/test_l09.py", "reference/test_energy_balance.py"),
+    "theorems/bearing_distance/test_tree_limits.py",
 )
 collect_ignore = ["toys"]  # files that stand in the package's own folders while test_one_file.py runs
 
@@ -96,6 +98,19 @@ def verdict_of():
     from flockana.theorems import verify
 
     return cache(verify)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Headless Chromium of the system's own packages; what asks for it is skipped where it or playwright lacks."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: flockana[browser]")
+    names = "chromium", "chromium-browser", "google-chrome"
+    if (chromium := next(filter(None, map(shutil.which, names)), None)) is None:
+        pytest.skip("no Chromium on this machine: install the system's package chromium")
+    with playwright.sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield started
+        started.close()
 
 
 @pytest.fixture

@@ -5,36 +5,20 @@ here only, is in tests/axe with its licence.
 """
 
 import base64
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, MinimalFlocking, scenario, simulate
 from flockana.player.codec import Packed, decode, encode
 from flockana.player.page import page
 from flockana.player.scene import scene
 from flockana.report.build import write_report
 from flockana.report.pages import FixedResult, ScenarioResult
-from flockana.scenarios import scenario
 from flockana.theorems import Claim, Verdict, theorem, verify
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: flockana[browser]")
-    if CHROMIUM is None:
-        pytest.skip("no Chromium on this machine: install the system's package chromium")
-    with playwright.sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@ Needs Chromium, playwright (`pip install flockana[browser]`) and tornado (`flock
 """
 
 import json
-import shutil
 import socket
 import time
 from contextlib import contextmanager
@@ -15,26 +14,14 @@ import pytest
 
 from tests.programs import CLI, program, until
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
 PATIENCE = 120_000  # milliseconds, on a busy machine
-
-
-@pytest.fixture(scope="module")
-def browser():
-    pytest.importorskip("tornado", reason="tornado is not installed: flockana[explore]")
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: flockana[browser]")
-    if CHROMIUM is None:
-        pytest.skip("no Chromium on this machine: install the system's package chromium")
-    with playwright.sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @contextmanager
 def explorer(folder, *arguments, port=0):
     """The command, and the address that it printed."""
+    pytest.importorskip("tornado", reason="tornado is not installed: flockana[explore]")
     said = folder / "said.txt"
     root = Path(__file__).resolve().parents[1]
     with said.open("w") as output:

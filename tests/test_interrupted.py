@@ -13,6 +13,7 @@ import flockana as fl
 from flockana.theorems import second_runs
 
 
+@pytest.mark.slow
 def test_ctrl_c_within_a_kernel_ends_the_run_and_not_the_process():
     """Where the interrupt was raised in numba's own code that makes a kernel's result, the process crashed."""
     code = """

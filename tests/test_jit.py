@@ -15,8 +15,7 @@ import numba
 import numpy as np
 import pytest
 
-from flockana import jit
-from flockana.interactions import AlphaInteraction
+from flockana import AlphaInteraction, jit
 from flockana.jit import njit, register_jitable, thawed
 from flockana.kernels.bound import bound, made
 from flockana.kernels.scalars import sigma_1

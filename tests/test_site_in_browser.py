@@ -3,7 +3,6 @@
 Of a draft (`make docs OPTIONS=--draft`) what it has; a page that plays a run is in the whole site alone.
 """
 
-import shutil
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -14,20 +13,6 @@ import pytest
 HERE = Path(__file__).resolve().parent
 HTML = HERE.parent / "site" / "html"
 PAGES = ("start.html", "generated/theorems/os-3.html", "generated/scenarios/hexagon.html", "howto/verify.html")
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    driver = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: no browser tests")
-    if CHROMIUM is None:
-        pytest.skip("there is no Chromium: install it from the system's packages for the browser tests")
-    if not (HTML / "index.html").exists():
-        pytest.skip("the site is not built: make docs")
-    with driver.sync_playwright() as play:
-        found = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield found
-        found.close()
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -38,6 +23,8 @@ class Quiet(SimpleHTTPRequestHandler):
 @pytest.fixture(scope="module")
 def address():
     """The site as a server gives it: of a file a page may not read another, and the search shows no excerpts."""
+    if not (HTML / "index.html").exists():
+        pytest.skip("the site is not built: make docs")
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=HTML)) as server:
         Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"

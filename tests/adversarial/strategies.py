@@ -6,15 +6,8 @@ import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from flockana import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.adversarial import truth

@@ -9,10 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import pair_law
-from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, Gains, LinearTarget, StaticTarget, pair_law
 from tests.adversarial.cases import OPEN, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds
 

@@ -8,11 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.interactions.log_potential import LogPotential
-from flockana.interactions.weights import RationalWeight
-from flockana.laws.directed import DirectedNet
+from flockana import DirectedNet, FixedNetFlocking, LogPotential, ProximityFlocking, RationalWeight
 from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.theorems import Tolerances, theorem, theorems, verify
 from tests.adversarial.cases import effort
 

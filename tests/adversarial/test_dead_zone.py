@@ -7,8 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from flockana.interactions import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana import DeadZoneFlocking, DeadZoneInteraction
 from tests.adversarial.cases import FALSE, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, samplings, seeds, ways
 

@@ -54,20 +54,10 @@ def doors(kind, folder):
         ),
         "equilibrium": (
             EQUILIBRIUM,
-            [
-                lambda one: write_equilibrium(one, folder / "e.json"),
-                fl.certify,
-                lambda one: fl.linearise(LAW, one),
-            ],
+            [lambda one: write_equilibrium(one, folder / "e.json"), fl.certify, lambda one: fl.linearise(LAW, one)],
         ),
-        "falsification": (
-            FOUND,
-            [lambda found: found.counterexample(), lambda found: found.save(folder / "c.json")],
-        ),
-        "counterexample": (
-            FOUND.counterexample(),
-            [lambda one: one.save(folder / "c.json"), lambda one: one.check()],
-        ),
+        "falsification": (FOUND, [lambda found: found.counterexample(), lambda found: found.save(folder / "c.json")]),
+        "counterexample": (FOUND.counterexample(), [lambda one: one.save(folder / "c.json"), lambda one: one.check()]),
     }[kind]
 
 

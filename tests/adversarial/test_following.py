@@ -5,9 +5,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.adversarial import truth
 from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds

@@ -8,10 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.composition import Composition
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, AlphaInteraction, CircleTarget, Composition, Gains, LinearTarget, StaticTarget
 from tests.adversarial import truth
 from tests.adversarial.cases import OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds

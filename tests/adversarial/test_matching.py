@@ -8,11 +8,7 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flockana.interactions.log_potential import LogPotential
-from flockana.interactions.weights import RationalWeight
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
+from flockana import CuckerSmale, FixedNetFlocking, LogPotential, ProximityFlocking, RationalWeight, SemiImplicitEuler
 from tests.adversarial import truth
 from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds

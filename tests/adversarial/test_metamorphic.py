@@ -9,8 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flockana import Tolerances, verify
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, Tolerances, verify
 from tests.adversarial import truth
 from tests.adversarial.cases import effort
 from tests.adversarial.strategies import flocks, seeds

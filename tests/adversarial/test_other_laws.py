@@ -6,19 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import theorem, theorems, verify
-from flockana.environment.target import Target
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    StaticTarget,
-)
+from flockana import Algorithm3, DeadZoneFlocking, MinimalFlocking, Target, theorem, theorems, verify
+from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.adversarial.cases import Case, hold
 

@@ -7,9 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
 from tests.adversarial import truth
 from tests.adversarial.cases import ANY, FALSE, OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import aimed, pair_laws, powers, ways

@@ -5,11 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, Algorithm3, BetaInteraction, Gains, Sphere, StaticTarget, Wall
 from tests.adversarial import truth
 from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import flocks, pair_laws, powers, seeds, starts, ways

@@ -9,8 +9,7 @@ from functools import cache
 import pytest
 
 import flockana as fl
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.vicsek import HeadingAveraging
+from flockana import HeadingAveraging, SemiImplicitEuler
 from flockana.theorems import claims, theorem, theorems, verify
 from flockana.theorems.enclosure import Enclosure
 from tests.adversarial.test_any_potential import pair

@@ -8,9 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana import verify
-from flockana.interactions import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, AlphaInteraction, verify
 from tests.adversarial import truth
 from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import powers, seeds

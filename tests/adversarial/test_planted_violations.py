@@ -11,16 +11,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import compose, simulate, verify
-from flockana.environment.obstacles import Sphere
+from flockana import Algorithm3, CuckerSmale, MinimalFlocking, RationalWeight, Sphere, compose, simulate, verify
 from flockana.environment.targets import CircleTarget, StaticTarget
 from flockana.interactions import AlphaInteraction
-from flockana.interactions.weights import RationalWeight
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
 from flockana.laws.vicsek import HeadingAveraging

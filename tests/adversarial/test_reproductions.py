@@ -6,17 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana import Tolerances, Trajectory, simulate, theorem, theorems, verify
+from flockana import Algorithm3, DeadZoneFlocking, Tolerances, Trajectory, scenario, simulate, theorem, theorems, verify
 from flockana.base.errors import ArgumentError, FileError
-from flockana.environment.targets import (
-    RescaledVelocity,
-    StaticTarget,
-)
+from flockana.environment.targets import RescaledVelocity, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios import scenario
 from tests.adversarial.cases import FALSE, OPEN, TRUE, VERIFIED, Case, hold
 
 ORIGIN = StaticTarget((0.0, 0.0))

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
 from tests.adversarial import truth
 
 # d, r, ε, h, a, b, ψ_α(0), ψ_α(r_α): 40-digit quadrature

@@ -6,10 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from flockana import rescale
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
+from flockana import Capsule, LedDeadZoneFlocking, MinimalFlocking, Polygon, Sphere, Wall, rescale
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -18,8 +15,6 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.laws.led_dead_zone import LedDeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
 from tests.adversarial.cases import Case
 
 UNITS = {

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.equilibria import find_equilibrium
-from flockana.scenarios import Scenario
+from flockana import Scenario, find_equilibrium
 from flockana.scenarios.scenario import catalogue
 from tests.bad_input.values import (
     COUNTS,
@@ -82,10 +81,7 @@ def cases():
     yield "Scenario p0", POINTS | {"more agents": Q + Q}, lambda v: made(p0=v)
     yield "Scenario t_span", OTHERS | {"backwards": (1.0, 0.0), "nan": (0.0, NAN)}, lambda v: made(t_span=v)
     yield "Scenario seed", without(COUNTS, "zero"), lambda v: made(seed=v)
-    statuses = OTHERS | {
-        "no status": {"energy": "fine"},
-        "none of them": {"energy": None},
-    }
+    statuses = OTHERS | {"no status": {"energy": "fine"}, "none of them": {"energy": None}}
     yield "Scenario expected", statuses, lambda v: made(expected=v)
     yield "Scenario shipped", statuses, lambda v: made(shipped=v)
     unknown = {"no theorem": {"no-such": "refuted"}, "no theorem's claim": {"no-such:i": "refuted"}}

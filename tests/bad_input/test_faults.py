@@ -9,13 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Scenario, Trajectory, animate, simulate
 from flockana.cli import streams
 from flockana.cli.streams import in_output_encoding
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.plots import animate
-from flockana.scenarios import Scenario
 from tests.programs import full_disk, posix
 
 

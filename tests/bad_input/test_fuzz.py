@@ -8,16 +8,14 @@ import sys
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, find_equilibrium, read_lammps
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.seals import sealed
 from flockana.cli.source import read_csv
 from flockana.ensemble.store import Store
 from flockana.ensemble.work import Job, Record
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria.record import read_equilibrium, write_equilibrium
 from flockana.falsify import Counterexample
-from flockana.lammps.dump import read_lammps
-from flockana.laws.olfati_saber import Algorithm1
 
 LAW = Algorithm1()
 NESTED = ("[" * 100_000, '{"a":' * 100_000, '{"format": ' + "[" * 100_000 + "]" * 100_000 + "}")

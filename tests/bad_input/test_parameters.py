@@ -4,25 +4,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.interactions import (
-    AlphaInteraction,
-    BetaInteraction,
-    DeadZoneInteraction,
-    Gains,
-    PairInteraction,
-    ZoneRadii,
-)
-from tests.bad_input.values import (
-    LAW,
-    NOT_NEGATIVE,
-    NUMBERS,
-    POINTS,
-    POSITIVE,
-    VECTORS,
-    refused,
-    rows,
-    without,
-)
+from flockana import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains, PairInteraction, ZoneRadii
+from tests.bad_input.values import LAW, NOT_NEGATIVE, NUMBERS, POINTS, POSITIVE, VECTORS, refused, rows, without
 
 ORIGIN = (0.0, 0.0)
 OTHERS = {"none": None, "a text": "x", "a number": 3}

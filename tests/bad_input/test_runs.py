@@ -6,21 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from tests.bad_input.values import (
-    INF,
-    LAW,
-    NAN,
-    NUMBERS,
-    PATHS,
-    POINTS,
-    POSITIVE,
-    RUN,
-    P,
-    Q,
-    refused,
-    rows,
-    without,
-)
+from tests.bad_input.values import INF, LAW, NAN, NUMBERS, PATHS, POINTS, POSITIVE, RUN, P, Q, refused, rows, without
 
 T, A = np.array([0.0, 1.0]), np.zeros((2, 3, 2))
 SPANS = {

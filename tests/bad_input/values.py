@@ -5,9 +5,8 @@ import re
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, simulate
 from flockana.base.errors import FlockanaError
-from flockana.dynamics.simulate import simulate
-from flockana.laws.olfati_saber import Algorithm1
 
 NAN, INF = float("nan"), float("inf")
 LAW = Algorithm1()

@@ -29,8 +29,7 @@ def test_unknown_name_suggests_and_lists():
 
 
 @pytest.mark.parametrize(
-    "error",
-    [UnknownNameError("method", "RK5", ["RK4", "RK45"]), ArgumentError("a"), FileError("b"), SolverError("c")],
+    "error", [UnknownNameError("method", "RK5", ["RK4", "RK45"]), ArgumentError("a"), FileError("b"), SolverError("c")]
 )
 def test_errors_travel_between_processes(error):
     again = pickle.loads(pickle.dumps(error))

@@ -63,10 +63,7 @@ def test_off_a_terminal_long_work_is_told_in_a_line_now_and_then(capsys, monkeyp
             advance(done, f"task {done}")
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.splitlines() == [
-        "2 of 8 in 60 s, about 180 s left: task 2",
-        "4 of 8 in 120 s, about 120 s left: task 4",
-    ]
+    assert err.splitlines() == ["2 of 8 in 60 s, about 180 s left: task 2", "4 of 8 in 120 s, about 120 s left: task 4"]
     with progress_bar(8, enabled=False) as advance:
         clock[0] += 1000.0
         advance(4, "")

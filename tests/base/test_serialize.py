@@ -9,19 +9,11 @@ from pkgutil import walk_packages
 import numpy as np
 import pytest
 
+from flockana import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget, Tolerances
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.serialize import from_data, parameter_classes, to_data, to_data_mapping
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems import Tolerances
 
 THIRD = 1.0 / 3.0
 

@@ -5,10 +5,8 @@ import pytest
 
 from benchmarks.c_loop import Loop, compiled
 from benchmarks.flocks import FLOCKS, R
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction
+from flockana import Algorithm2, AlphaInteraction, StaticTarget
 from flockana.kernels.neighbours import pair_blocks
-from flockana.laws.olfati_saber import Algorithm2
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,7 @@ import pytest
 
 from benchmarks.flocks import gas
 from benchmarks.numpy_laws import by_agents, by_all_pairs
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, AlphaInteraction, StaticTarget
 
 
 @pytest.mark.parametrize("baseline", [by_agents, by_all_pairs])

@@ -13,7 +13,7 @@ from flockana.certified.balls import series_length
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.check_tube import Run
 from flockana.certified.tube_certificate import tube_certificate
-from tests.certified.conftest import resealed, with_leaf
+from tests.certified.conftest import leaves, more, resealed, with_leaf
 
 LAW = Algorithm3(
     gains=Gains(c1_alpha=1.5, c2_alpha=2.0, c1_beta=100.0, c2_beta=20.0),
@@ -32,10 +32,6 @@ def tube():
 @pytest.fixture(scope="module")
 def data(tube):
     return json.loads(json.dumps(tube_certificate(tube)))
-
-
-def more(value):
-    return repr(float(value) * 1.001 + 0.001)
 
 
 def test_it_holds_and_tells_the_clearance(data, tube):
@@ -100,14 +96,6 @@ def test_a_box_of_places_is_on_a_piece_only_if_all_of_it_is(data, clearance, off
 def test_what_was_sealed_again_is_decided_by_the_mathematics(data, at, message):
     with pytest.raises(RejectedError, match=message):
         check_data(resealed(with_leaf(data, at, more)))
-
-
-def leaves(data, at=()):
-    if isinstance(data, dict | list):
-        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
-            yield from leaves(value, (*at, key))
-    elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
-        yield at
 
 
 def test_any_one_number_that_is_altered_is_rejected(data):

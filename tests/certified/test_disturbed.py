@@ -9,12 +9,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Disturbed, certify, simulate, ultimate_bound
 from flockana.base.errors import ArgumentError
-from flockana.certified.basin import certify
-from flockana.certified.disturbed import ultimate_bound
-from flockana.dynamics.simulate import simulate
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.olfati_saber import Algorithm1
 from tests.adversarial import truth
 
 PAIR = certify([[0.0], [7.0]], law=Algorithm1())

@@ -7,12 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, gain_box
 from flockana.base.errors import ArgumentError
-from flockana.certified.gain_box import gain_box
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 HEXAGON = hexagonal_patch(1, 7.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
 
-from flockana import Algorithm1, Algorithm2, StaticTarget
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, StaticTarget
 from flockana.certified.balls import square
 from flockana.certified.check_net import Net
 from flockana.certified.damping import damping
@@ -14,7 +14,6 @@ from flockana.certified.decimals import format_decimal, round_down, round_up
 from flockana.certified.lyapunov import Bounds, decay, rate_of
 from flockana.certified.pair_floors import SHELLS, LengthCells, points, proposed_across
 from flockana.certified.structure import Structure
-from flockana.interactions import AlphaInteraction
 from tests.certified.conftest import text_of
 
 LAW = Algorithm1()

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.certified import check_tube
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
-from tests.certified.conftest import resealed, with_leaf
+from tests.certified.conftest import leaves, more, resealed, with_leaf
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))
 
@@ -27,15 +27,6 @@ def tube():
 def data(tube):
     basin = certify(find_equilibrium(LAW, [[-3.5], [3.5]]))
     return json.loads(json.dumps(tube_certificate(tube, basin=basin)))
-
-
-def leaves(data, at=()):
-    """Where every number and every text stands that is one."""
-    if isinstance(data, dict | list):
-        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
-            yield from leaves(value, (*at, key))
-    elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
-        yield at
 
 
 def test_it_holds_and_says_what_was_verified(data, tmp_path, tube):
@@ -59,11 +50,6 @@ def test_any_one_number_that_is_altered_is_rejected(data):
     for at in places:
         with pytest.raises(RejectedError, match="digest"):
             check_data(with_leaf(data, at, other))
-
-
-def more(value):
-    """A decimal one thousandth larger."""
-    return repr(float(value) * 1.001 + 0.001)
 
 
 def bits(value):
@@ -143,30 +129,13 @@ def test_what_it_states_is_what_is_proved(data, name):
     "number",
     [
         *("1e999999999", "0x1p999999999", "1" * 501, "1e-1_000_000_000", " 1e99999999", "1e99999999 ", "\n1e99999999"),
-        *(
-            "0x1p 999999999",
-            "0x1p999999999 ",
-            "1 /3",
-            "1_0",
-            "+1",
-            ".5",
-            "5.",
-            "1E5",
-            "0X1p3",
-            "inf",
-            "nan",
-            "∞",
-            "",
-        ),
+        *("0x1p 999999999", "0x1p999999999 ", "1 /3", "1_0", "+1", ".5", "5.", "1E5", "0X1p3", "inf", "nan", "∞", ""),
     ],
 )
 def test_a_number_without_end_or_of_another_form_is_rejected_at_once(data, number):
     for at in (("times", 1), ("law", "d"), ("basin", "radius")):
         altered = with_leaf(data, at, lambda _: number)
-        with pytest.raises(
-            RejectedError,
-            match=r"expected a (decimal|number in hex).* at most 500 characters",
-        ):
+        with pytest.raises(RejectedError, match=r"expected a (decimal|number in hex).* at most 500 characters"):
             check_data(resealed({**altered, "basin": resealed(altered["basin"])}))
 
 

@@ -9,18 +9,12 @@ from importlib import import_module
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, Trajectory, rescale
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
 from flockana.dynamics.between import Between, Recorder, merged
 from flockana.dynamics.compiled import METHODS as COMPILED
 from flockana.dynamics.sample import Sample, Samples
 from flockana.dynamics.simulate import METHODS, simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import cohesion_radii, min_distances
 from flockana.measures.path_bounds import closest_approach, cohesion_bound
 

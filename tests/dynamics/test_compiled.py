@@ -5,15 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, Capsule, ObstacleTerm, PairTerm, Polygon, Sphere, Wall, simulate
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Plan
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import Control, ErrorFloors
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -26,10 +23,7 @@ from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.jit import register_jitable
 from flockana.kernels import alpha
 from flockana.kernels.lift import lift
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.terms.obstacles import ObstacleTerm
-from flockana.laws.terms.pairs import PairTerm
 
 TARGETS = [
     StaticTarget((5.0, -3.0), (0.3, 0.1)),
@@ -39,15 +33,12 @@ TARGETS = [
     RescaledVelocity(StaticTarget((5.0, -3.0), (0.3, 0.1)), 0.4),
     RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
 ]
-BODIES = [  # near a flock between 0 and 18, none of them in its way
+SPHERES = Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0)
+BODIES = [  # near a flock between 0 and 18, none of them in its way: every kind, one and several of them
     (2, ()),
-    (2, (Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0))),
-    (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0))),
-    (2, (Wall((0.0, -1.0), (0.3, 1.0)),)),
-    (3, (Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)),)),
-    (2, (Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0),)),
     (2, (Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)]),)),
-    (2, (Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), Sphere((12.0, 24.0), 4.0))),
+    (2, (Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), *SPHERES)),
+    (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0), Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)))),
 ]
 PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, 12), c2_gamma=np.linspace(1.0, 3.0, 12))
 
@@ -97,8 +88,8 @@ def laws():
     yield 2, Algorithm2(target=TARGETS[3], gains=PER_AGENT)
     yield 2, Algorithm2(target=TARGETS[3], gains=Gains(c1_gamma=np.linspace(0.5, 2.0, 12)))
     yield 2, Algorithm1(DeadZoneInteraction(ramp=0.5))
-    for m in (1, 2, 3):
-        yield m, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
+    yield 2, Algorithm1(AlphaInteraction(unit=2.0, a=2.0, b=5.0))
+    for m in (1, 3):
         yield m, Algorithm2(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]))
     for m, bodies in BODIES:
         yield m, Algorithm3(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
@@ -166,11 +157,9 @@ def test_no_encounter_is_leapt_over():
     ("body", "beside"),
     [
         (Sphere((45.0, 1.0), 1.5), []),
-        (Wall((45.0, 0.0), (-1.0, 0.1)), []),
-        (Sphere((45.0, 1.0), 1.5), [Wall((0.0, -90.0), (0.0, 1.0)), Capsule((0.0, 90.0), (9.0, 90.0), 1.0)]),
         (Wall((45.0, 0.0), (-1.0, 0.1)), [Sphere((0.0, 90.0), 1.0), Capsule((0.0, 90.0), (9.0, 90.0), 1.0)]),
     ],
-    ids=["sphere", "wall", "sphere beside others", "wall beside others"],
+    ids=["sphere", "wall beside others"],
 )
 def test_no_obstacle_is_leapt_over(body, beside):
     """RK4's steps hang on encounters alone; the force's kink at d' makes others differ by rounding."""

@@ -7,23 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, Capsule, Delayed, Law, Polygon, Sphere, StaticTarget, Wall, scenario, verify
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.encounters import SHARE, Encounters, State
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.environment.targets import StaticTarget
 from flockana.interactions import BetaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.delayed import Delayed
-from flockana.laws.law import Law
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm1
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios import scenario
-from flockana.theorems import verify
 
 R, D = 8.4, 7.0
 FAR = SHARE * D

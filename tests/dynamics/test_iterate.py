@@ -8,12 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flockana import Algorithm1, DiscreteLaw, SemiImplicitEuler, simulate
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.iterate import _nearest, count_steps
-from flockana.dynamics.simulate import simulate
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Trajectory
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import is_cohesive, is_dynamic_flock, is_flock, is_quasi_flock
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.olfati_saber import Algorithm1
 
 
 def breaking_up() -> Trajectory:

@@ -8,12 +8,8 @@ import pytest
 import xarray
 
 import flockana as fl
+from flockana import Algorithm1, Algorithm2, CallableTarget, CircleTarget, Gains, Trajectory, simulate
 from flockana.base.errors import ArgumentError, FileError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CallableTarget, CircleTarget
-from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures import measure, metrics
 from tests.programs import full_disk
 

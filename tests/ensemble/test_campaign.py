@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import xarray
 
+from flockana import Tolerances, scenario, verify
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.base.garbage import SELDOM
 from flockana.ensemble import PHASES, STATUSES, Store, batches, ensemble, phases, shares
@@ -23,8 +24,6 @@ from flockana.ensemble.processes import ProcessPool
 from flockana.ensemble.runs import make_runs
 from flockana.ensemble.work import Job, Request, run_batch
 from flockana.measures.measure import measures
-from flockana.scenarios import scenario
-from flockana.theorems import Tolerances, verify
 from tests.ensemble import tiny_flocks
 
 SEEDS = range(6)

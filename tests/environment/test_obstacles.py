@@ -12,13 +12,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from flockana import BetaInteraction, Capsule, Obstacle, Polygon, Sphere, Wall
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
 from flockana.environment.beta import ObstacleField, check_free
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.interactions import BetaInteraction
 from flockana.jit import register_jitable
 from flockana.kernels.obstacles import lift_obstacle
 

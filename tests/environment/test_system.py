@@ -6,12 +6,9 @@ from math import cos, exp, sin
 import numpy as np
 import pytest
 
+from flockana import Copies, Spring, SystemTarget, rescale
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.serialize import from_data, to_data
-from flockana.base.units import rescale
-from flockana.environment.copies import Copies
-from flockana.environment.spring import Spring
-from flockana.environment.system import SystemTarget
 
 FREE = Spring((0.0, 0.0), 0.0)
 

@@ -6,15 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 
+from flockana import CallableTarget, CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
 
 MOVING = [
     LinearTarget((200.0, 30.0), (5.0, -1.0)),

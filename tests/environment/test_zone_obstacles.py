@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 import shapely
 
+from flockana import Alien, Sphere, ZoneFlocking, ZoneRadii, ZoneWeights, ZoneWorld
 from flockana.base.errors import ArgumentError
-from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_obstacles import Box, SimplePolygon, ball_clearance_along
-from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneRadii, ZoneWeights
-from flockana.laws.bearing_distance import ZoneFlocking
 
 C, BASE = 3.0, 0.5
 RADII = ZoneRadii(1.5, c=C, a=5.0)

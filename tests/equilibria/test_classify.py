@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from flockana.environment.targets import StaticTarget
+from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.equilibria.classify import spectrum
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.terminal import rigid_motions
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))])

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, AlphaInteraction, find_equilibrium
 from flockana.equilibria.coincidence import hessian_trace, least_with_coincidence
-from flockana.equilibria.solve import find_equilibrium
-from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
 LAW = Algorithm1()

@@ -8,22 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
-from flockana.base.units import rescale
-from flockana.environment.obstacles import Wall
-from flockana.environment.targets import StaticTarget
+from flockana import Algorithm3, DeadZoneFlocking, DeadZoneInteraction, StaticTarget, Wall, rescale
 from flockana.equilibria.classify import falling, landscape, spectrum
 from flockana.equilibria.curvature import Landscape, descent_direction, least_curvature
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import find_equilibrium, finish
 from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
-from flockana.interactions import DeadZoneInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 
-UNITS = [(1.0, 1.0), (1e-6, 1.0), (1e3, 1.0), (1.0, 1e-3), (1.0, 1e3), (1e-6, 1e3), (1e3, 1e-3)]
+UNITS = [(1.0, 1.0), (1e-6, 1e3), (1e3, 1e-3)]
 LAW = Algorithm1()
 
 

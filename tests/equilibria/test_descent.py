@@ -4,18 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import pdist
 
+from flockana import Algorithm3, DeadZoneFlocking, Gains, Sphere, StaticTarget, find_equilibrium, rescale
 from flockana.base.errors import SolverError
-from flockana.base.units import rescale
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria.descent import anneal, descend, newton, pairs_collapsed, relax
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.search import random_starts
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 PRESSED = Algorithm2(target=StaticTarget((0.0, 0.0)))

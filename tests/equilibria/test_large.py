@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.base.errors import SolverError
-from flockana.environment.targets import StaticTarget
 from flockana.equilibria import classify, find_equilibrium, large
 from flockana.equilibria.classify import landscape, spectrum
 from flockana.equilibria.curvature import Landscape
 from flockana.equilibria.large import LargeLandscape
 from flockana.equilibria.potential import Potential
 from flockana.lattice import hexagonal_patch, square
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAW = Algorithm1()
 PRESSED = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -7,13 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, DeadZoneFlocking, find_equilibrium
 from flockana.base.errors import FileError
 from flockana.base.seals import sealed
 from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
-from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
 
 LAW = Algorithm1()
 

@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
+from flockana import Algorithm1, AlphaInteraction, Law, MinimalFlocking, SemiImplicitEuler
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.equilibria.rest import resting_state
-from flockana.interactions import AlphaInteraction
-from flockana.laws.law import Law
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -6,13 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, find_equilibrium, links
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.congruence import congruent
 from flockana.equilibria.search import distinct, lattice_starts, random_starts, search
-from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.measures.nets import links
 
 LAW = Algorithm1()
 

@@ -10,10 +10,9 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial import KDTree
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, DeadZoneFlocking, Sphere, Wall, find_equilibrium
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
-from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria import solve as solve_module
 from flockana.equilibria.classify import Spectrum, classify_spectrum, spectrum
 from flockana.equilibria.potential import Potential
@@ -21,9 +20,6 @@ from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs, finish
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.lattice import harborth, hexagonal_patch, hexagonal_spiral
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 ALPHA = AlphaInteraction()
 

@@ -5,14 +5,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.base.errors import SolverError
-from flockana.environment.targets import StaticTarget
 from flockana.equilibria.curvature import least_curvature
 from flockana.equilibria.gradient_flow import gradient_flow, structural_force
 from flockana.equilibria.terminal import rigid_motions, surroundings, terminal_state
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import classify, hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAW1 = Algorithm1()
 LAW2 = Algorithm2(gains=Gains(c1_alpha=2.0, c1_gamma=0.5), target=StaticTarget((3.0, 4.0)))

@@ -7,40 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
 from flockana.falsify import falsify, replay
 from flockana.falsify.evaluate import Problem
 from flockana.falsify.search import Search
 from flockana.falsify.space import search_space
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.scenarios import scenario
-from flockana.theorems import Hypothesis, Theorem, Tolerances, theorem, verify
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
+from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.slides.energy_printed import _printed_rate
+from tests.falsify.conftest import HEAD_ON, OWN, THREE_AT_REST, fast
 from tests.programs import Starts, out_of_a_kernel
-
-HEAD_ON = scenario("head-on")
-THREE_AT_REST = replace(scenario("three-agents-1d"), p0=np.zeros((3, 1)))
-
-
-def fast(run, tolerances):
-    """The last agent never moves faster than 10 in the first second: false, and with a slope."""
-    q, speed = run.run.q, float(np.abs(run.run.p).max())
-    unmet = Hypothesis("agent 0 starts left of 1", "met" if q[0, 0, 0] < 1.0 else "unmet", 1.0 - q[0, 0, 0])
-    return [unmet], [judged("slow", Enclosure.of(35.0 - speed), [unmet])]
-
-
-OWN = Theorem("slow", "Agents are slow", "No agent ever moves faster than 35, " * 2, "ours", "trajectory", fast)
-
-
-@pytest.fixture(scope="module")
-def collision():
-    return falsify("collision-energy", HEAD_ON, claim="twice", budget=60)
 
 
 class TestFindsWhatIsFalse:

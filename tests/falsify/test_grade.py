@@ -5,29 +5,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flockana.dynamics.trajectory import Trajectory
+from flockana import Algorithm1, Trajectory, scenario
 from flockana.falsify import falsify
 from flockana.falsify.evaluate import Evaluation, Problem, units
 from flockana.falsify.grade import FAILED, grade, shortfall
 from flockana.falsify.space import search_space
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.scenarios import scenario
-from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
+from flockana.theorems import Claim, Hypothesis, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.claims import judged
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
-
-HEAD_ON = scenario("head-on")
-
-
-def fast(run, tolerances):
-    """The last agent never moves faster than 10 in the first second: false, and with a slope."""
-    q, speed = run.run.q, float(np.abs(run.run.p).max())
-    unmet = Hypothesis("agent 0 starts left of 1", "met" if q[0, 0, 0] < 1.0 else "unmet", 1.0 - q[0, 0, 0])
-    return [unmet], [judged("slow", Enclosure.of(35.0 - speed), [unmet])]
-
-
-OWN = Theorem("slow", "Agents are slow", "No agent ever moves faster than 35, " * 2, "ours", "trajectory", fast)
+from tests.falsify.conftest import HEAD_ON, OWN
 
 
 class TestGrades:

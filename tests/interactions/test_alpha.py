@@ -2,8 +2,7 @@
 
 import pytest
 
-from flockana.base.units import rescale
-from flockana.interactions import AlphaInteraction
+from flockana import AlphaInteraction, rescale
 
 
 def test_lengths_follow_the_unit_and_times_do_nothing():

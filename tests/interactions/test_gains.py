@@ -8,24 +8,18 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana import Algorithm2, Algorithm3, Gains, Sphere, find_equilibrium, simulate, verify
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs
 from flockana.equilibria.terminal import terminal_state
-from flockana.interactions import Gains
 from flockana.interactions.gains import weighted
 from flockana.lattice import hexagonal_patch
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems import verify
 
 RNG = np.random.default_rng(5)
 N = 7

@@ -209,10 +209,13 @@ def test_extreme_bumps_still_work():
     assert 0.0 < early.c_star < AlphaInteraction().c_star
 
 
-@pytest.mark.parametrize("formula", [None, "1/s", "log(s)", "exp(-s)"])
-def test_coincident_agents_have_no_derivative_where_their_force_has_no_limit(formula):
-    of_formula = {"adjacency": "1-s/r", "range": 5.0, "length": 4.0}
-    pair = fl.DeadZoneInteraction() if formula is None else fl.pair_law(formula, **of_formula)
+def test_a_force_without_a_limit_excludes_coincidence():
+    for formula in ("1/s", "log(s)", "exp(-s)"):
+        assert not fl.pair_law(formula, adjacency="1-s/r", range=5.0, length=4.0).coincidence
+
+
+@pytest.mark.parametrize("pair", [fl.DeadZoneInteraction(), fl.pair_law("1/s", adjacency="1-s/r", range=5.0, length=4)])
+def test_coincident_agents_have_no_derivative_where_their_force_has_no_limit(pair):
     law, q, p = fl.Algorithm1(pair), [[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]], [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
     with pytest.raises(ArgumentError, match="agents 0 and 1 coincide"):
         law.acceleration(0.0, q, p)

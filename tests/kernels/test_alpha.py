@@ -6,9 +6,7 @@ The reference sums in another order: n terms of rounding 1e-16 leave three order
 import numpy as np
 import pytest
 
-from flockana.environment.targets import LinearTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, LinearTarget
 from tests.reference import dense
 
 REL = 1e-12

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from flockana.interactions import ZoneRadii
+from flockana import ZoneFlocking, ZoneRadii
 from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.zone_counts import fragments, populations
-from flockana.laws.bearing_distance import ZoneFlocking
 
 REACH = 5.0
 

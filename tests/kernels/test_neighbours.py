@@ -131,8 +131,7 @@ def test_cells_and_direct_search_agree_on_grids(points, r, unit):
 
 
 @given(
-    st.lists(st.tuples(st.floats(-1e18, 1e18), st.floats(-1e18, 1e18)), min_size=1, max_size=30),
-    st.floats(1e-3, 1e18),
+    st.lists(st.tuples(st.floats(-1e18, 1e18), st.floats(-1e18, 1e18)), min_size=1, max_size=30), st.floats(1e-3, 1e18)
 )
 def test_cells_and_direct_search_agree_on_any_scale(points, r):
     check(np.array(points), r)

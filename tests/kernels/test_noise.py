@@ -5,12 +5,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from flockana import Trajectory, ZoneFlocking, ZoneNoise, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import ZoneNoise
 from flockana.kernels.noise import noise
-from flockana.laws.bearing_distance import ZoneFlocking
 
 ALL = 2**64 - 1
 

@@ -1,4 +1,4 @@
-"""Sums over all pairs by the sweep: against a dense transcription, at the edges of blocks, cells and dimensions."""
+"""Sums over all pairs by the sweep, at the edges of blocks and cells; against a dense transcription: test_alpha.py."""
 
 from __future__ import annotations
 
@@ -30,33 +30,9 @@ def _shun_potential(s2, par, panels):
     return 0.0 * s2
 
 
-def dense(q, p, pair, c1, c2):
-    """Σ_j φ_α n_ij and Σ_j a_ij (p_j − p_i) by the definition, all pairs at once."""
-    delta, slip = q[None] - q[:, None], p[None] - p[:, None]
-    s2 = np.sum(delta**2, axis=2)
-    z = pair.sigma_norm(np.sqrt(s2))
-    phi, a = (np.where(s2 < pair.r**2, f(z), 0.0) for f in (pair.phi_alpha, pair.adjacency))
-    np.fill_diagonal(a, 0.0)
-    n = delta / np.sqrt(1.0 + pair.eps * s2)[:, :, None]
-    u = c1 * np.sum(phi[:, :, None] * n, axis=1) + c2 * np.sum(a[:, :, None] * slip, axis=1)
-    return u, 0.5 * float(np.sum(a * np.sum(slip**2, axis=2)))
-
-
 def flock(seed, n, m, spread):
     rng = np.random.default_rng(seed)
     return rng.uniform(0.0, spread, (n, m)), rng.normal(size=(n, m))
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-@pytest.mark.parametrize(("n", "spread"), [(1, 1.0), (2, 1.0), (40, 3.0), (60, 20.0), (300, 25.0), (300, 1e7)])
-def test_the_sweep_is_the_dense_sum(n, m, spread):
-    """One agent; blocks that fill many times over; a box too sparse for a grid of cells."""
-    q, p = flock(n + m, n, m, spread)
-    u, rate = ALPHA.forces(q, p, stiffness=1.3, damping=0.7)
-    expected, expected_rate = dense(q, p, ALPHA, 1.3, 0.7)
-    size = max(1.0, np.abs(expected).max())
-    np.testing.assert_allclose(u, expected, atol=1e-13 * n * size)
-    assert rate == pytest.approx(expected_rate, rel=1e-12, abs=1e-12)
 
 
 def test_a_sparse_flock_takes_the_other_way_to_the_same_sum():

@@ -30,17 +30,17 @@ def by_roots(h, start, end):
     return bool((out & (square < 0.0)).any())
 
 
-@pytest.mark.parametrize("seed", range(300))
-def test_what_is_certain_is_so_along_the_quintic(seed):
-    rng = np.random.default_rng(seed)
-    m, h = int(rng.integers(1, 4)), 10.0 ** rng.uniform(-1.5, 0.5)
-    start, end = ([rng.normal(scale=s, size=(2, m)) for s in (0.7, 1.0, 1.0)] for _ in range(2))
-    end[0] = start[0] + h * 0.5 * (start[1] + end[1]) + 0.1 * h**2 * rng.normal(size=(2, m))  # not too wild a way
-    enters, unsure, _ = found(h, start, end)
-    if enters:
-        assert by_roots(h, start, end)
-    elif not unsure:
-        assert not by_roots(h, start, end)
+def test_what_is_certain_is_so_along_the_quintic():
+    wrong = []
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        m, h = int(rng.integers(1, 4)), 10.0 ** rng.uniform(-1.5, 0.5)
+        start, end = ([rng.normal(scale=s, size=(2, m)) for s in (0.7, 1.0, 1.0)] for _ in range(2))
+        end[0] = start[0] + h * 0.5 * (start[1] + end[1]) + 0.1 * h**2 * rng.normal(size=(2, m))  # not too wild a way
+        enters, unsure, _ = found(h, start, end)
+        if (enters or not unsure) and by_roots(h, start, end) != enters:
+            wrong.append(seed)
+    assert wrong == []
 
 
 def test_most_of_what_is_well_resolved_is_decided():

@@ -5,10 +5,7 @@ from math import isclose, tanh
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.zone_obstacles import Box, SimplePolygon
-from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
+from flockana import Alien, Box, SimplePolygon, ZoneNoise, ZoneRadii, ZoneWeights, ZoneWorld, simulate
 from flockana.kernels.candidates import sort_into_cells
 from flockana.kernels.zone_counts import fragments, populations
 from flockana.kernels.zones import saturation

@@ -58,11 +58,7 @@ DEGENERATE = {
     "opposite sides": (SQUARE, [[0, 1], [2, 3]], False),
     "sides at a corner": (SQUARE, [[0, 1], [1, 2]], False),
     "an agent on the middle of a link": ([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0, 1], [2, 3]], True),
-    "an agent an ulp off a link": (
-        [[0.0, 0.0], [2.0, 0.0], [1.0, 5e-324], [1.0, 1.0]],
-        [[0, 1], [2, 3]],
-        False,
-    ),
+    "an agent an ulp off a link": ([[0.0, 0.0], [2.0, 0.0], [1.0, 5e-324], [1.0, 1.0]], [[0, 1], [2, 3]], False),
     "coincident agents": ([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0, 1], [2, 3]], True),
     "collinear overlap": ([[0.0, 0.0], [2.0, 2.0], [1.0, 1.0], [3.0, 3.0]], [[0, 1], [2, 3]], True),
     "collinear, touching at coincident ends": (
@@ -95,11 +91,7 @@ DEGENERATE = {
         False,
     ),
     "in space, one above the other": ([[0.0, 0, 0], [1.0, 1, 0], [1.0, 0, 1], [0.0, 1, 1]], [[0, 1], [2, 3]], False),
-    "in space, collinear overlap": (
-        [[0.0, 0, 0], [2.0, 4, 6], [1.0, 2, 3], [3.0, 6, 9]],
-        [[0, 1], [2, 3]],
-        True,
-    ),
+    "in space, collinear overlap": ([[0.0, 0, 0], [2.0, 4, 6], [1.0, 2, 3], [3.0, 6, 9]], [[0, 1], [2, 3]], True),
     "in space, of one agent, the same way": ([[0.0, 0, 0], [1.0, 2, 3], [3.0, 6, 9]], [[0, 1], [0, 2]], True),
     "huge": ([[0.0, 0.0], [1e300, 1e300], [0.0, 1e300], [1e300, 0.0]], [[0, 1], [2, 3]], True),
     "tiny": ([[0.0, 0.0], [1e-300, 1e-300], [0.0, 1e-300], [1e-300, 0.0]], [[0, 1], [2, 3]], True),

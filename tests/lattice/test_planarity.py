@@ -7,16 +7,7 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.lattice import (
-    fcc,
-    hexagonal_patch,
-    is_complete,
-    is_planar,
-    kuratowski,
-    links,
-    planar_bound,
-    square,
-)
+from flockana.lattice import fcc, hexagonal_patch, is_complete, is_planar, kuratowski, links, planar_bound, square
 
 K5 = list(combinations(range(5), 2))
 K33 = [(i, j) for i in range(3) for j in range(3, 6)]

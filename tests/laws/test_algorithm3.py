@@ -8,13 +8,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana import symbolic
+from flockana import Algorithm1, Algorithm3, Capsule, Obstacle, Polygon, Sphere, Target, Wall, simulate, symbolic
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.environment.target import Target
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -24,8 +19,6 @@ from flockana.environment.targets import (
     StaticTarget,
 )
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.symbolic.obstacles import sphere_beta, wall_beta
 
 GAINS = Gains(c1_alpha=2.0, c2_alpha=0.3, c1_beta=7.0, c2_beta=1.1, c1_gamma=0.9, c2_gamma=0.4)
@@ -95,32 +88,6 @@ def test_input_and_energy_are_those_of_plain_loops(m: int) -> None:
     assert law.energy(0.0, q, p) == pytest.approx(energy, rel=1e-13)
 
 
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_at_rest_the_input_is_minus_the_gradient_of_the_energy(m: int) -> None:
-    """p = p_r = 0 leaves the potential forces; central differences of H, step 1e-5, are good to 1e-7."""
-    law, (q, p) = _law(m), _state(m)
-    u, step = law.acceleration(0.0, q, 0.0 * p), 1e-5
-    for i in range(len(q)):
-        for c in range(m):
-            ahead, behind = q.copy(), q.copy()
-            ahead[i, c] += step
-            behind[i, c] -= step
-            slope = (law.energy(0.0, ahead, 0.0 * p) - law.energy(0.0, behind, 0.0 * p)) / (2.0 * step)
-            assert u[i, c] == pytest.approx(-slope, abs=3e-6)
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_stiffness_is_the_derivative_of_the_force(m: int) -> None:
-    law, (q, p) = _law(m), _state(m, 8)
-    hessian, step = law.stiffness(q).toarray(), 1e-6
-    np.testing.assert_allclose(hessian, hessian.T, atol=1e-11)
-    for column in range(q.size):
-        shift = np.zeros(q.size)
-        shift[column] = step
-        ahead, behind = (law.acceleration(0.0, q + s * shift.reshape(q.shape), 0.0 * p) for s in (1.0, -1.0))
-        np.testing.assert_allclose(hessian[:, column], -(ahead - behind).ravel() / (2.0 * step), atol=2e-5)
-
-
 TARGETS = {
     "static": StaticTarget((1.0, 2.0)),
     "static with p_d": StaticTarget((1.0, 2.0), (0.7, -0.4)),
@@ -155,13 +122,11 @@ def test_each_obstacle_kind_enters_the_rate() -> None:
         assert law.energy_rate(0.0, q, p) == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-7, abs=1e-7)
 
 
-@pytest.mark.parametrize("target", [TARGETS["static"], TARGETS["circle"], TARGETS["wrong scale"]])
-@pytest.mark.parametrize("obstacle", OBSTACLES[2], ids=str)
-def test_the_energy_balances_along_a_run(target: Target, obstacle: Obstacle) -> None:
-    """The integral of the closed form against H: rtol 1e-10 leaves about 1e-8 of it."""
-    law = Algorithm3(alpha=ALPHA, gains=GAINS, target=target, beta=BETA, obstacles=(obstacle,))
+@pytest.mark.parametrize("target", [TARGETS["circle"], TARGETS["wrong scale"]])
+def test_the_energy_balances_along_a_run(target: Target) -> None:
+    """The integral of the closed form against H, beside all kinds of obstacles: rtol 1e-10 leaves about 1e-8 of it."""
     q, p = _state(2, 12)
-    run = simulate(law, q, p, (0.0, 4.0), rtol=1e-10, atol=1e-12)
+    run = simulate(_law(2, target), q, p, (0.0, 4.0), rtol=1e-10, atol=1e-12)
     assert run.status == "complete"
     assert np.abs(run.energy_residual).max() < 1e-6 * np.abs(run.energy()).max()
 

@@ -6,16 +6,10 @@ from math import tanh
 import numpy as np
 import pytest
 
+from flockana import Alien, Box, DiscreteLaw, SimplePolygon, Trajectory, ZoneWorld, coordination, rescale, simulate
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.zone_obstacles import Box, SimplePolygon
-from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import CHOICES, ZoneFlocking
-from flockana.laws.discrete import DiscreteLaw
-from flockana.measures.metrics import coordination
 from flockana.symbolic import bearing_distance as symbolic
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0, s=6.0)
@@ -148,10 +142,7 @@ def test_stand_off_at_a_wall(weight, distance):
     stated = symbolic.stand_off(desired_speed=3, drive=5, weight=weight).subs(symbolic.C, 3)
     assert float(stated) == pytest.approx(distance, rel=1e-14)
     law = ZoneFlocking(
-        weights=ZoneWeights(obstacle=weight),
-        world=ZoneWorld(box=Box((0.0, 0.0), (20.0, 20.0))),
-        u_max=1e6,
-        dt=0.01,
+        weights=ZoneWeights(obstacle=weight), world=ZoneWorld(box=Box((0.0, 0.0), (20.0, 20.0))), u_max=1e6, dt=0.01
     )
     run = simulate(law, [[10.0, 10.0]], [[3.0, 0.0]], (0.0, 12.0))
     assert 20.0 - run.q[-1, 0, 0] == pytest.approx(distance, abs=1e-4)  # at rates 2.5 and 1.6 nothing else is left

@@ -8,14 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
+from flockana import Algorithm1, Algorithm2, Algorithm3, Composition, Sphere, Wall, compose
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.serialize import from_data, to_data
-from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import CallableTarget, CircleTarget, LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.composition import Composition, compose
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.along import AlongVelocity
 from flockana.laws.terms.consensus import Consensus
 

@@ -56,17 +56,6 @@ def test_the_force_is_the_sum_and_the_power_its_rate(name):
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_the_jacobian_is_the_derivative(name):
-    law, x, h = LAWS[name], np.concatenate([Q.ravel(), P.ravel()]), 1e-6
-    found = law.jacobian(0.0, Q, P)
-    for k in (0, 3, 12, 19):
-        step = np.zeros(20)
-        step[k] = h
-        up, down = (law.acceleration(0.0, *np.reshape(x + s * step, (2, 5, 2))).ravel() for s in (1.0, -1.0))
-        np.testing.assert_allclose(found[10:, k], (up - down) / (2.0 * h), atol=1e-8)
-
-
-@pytest.mark.parametrize("name", LAWS)
 def test_compiled_and_stepped_runs_agree(name):
     ends = [
         fl.simulate(LAWS[name], Q, P, (0.0, 2.0), t_eval=[2.0], rtol=1e-11, method=method).q[-1]

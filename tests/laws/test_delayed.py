@@ -7,16 +7,11 @@ from math import cos, sin
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, CuckerSmale, Gains, LinearTarget, StaticTarget, rescale, simulate
 from flockana.base.errors import ArgumentError
 from flockana.base.serialize import from_data, to_data
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.cucker_smale import CuckerSmale
 from flockana.laws.delayed import LATE, Delayed
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 PAST = {"history_t": (-0.2, -0.1), "history_q": [[[0.0, 0.0]], [[1.0, 0.0]]]}

@@ -6,16 +6,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, DirectedNet, LinearTarget, Sphere, simulate
 from flockana.base.errors import ArgumentError
-from flockana.base.serialize import from_data, to_data
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import LinearTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.directed import DirectedNet
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 UNIT = Gains(c1_alpha=1.0, c2_alpha=1.0)
 
@@ -93,15 +86,6 @@ def test_speeds_whose_squares_all_but_vanish_look_round():
     law = DirectedNet(Algorithm1(), view=1.0)
     u = law.acceleration(0.0, [[0.0], [1e-5]], [[1e-160], [1e-160]])
     np.testing.assert_allclose(u, Algorithm1().acceleration(0.0, [[0.0], [1e-5]], np.zeros((2, 1))), rtol=1e-12)
-
-
-def test_written_read_and_rescaled():
-    law = DirectedNet(Algorithm1(), (8.4, 3.0), view=2.0, slow=0.5)
-    assert from_data(to_data(law)) == law
-    there = rescale(law, length=1000.0, time=60.0)
-    q, p = np.array([[0.0, 1.0], [2.0, 0.0]]), np.array([[1.0, 0.5], [0.0, 1.0]])
-    u, u2 = law.acceleration(0.0, q, p), there.acceleration(0.0, 1000.0 * q, 1000.0 / 60.0 * p)
-    np.testing.assert_allclose(u2, u * 1000.0 / 3600.0, rtol=1e-10)
 
 
 @pytest.mark.parametrize(

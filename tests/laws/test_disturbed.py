@@ -7,17 +7,10 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Disturbed, Gains, StaticTarget, Trajectory, rescale, simulate, verify
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.wrapped import Step
-from flockana.theorems import verify
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 Q = hexagonal_patch(1, 7.0)

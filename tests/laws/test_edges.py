@@ -5,9 +5,7 @@ import pytest
 
 from flockana.base.errors import ArgumentError
 from flockana.laws.minimal import MinimalFlocking
-from flockana.measures.perception import (
-    ensure_edges,
-)
+from flockana.measures.perception import ensure_edges
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 

@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.explicit_euler import ExplicitEuler
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, simulate
 
 
 def swing(damping):

@@ -5,19 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, Capsule, Law, LinearTarget, Polygon, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall, _onto_sphere
-from flockana.environment.polygon import Polygon
-from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
 from flockana.interactions.alpha import kernel
 from flockana.kernels.lift import lift
 from flockana.kernels.obstacles import lift_obstacle
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.law import Law
 from flockana.laws.notebook import PushedAlgorithm1
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 N = 9
 PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, N), c2_gamma=np.linspace(3.0, 1.0, N))

@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Gains, Lossy, Sampled, TaylorStep, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.interactions import Gains
-from flockana.laws.lossy import Lossy
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.sampled import Sampled
-from flockana.laws.taylor_step import TaylorStep
 
 LAW = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.5))
 PAIR, STILL = np.array([[0.0], [8.0]]), np.zeros((2, 1))

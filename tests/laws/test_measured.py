@@ -5,14 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, CuckerSmale, Gains, Measured, Sampled, StaticTarget, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.measured import Measured
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.sampled import Sampled
 
 ALONE = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=4.0, c2_gamma=2.0)
 LAW = Algorithm2(gains=ALONE, target=StaticTarget((0.0, 0.0)))

@@ -5,13 +5,11 @@ from math import cos, pi, sqrt
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 D, R, EPS, H, A, B = 3.0, 3.6, 0.1, 0.1, 3.0, 4.0
 C1A, C2A, C1G, C2G = 7.0, 2.5, 1.3, 0.9

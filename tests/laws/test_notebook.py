@@ -5,11 +5,9 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2, extra_push
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 ALPHA = AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0)
 GAINS = Gains(c1_alpha=2.0, c2_alpha=1.5, c1_gamma=0.3, c2_gamma=0.7)

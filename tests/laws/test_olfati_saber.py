@@ -5,12 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Law, LinearTarget, StaticTarget
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2, alpha_scales
+from flockana.laws.olfati_saber import alpha_scales
 from flockana.measures.frame import moving_frame
 
 TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))
@@ -45,13 +43,6 @@ def test_gains_multiply_their_own_terms():
     both = Algorithm1(gains=Gains(c1_alpha=3.0, c2_alpha=7.0)).acceleration(0.0, q, p)
     assert force[0, 0] < 0.0 < drag[0, 0]
     np.testing.assert_allclose(both, 3.0 * force + 7.0 * drag, rtol=1e-15)
-
-
-def test_stiffness_is_the_hessian_of_the_structural_potential():
-    q = np.random.default_rng(0).uniform(0.0, 15.0, (8, 2))
-    hessian = AlphaInteraction().hessian(q).toarray()
-    np.testing.assert_allclose(Algorithm1().stiffness(q).toarray(), 30.0 * hessian, rtol=1e-15)
-    np.testing.assert_allclose(TWO.stiffness(q).toarray(), 30.0 * hessian + 2.0 * np.eye(16), rtol=1e-14)
 
 
 def test_moving_frame():

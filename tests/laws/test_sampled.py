@@ -5,14 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, Gains, Sampled, StaticTarget, TaylorStep, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.sampled import Sampled
-from flockana.laws.taylor_step import TaylorStep
 from flockana.stability import sampling_margin
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -5,12 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Saturated, StaticTarget, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.saturated import Saturated
 
 LAW = Algorithm2(target=StaticTarget((30.0, 0.0)))
 Q = 0.8 * hexagonal_patch(1, 7.0)

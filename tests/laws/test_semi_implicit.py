@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana import DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
 
 Q, P = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 14.0]]), np.array([[0.1, 0.0], [0.0, 0.2], [0.0, 0.0]])
 

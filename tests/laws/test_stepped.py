@@ -7,22 +7,14 @@ from functools import partial
 import numpy as np
 import pytest
 
+from flockana import Delayed, Disturbed, Lossy, Measured, Sampled, Saturated, Trajectory, linearise, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.ensemble import ensemble
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.explore.parameters import changed, numbers, tree_of
 from flockana.lattice import hexagonal_patch
-from flockana.laws.delayed import Delayed
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.lossy import Lossy
-from flockana.laws.measured import Measured
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.laws.sampled import Sampled
-from flockana.laws.saturated import Saturated
 from flockana.laws.stepped import Stepped
-from flockana.stability import linearise
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 Q = hexagonal_patch(1, 7.0)

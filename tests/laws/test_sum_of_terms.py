@@ -5,14 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, Copies, Navigation, PairTerm, PeerToPeer, Sphere, Spring, Wall, ZoneFlocking
 from flockana.environment.beta import ObstacleField
-from flockana.environment.copies import Copies
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.spring import Spring
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.link_keeping import LinkKeeping
@@ -20,11 +16,8 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.peer_to_peer import PeerToPeer
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.obstacles import ObstacleTerm
-from flockana.laws.terms.pairs import PairTerm
 
 TARGET = LinearTarget((9.0, 1.0), (1.0, -0.5))
 SOLIDS = (Sphere((20.0, 0.0), 3.0), Wall((0.0, -9.0), (0.0, 1.0)))

@@ -74,25 +74,6 @@ def test_the_energy_is_that_of_three_pairs_and_of_the_deviations_from_their_mean
     assert (kinetic, lost) == (9, -369)
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_force_rate_and_jacobian(name):
-    law, h = LAWS[name], 1e-6
-    gradient = np.zeros_like(Q)
-    for k in np.ndindex(*Q.shape):
-        e = np.zeros_like(Q)
-        e[k] = h
-        gradient[k] = (law.energy(0.0, Q + e, P) - law.energy(0.0, Q - e, P)) / (2.0 * h)
-    np.testing.assert_allclose(law.acceleration(0.0, Q, 0.0 * Q), -gradient, atol=1e-6 * np.abs(gradient).max())
-    power = float(np.sum(gradient * P) + np.sum((P - P.mean(axis=0)) * law.acceleration(0.0, Q, P)))
-    assert law.energy_rate(0.0, Q, P) == pytest.approx(power, rel=1e-5)
-    found, x = law.jacobian(0.0, Q, P), np.concatenate([Q.ravel(), P.ravel()])
-    for k in (0, 7, 10, 19):
-        e = np.zeros(20)
-        e[k] = h
-        up, down = (law.acceleration(0.0, *np.reshape(x + s * e, (2, 5, 2))).ravel() for s in (1.0, -1.0))
-        np.testing.assert_allclose(found[10:, k], (up - down) / (2.0 * h), atol=1e-5 * np.abs(found).max())
-
-
 def test_the_force_jumps_at_r_and_the_energy_does_not():
     law, rest = ProximityFlocking(POTENTIAL, 1.7), np.zeros((2, 1))
     near, far = np.array([[0.0], [1.7 * (1.0 - 1e-12)]]), np.array([[0.0], [1.7 * (1.0 + 1e-12)]])

@@ -7,10 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.interactions import AlphaInteraction, BetaInteraction
+from flockana import AlphaInteraction, BetaInteraction, Capsule, Obstacle, Polygon, Sphere, Wall
 from flockana.kernels.paths import bernstein
 from flockana.lattice import hexagonal_patch
 from flockana.measures.clearance import bounds_over_hull, clearance, constrained_lattice, refine

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import CircleTarget
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, CircleTarget, Trajectory
 from flockana.measures.followers import following
 from flockana.measures.measure import measures
 

@@ -4,12 +4,7 @@ from math import isnan
 
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, MinimalFlocking, SemiImplicitEuler, simulate
 from flockana.measures.measure import measures
 
 

@@ -91,7 +91,7 @@ def test_passing_in_the_plane():
         assert found.time == pytest.approx(0.5, abs=1e-3)
 
 
-@pytest.mark.parametrize("per_turn", [3, 4, 7, 12, 25, 100, 400])
+@pytest.mark.parametrize("per_turn", [3, 7, 25, 400])
 @pytest.mark.parametrize("seed", range(4))
 def test_circular_motions_are_bounded_from_below(per_turn, seed):
     rng = np.random.default_rng(seed)

@@ -2,13 +2,7 @@
 
 import numpy as np
 
-from flockana.measures.perception import (
-    edge_vectors,
-    incidence,
-    out_tree_root,
-    random_out_tree,
-    receivers,
-)
+from flockana.measures.perception import edge_vectors, incidence, out_tree_root, random_out_tree, receivers
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 

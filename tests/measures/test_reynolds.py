@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, AlphaInteraction, Gains
 from flockana.base.errors import ArgumentError
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
 
 ALPHA = AlphaInteraction(d=3.0, r=3.6, eps=0.1, h=0.2, a=4.0, b=5.0)

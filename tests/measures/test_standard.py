@@ -5,8 +5,7 @@ from math import hypot, isnan, sqrt
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, simulate
 from flockana.measures.measure import measures
 
 # d = 7 and r = 8.4: agent 0 has links of 7.7 and 7, agent 3 has none; the centre is at (7, 0) and moves with (2, 0)

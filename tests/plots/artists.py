@@ -5,10 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import LinearTarget
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, DiscreteLaw, LinearTarget, simulate
 
 
 @dataclass(frozen=True)
@@ -54,4 +51,5 @@ def a_run(m=2, n=4):
     """Agents from anywhere, pulled after a γ-agent in uniform motion, at tenths of a time unit."""
     target = LinearTarget((1.0,) * m, (2.0,) * m)
     q = np.random.default_rng(0).uniform(0.0, 12.0, (n, m))
-    return simulate(Algorithm2(target=target), q, 0.0 * q, (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 11))
+    law, times = Algorithm2(target=target), np.linspace(0.0, 1.0, 11)
+    return simulate(law, q, 0.0 * q, (0.0, 1.0), t_eval=times, method="scipy-DOP853")  # which compiles no integrator

@@ -5,14 +5,8 @@ import pytest
 from PIL import Image
 
 import flockana
-from flockana import plots
+from flockana import Algorithm1, Algorithm3, Sphere, StaticTarget, Trajectory, plots, simulate
 from flockana.base.errors import ArgumentError, FileError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.plots.animation import ensure_film, equal_times, film_size, film_view, frame_count
 from tests.plots.artists import Halving, frame, title
 
@@ -20,7 +14,7 @@ from tests.plots.artists import Halving, frame, title
 def a_run(m=2):
     law = Algorithm3(target=StaticTarget((0.0,) * m), obstacles=(Sphere((30.0, *(0.0,) * (m - 1)), 5.0),))
     q = np.random.default_rng(0).uniform(0.0, 14.0, (4, m))
-    return simulate(law, q, 0.0 * q, (0.0, 2.0))
+    return simulate(law, q, 0.0 * q, (0.0, 2.0), method="scipy-DOP853")  # which compiles no integrator
 
 
 def test_between_samples_the_path_is_the_cubic_of_values_and_slopes():

@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana import plots
+from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, plots, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.interactions import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
 
 
 def dots(ax):

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 
-from flockana import plots
+from flockana import plots, scenario
 from flockana.base.errors import ArgumentError
 from flockana.falsify import falsify
 from flockana.plots.falsify import search_history
-from flockana.scenarios import scenario
 from tests.plots.artists import axes
 
 MARGINS = np.array([3.0, np.nan, 1.0, 2.0, -0.5])

@@ -3,10 +3,8 @@
 import pytest
 from PIL import Image
 
+from flockana import Algorithm2, StaticTarget, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.laws.olfati_saber import Algorithm2
 
 
 @pytest.fixture(scope="module")

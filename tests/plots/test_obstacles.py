@@ -5,17 +5,9 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon as Outline
 
-from flockana import plots
+from flockana import Algorithm1, Algorithm3, Capsule, Polygon, Sphere, StaticTarget, Trajectory, Wall, plots, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.capsule import Capsule
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.polygon import Polygon
-from flockana.environment.targets import StaticTarget
 from flockana.interactions import BetaInteraction
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
 from flockana.plots.obstacles import bounds
 from flockana.report.figures import middle_sample, pictures
@@ -96,8 +88,7 @@ def test_a_snapshot_shows_the_obstacles_of_the_law(m):
     law = Algorithm3(target=StaticTarget((0.0,) * m), obstacles=(Sphere(centre, 5.0), Wall((-30.0,) * m, (1.0,) * m)))
     q = np.zeros((2, m))
     q[1, 0] = 10.5
-    run = simulate(law, q, 0.0 * q, (0.0, 0.01))
-    ax = plots.snapshot(run, 0.0, ax=axes(m))
+    ax = plots.snapshot(Trajectory(np.zeros(1), q[None], 0.0 * q[None], 0.0 * q[None], law), 0.0, ax=axes(m))
     assert any(c.get_label() == "β-agents" for c in ax.collections)
     ax.get_figure().canvas.draw()
     assert ax.get_xlim()[1] >= 25.0

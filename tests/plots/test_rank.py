@@ -3,14 +3,9 @@
 import numpy as np
 import pytest
 
-from flockana import plots
+from flockana import Algorithm1, Trajectory, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.figures import pictures
-from flockana.scenarios import scenario
 from tests.plots.artists import axes
 
 

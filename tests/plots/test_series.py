@@ -7,13 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flockana import plots
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Law, StaticTarget, plots, simulate
 from flockana.base.errors import UnknownNameError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction
-from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.plots.artists import Halving, a_run, axes
 
 

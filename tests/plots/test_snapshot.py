@@ -10,23 +10,14 @@ from matplotlib.quiver import Quiver
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 import flockana as fl
-from flockana import plots
+from flockana import Algorithm1, Box, DirectedNet, Law, Sphere, Trajectory, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import Alien, ZoneWorld
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.directed import DirectedNet
-from flockana.laws.law import Law
 from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.plots.animation import equal_times, film_view
 from flockana.plots.snapshot import draw_sample, in_view
-from flockana.scenarios import scenario
 from tests.plots.artists import a_run, axes, frame, points, segments, title
 
 EDGES = ((0, 1), (1, 2), (2, 1))

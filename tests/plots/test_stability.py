@@ -6,10 +6,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-from flockana import plots
+from flockana import Algorithm1, plots
 from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_patch, links
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.stability import Mode, linearise, mode_motion
 from tests.plots.artists import axes
 

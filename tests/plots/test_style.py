@@ -123,15 +123,13 @@ OTHERS = {"animation", "mode_title", "save", "style", "subplots"}
 DRAWING = [name for name in plots.__all__ if inspect.isfunction(getattr(plots, name)) and name not in OF_FILES | OTHERS]
 
 
-@pytest.mark.parametrize("name", DRAWING)
-def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_where(name):
-    parameters = inspect.signature(getattr(plots, name)).parameters.values()
-    data = [one for one in parameters if one.kind is not one.KEYWORD_ONLY]
-    assert 1 <= len(data) <= 3
-    assert all(one.default is one.empty or (one.name in ("p", "time") and one.default is None) for one in data)
-    options = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
-    assert options["ax"] is None
-    assert "axes" not in options
+def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_where():
+    for name in DRAWING:
+        parameters = inspect.signature(getattr(plots, name)).parameters.values()
+        data = [one for one in parameters if one.kind is not one.KEYWORD_ONLY]
+        bare = all(one.default is one.empty or (one.name in ("p", "time") and one.default is None) for one in data)
+        options = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
+        assert (1 <= len(data) <= 3, bare, options["ax"], "axes" in options) == (True, True, None, False), name
 
 
 def test_films_are_asked_for_alike():

@@ -5,16 +5,9 @@ import pytest
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from flockana import plots
+from flockana import Algorithm1, Box, Sphere, ZoneFlocking, ZoneWorld, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere
-from flockana.environment.zone_obstacles import Box
-from flockana.environment.zone_world import ZoneWorld
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.report.figures import pictures
-from flockana.scenarios import scenario
 from flockana.theorems.bearing_distance.random_starts import crowd_start
 from tests.plots.artists import axes
 

@@ -13,22 +13,13 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 import z3
 from flint import arb, ctx
 
+from flockana import AlphaInteraction, scenario, simulate, verify
 from flockana.certified.balls import AlphaParameters
 from flockana.certified.intervals import c_star, far_potential
-from flockana.dynamics.simulate import simulate
-from flockana.equilibria.barrier import (
-    bound_range,
-    energy_floor,
-    lattice_reach,
-    least_infeasible_size,
-    turan_pairs,
-)
+from flockana.equilibria.barrier import bound_range, energy_floor, lattice_reach, least_infeasible_size, turan_pairs
 from flockana.equilibria.barrier import largest_clique as numeric_clique
-from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import coincident_pairs
 from flockana.measures.path_bounds import contacts
-from flockana.scenarios import scenario
-from flockana.theorems import verify
 from proofs import barrier, collisions, distinct_pairs, n_max, point_ratios
 from proofs.distinct_pairs import Start, crossings, free, is_the_scenario, onward, potential
 

@@ -9,13 +9,11 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 
 from flint import arb, arb_mat, ctx
 
+from flockana import Algorithm1, AlphaInteraction, find_equilibrium
 from flockana.certified import krawczyk
 from flockana.certified.balls import AlphaParameters
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria.potential import Potential
-from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, rigidity
-from flockana.laws.olfati_saber import Algorithm1
 from proofs import double_agent, strained_thirteen, unstressed_patches
 from proofs.compressed_patches import LAW, NARROW, RADIUS, computed, curvature, enclose, flock
 

@@ -7,8 +7,7 @@ pytest.importorskip("z3")  # the extra flockana[proofs]
 
 import sympy as sp
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana import DeadZoneFlocking, DeadZoneInteraction
 from flockana.symbolic import dead_zone as symbolic
 from flockana.symbolic.dead_zone import D_1, D_2, K_1, R_D, RHO, R
 from proofs import dead_zone, dead_zone_pairs, dead_zone_parting

@@ -170,11 +170,7 @@ def test_shapes_are_counted_by_growing():
 
 @pytest.mark.parametrize(
     ("theorem", "expected"),
-    [
-        ("E5", {"nonplanar-fcc"}),
-        ("E6", {"theorem5-counts"}),
-        ("os-5", {"theorem5-crossings", "theorem5-counts", None}),
-    ],
+    [("E5", {"nonplanar-fcc"}), ("E6", {"theorem5-counts"}), ("os-5", {"theorem5-crossings", "theorem5-counts", None})],
 )
 def test_claims_name_their_proofs(theorem, expected):
     case = {"q": hexagonal_spiral(7, 7.0), "d": 7.0, "r": 8.4} if theorem == "os-5" else {}

@@ -24,10 +24,13 @@ def calls(tree):
             yield function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(FILES[0].parent)))
-def test_no_theorem_file_simulates_or_makes_a_claim_by_itself(file):
-    made = {*calls(ast.parse(file.read_text(encoding="utf-8")))}
-    assert [name for name, files in ALLOWED.items() if name in made and file.name not in files] == []
+def test_no_theorem_file_simulates_or_makes_a_claim_by_itself():
+    made = {file: {*calls(ast.parse(file.read_text(encoding="utf-8")))} for file in FILES}
+    assert len(made) > 50
+    wrong = [
+        (file.name, name) for file in made for name in made[file] & ALLOWED.keys() if file.name not in ALLOWED[name]
+    ]
+    assert wrong == []
 
 
 @pytest.mark.parametrize("name", RIGOUR)

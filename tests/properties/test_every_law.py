@@ -13,20 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flockana as fl
+from flockana import CuckerSmale, DiscreteLaw, ExplicitEuler, HeadingAveraging, SemiImplicitEuler, TaylorStep
 from flockana.base.modules import modules
 from flockana.base.serialize import from_data, to_data
-from flockana.laws.cucker_smale import CuckerSmale
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.explicit_euler import ExplicitEuler
 from flockana.laws.law import LawOfMotion
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.notebook import PushedAlgorithm1, PushedAlgorithm2
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.stepped import Stepped
 from flockana.laws.tanner import FixedNetFlocking, ProximityFlocking
-from flockana.laws.taylor_step import TaylorStep
-from flockana.laws.vicsek import HeadingAveraging
 from flockana.laws.wrapped import Wrapper
 
 N, SPREAD, TIME = 9, 12.0, 0.7
@@ -41,10 +36,7 @@ LAWS = {
     "Algorithm3": (fl.Algorithm3(target=ORIGIN, obstacles=[fl.Sphere((0.0, 0.0), 0.5)]), PLACED),
     "PushedAlgorithm1": (PushedAlgorithm1(min_distance=2.0), FREE),
     "PushedAlgorithm2": (PushedAlgorithm2(target=ORIGIN, min_distance=2.0), PLACED),
-    "PeerToPeer": (
-        fl.PeerToPeer(fl.Copies([[0.0, 0.0]] * N, [[0.0, 0.0]] * N, fl.Spring((0.0, 0.0), 1.0))),
-        PLACED,
-    ),
+    "PeerToPeer": (fl.PeerToPeer(fl.Copies([[0.0, 0.0]] * N, [[0.0, 0.0]] * N, fl.Spring((0.0, 0.0), 1.0))), PLACED),
     "Composition": (
         fl.compose(pair=fl.AlphaInteraction(), consensus=1.0, navigation=ORIGIN, drag=0.2, speed=(1.0, 0.1)),
         PLACED,
@@ -53,10 +45,7 @@ LAWS = {
     "FixedNetFlocking": (FixedNetFlocking(((0, 1), (1, 2)), fl.LogPotential(1.0, 5.0)), FREE - {"permutation"}),
     "ProximityFlocking": (ProximityFlocking(fl.LogPotential(1.0, 5.0), r=8.0), FREE),
     "LinkKeeping": (LinkKeeping(((0, 1), (1, 2)), r=60.0), FREE - {"permutation"}),
-    "HeadingAveraging": (
-        HeadingAveraging(range=8.0, speed=2.0, dt=0.1, average="vectors"),
-        FREE - {"boost"},
-    ),
+    "HeadingAveraging": (HeadingAveraging(range=8.0, speed=2.0, dt=0.1, average="vectors"), FREE - {"boost"}),
     "DirectedNet": (fl.DirectedNet(fl.Algorithm1(), view=2.0), FREE - {"boost"}),
     "DeadZoneFlocking": (fl.DeadZoneFlocking(), FREE),
     "LedDeadZoneFlocking": (
@@ -198,9 +187,11 @@ FURTHER = {  # parameters that an entry above leaves at one number or without an
     "two leaders": LED,
     "leaders that tell nothing": replace(LED, feedforward=False),
     "a stronger zone": fl.DeadZoneFlocking(fl.DeadZoneInteraction(k1=0.05), 2.0),
+    "a mean of weights": fl.CuckerSmale(fl.RationalWeight(2.0, 0.7, 1.5), mean=True),
     "a net of all": FixedNetFlocking(tuple((i, j) for i in range(N) for j in range(i)), fl.LogPotential(2.0, 1.1), 1.5),
 }
 EVERY = {name: law for name, (law, _) in LAWS.items()} | CARRYING | FURTHER
+EVERY["ranges of their own"] = fl.DirectedNet(fl.Algorithm1(), (8.4, 3.0, 9.0) * 3, view=2.0, slow=0.5)
 ENERGETIC = (
     *("Algorithm1", "Algorithm2", "Algorithm3", "PeerToPeer", "Composition", "CuckerSmale", "FixedNetFlocking"),
     *("ProximityFlocking", "LinkKeeping", "DeadZoneFlocking", "LedDeadZoneFlocking", *CARRYING, *FURTHER),

@@ -6,10 +6,9 @@ import json
 
 import pytest
 
+from flockana import scenario, theorem, verify
 from flockana.report.build import verdicts_json
 from flockana.report.pages import FixedResult, ScenarioResult, page
-from flockana.scenarios import scenario
-from flockana.theorems import theorem, verify
 
 ORDER = ("refuted", "inconclusive", "verified", "vacuous")
 

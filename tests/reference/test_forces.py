@@ -1,8 +1,7 @@
-"""The force of every law that has an energy is minus the derivative of that energy, by complex steps and by CasADi."""
+"""The force of every law that has an energy is minus the derivative of that energy, by complex steps."""
 
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 import pytest
 
@@ -10,41 +9,39 @@ from flockana.laws.discrete import DiscreteLaw
 from tests.properties.test_every_law import LAWS
 from tests.properties.test_every_law import state as made
 from tests.reference import energies as from_formulas
-from tests.reference.energies import Numbers, Symbols, drawn, over_pairs, pulled, walled
+from tests.reference.energies import drawn, over_pairs, pulled, walled
 
 STEP = 1e-30  # of a complex step: nothing is subtracted, so nothing is lost
 
 
-def alpha(law, q, on):
-    return law.gains.c1_alpha * over_pairs(q, lambda s2: from_formulas.psi_alpha(s2, law.alpha, on), on)
+def alpha(law, q):
+    return law.gains.c1_alpha * over_pairs(q, lambda s2: from_formulas.psi_alpha(s2, law.alpha))
 
 
-def following(law, q, on):
-    return alpha(law, q, on) + pulled(q, law.gains.c1_gamma)
+def following(law, q):
+    return alpha(law, q) + pulled(q, law.gains.c1_gamma)
 
 
-def dead(law, q, on):
-    return over_pairs(q, lambda s2: from_formulas.dead_zone(s2, law.interaction, on), on)
+def dead(law, q):
+    return over_pairs(q, lambda s2: from_formulas.dead_zone(s2, law.interaction))
 
 
 POTENTIALS = {
     "Algorithm1": alpha,
     "Algorithm2": following,
-    "Algorithm3": lambda law, q, on: alpha(law, q, on) + drawn(q, law.gains.c1_gamma, on) + walled(q, law, on),
+    "Algorithm3": lambda law, q: alpha(law, q) + drawn(q, law.gains.c1_gamma) + walled(q, law),
     "PushedAlgorithm1": alpha,
     "PushedAlgorithm2": following,
     "PeerToPeer": following,
     "Composition": following,
-    "CuckerSmale": lambda law, q, on: 0.0 * q[0][0],
-    "FixedNetFlocking": lambda law, q, on: over_pairs(
-        q, lambda s2: from_formulas.logarithmic(s2, law.potential, 1e9, on), on, law.edges
+    "CuckerSmale": lambda law, q: 0.0 * q[0][0],
+    "FixedNetFlocking": lambda law, q: over_pairs(
+        q, lambda s2: from_formulas.logarithmic(s2, law.potential, 1e9), law.edges
     ),
-    "ProximityFlocking": lambda law, q, on: over_pairs(
-        q, lambda s2: from_formulas.logarithmic(s2, law.potential, law.r, on), on
-    ),
-    "LinkKeeping": lambda law, q, on: over_pairs(q, lambda s2: from_formulas.tension(s2, law, on), on, law.links),
+    "ProximityFlocking": lambda law, q: over_pairs(q, lambda s2: from_formulas.logarithmic(s2, law.potential, law.r)),
+    "LinkKeeping": lambda law, q: over_pairs(q, lambda s2: from_formulas.tension(s2, law), law.links),
     "DeadZoneFlocking": dead,
-    "LedDeadZoneFlocking": lambda law, q, on: dead(law, q, on) + pulled(q, law.c1),
+    "LedDeadZoneFlocking": lambda law, q: dead(law, q) + pulled(q, law.c1),
 }
 NAMES = sorted(POTENTIALS)
 
@@ -75,7 +72,7 @@ def test_forces_are_complex_steps_of_the_energy(name, seed):
     for k in np.ndindex(q.shape):
         moved = q.astype(complex)
         moved[k] += 1j * STEP
-        expected[k] = -np.imag(POTENTIALS[name](law, moved, Numbers)) / STEP
+        expected[k] = -np.imag(POTENTIALS[name](law, moved)) / STEP
     np.testing.assert_allclose(law.acceleration(0.0, q, 0.0 * q), expected, atol=1e-10 * (1.0 + np.abs(expected).max()))
 
 
@@ -83,16 +80,6 @@ def test_forces_are_complex_steps_of_the_energy(name, seed):
 def test_energies_differ_as_their_formulas_do(name):
     law, places = case(name, 0)[0], [case(name, seed)[1] for seed in (0, 1)]
     q, other = (place - place.mean(axis=0) for place in places)  # where Algorithm 2 counts what is about the centre
-    expected = POTENTIALS[name](law, q, Numbers) - POTENTIALS[name](law, other, Numbers)
+    expected = POTENTIALS[name](law, q) - POTENTIALS[name](law, other)
     found = law.energy(0.0, q, 0.0 * q) - law.energy(0.0, other, 0.0 * other)
     assert found == pytest.approx(expected, rel=1e-10, abs=1e-9)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_forces_are_casadis_derivatives_of_the_energy(name):
-    law, q = case(name, 3)
-    x = ca.SX.sym("x", q.size)
-    rows = [[x[q.shape[1] * i + k] for k in range(q.shape[1])] for i in range(len(q))]
-    gradient = ca.Function("gradient", [x], [ca.gradient(POTENTIALS[name](law, rows, Symbols), x)])
-    expected = -np.array(gradient(q.ravel())).reshape(q.shape)
-    np.testing.assert_allclose(law.acceleration(0.0, q, 0.0 * q), expected, atol=1e-10 * (1.0 + np.abs(expected).max()))

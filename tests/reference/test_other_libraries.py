@@ -8,8 +8,7 @@ from flint import arb, ctx
 from scipy.spatial import cKDTree
 
 import flockana as fl
-from flockana import lattice
-from flockana.interactions import AlphaInteraction
+from flockana import AlphaInteraction, lattice
 from tests.reference.values import ALPHA
 
 FLOCKS = [(1, 2, 10.0), (40, 1, 60.0), (60, 2, 25.0), (200, 2, 60.0), (80, 3, 20.0)]

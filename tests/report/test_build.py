@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, CallableTarget, StaticTarget
 from flockana.base.errors import FileError
-from flockana.environment.targets import CallableTarget, StaticTarget
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.player.codec import decode
 from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
 from flockana.report.coverage import coverage

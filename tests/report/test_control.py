@@ -5,9 +5,8 @@ import json
 
 import numpy as np
 
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, linearise
 from flockana.report.control import state_space
-from flockana.stability import linearise
 
 
 def test_the_state_space_is_the_linearisation():

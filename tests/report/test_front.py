@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from flockana import scenario, theorem
 from flockana.report.front import FINDINGS, front_findings
 from flockana.report.pages import ScenarioResult, page
-from flockana.scenarios import scenario
-from flockana.theorems import theorem
 
 
 @pytest.mark.parametrize(("name", "id_"), [(name, id_) for name, id_, _ in FINDINGS])

@@ -1,8 +1,7 @@
 """The minimal model's runs are drawn as any flock's, and with the profiles of Fig. 10."""
 
-from flockana.dynamics.simulate import simulate
+from flockana import scenario, simulate
 from flockana.report.figures import flock_pictures, pictures
-from flockana.scenarios import scenario
 
 
 def test_the_profiles_come_last():

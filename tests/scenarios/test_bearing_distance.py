@@ -7,9 +7,8 @@ from math import dist
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
+from flockana import components, links, simulate
 from flockana.laws.bearing_distance import CHOICES
-from flockana.measures.nets import components, links
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.bearing_distance import SCENARIOS, passed
 from flockana.scenarios.findings import component_counts

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana.laws.minimal import DiscreteMinimalFlocking, MinimalFlocking
+from flockana import DiscreteMinimalFlocking, MinimalFlocking, scenario
 from flockana.measures.perception import both_ways, out_tree_root
-from flockana.scenarios import scenario
 
 
 @pytest.mark.parametrize("name", ["zone-tree", "zone-path"])

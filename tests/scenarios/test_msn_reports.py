@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, Tolerances, Trajectory
 from flockana.scenarios.msn_reports import DT, REPORTS, STATIC
-from flockana.theorems import Tolerances
 
 LAW = Algorithm2(AlphaInteraction(d=15.0, r=18.0), Gains(), StaticTarget((0.0, 0.0)))
 

@@ -5,17 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm3, Sphere, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.findings import component_counts
 from flockana.scenarios.obstacle_claims import blocked, rests
 from flockana.scenarios.obstacles import GAINS, SCENARIOS, free_start
-from flockana.theorems import Tolerances, verify
 
 FINDS = Tolerances()
 

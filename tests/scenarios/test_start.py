@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Scenario
 from flockana.base.errors import ArgumentError
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.scenarios import Scenario
 from flockana.scenarios.start import accepts_lazy, is_lazy, lazy_array, lazy_state
 
 

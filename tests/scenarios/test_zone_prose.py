@@ -6,9 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from flockana import components, links, rescale
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.measures.nets import components, links
 from flockana.scenarios import scenario, scenarios
 from flockana.scenarios.zone_prose import SCENARIOS
 

@@ -7,18 +7,13 @@ import numpy as np
 import pytest
 from scipy.linalg import eig
 
+from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget, find_equilibrium, linearise, simulate
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system
 from flockana.stability.design import design_gains
 from flockana.stability.gain_problems import GainProblem, gain_problem
-from flockana.stability.linearise import linearise
 from flockana.stability.norms import disturbance_system, h2_norm
 from flockana.stability.specifications import Specifications
 

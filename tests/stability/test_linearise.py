@@ -10,21 +10,14 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from flockana import Algorithm3, DeadZoneFlocking, Law, Sphere, Wall, find_equilibrium, linearise, rescale, simulate
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere, Wall
 from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.solve import finish
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.law import Law
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability import linearise
 
 HEXAGON = hexagonal_patch(1, 7.0)
 STILL = StaticTarget((1.0, -2.0))

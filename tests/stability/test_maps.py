@@ -7,20 +7,14 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
+from flockana import ExplicitEuler, MinimalFlocking, StaticTarget, TaylorStep, ZoneFlocking, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.interactions import Gains, ZoneNoise, ZoneWeights
 from flockana.lattice import hexagonal_patch
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.laws.explicit_euler import ExplicitEuler
-from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.taylor_step import TaylorStep
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.stability import linearise
 from flockana.stability.maps import stepped_equation
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -7,15 +7,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, MinimalFlocking, Sphere, StaticTarget, Wall, find_equilibrium
 from flockana.base.errors import ArgumentError
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import Linearisation, Mode, linearise, slowest_modes
 from flockana.stability.modes import SecondOrder
 

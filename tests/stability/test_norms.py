@@ -11,16 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, Disturbed, StaticTarget, find_equilibrium, linearise, simulate
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability import linearise
 from flockana.stability.blocks import complement, law_blocks
 from flockana.stability.norms import disturbance_system, h2_bounds, h2_norm, hinf_norm, norms_against_size
 

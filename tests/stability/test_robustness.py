@@ -7,13 +7,9 @@ from math import atan2, degrees, hypot, inf, sqrt
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium, linearise
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability import linearise
 from flockana.stability.robustness import open_loop, robustness_margins
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -8,13 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from flockana.base.units import rescale
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
+from flockana import Algorithm1, Algorithm2, DeadZoneFlocking, Gains, StaticTarget, find_equilibrium, rescale
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import linearise, slowest_modes
 from flockana.stability.blocks import law_blocks
 from flockana.stability.centre_path import centre_path
@@ -25,7 +20,7 @@ from flockana.stability.rounding import eigen, slowest_first
 from flockana.stability.sweeps import gain_sweep
 from flockana.stability.translational import CentreOfMass
 
-UNITS = [(1e-6, 1.0), (1e3, 1.0), (1.0, 1e-3), (1.0, 1e3), (1e-6, 1e-3)]
+UNITS = [(1e-6, 1e3), (1e3, 1e-3)]
 ORIGIN = StaticTarget((0.0, 0.0))
 
 
@@ -53,11 +48,10 @@ def test_undamped_swings_have_no_rate_beyond_their_error(seed, stretch):
 
 
 @pytest.mark.parametrize("size", [2, 3, 4, 5])
-@pytest.mark.parametrize("seed", range(5))
-def test_coalesced_roots_move_as_roots_and_the_error_says_so(size, seed):
+def test_coalesced_roots_move_as_roots_and_the_error_says_so(size):
     """A Jordan block of −1: computed values lie on a circle of radius (rounding)^(1/size)."""
     chain = -np.eye(size) + np.eye(size, k=1)
-    for matrix in (chain, similar(chain, seed)):
+    for matrix in (chain, *(similar(chain, seed) for seed in range(5))):
         values, _, errors = eigen(matrix)
         assert np.all(np.abs(values + 1.0) <= errors)
         assert errors.max() < 30.0 * np.finfo(float).eps ** (1.0 / size) * size

@@ -9,19 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, TaylorStep, find_equilibrium, linearise, simulate
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.explicit_euler import ExplicitEuler
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.taylor_step import TaylorStep
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.stability import linearise
 from flockana.stability.sampling import SCHEMES, sampling_margin, scalar_period
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))

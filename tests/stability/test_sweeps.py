@@ -6,12 +6,9 @@ import control
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.environment.targets import StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system, scalar_margin
 from flockana.stability.sweeps import centre_locus, gain_sweep, margin_sweep

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flockana import Algorithm1, Algorithm2, Gains, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -19,10 +19,7 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.scenarios import scenario
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.tracking import response_ratio, tracking
 from flockana.stability.translational import CentreOfMass, map_gain, map_system, predicted_gain
@@ -90,10 +87,7 @@ def test_gains_of_the_erratum():
 def test_the_maps_system_is_the_maps(position_factor):
     """Impulse of the γ-agent: one agent moved by the map itself against the discrete system, to rounding."""
     paths = np.random.default_rng(0).standard_normal((9, 2))
-    inner = Algorithm2(
-        gains=gains(3.0, 1.5),
-        target=CallableTarget(lambda t: np.split(paths[round(10 * t) % 9], 2)),
-    )
+    inner = Algorithm2(gains=gains(3.0, 1.5), target=CallableTarget(lambda t: np.split(paths[round(10 * t) % 9], 2)))
     law = MSNDiscretisation(inner, dt=0.1, in_place=False, position_factor=position_factor)
     q, p, seen = np.zeros((1, 1)), np.zeros((1, 1)), []
     for k in range(8):

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from flockana.interactions import ZoneRadii, ZoneWeights
+from flockana import ZoneFlocking, ZoneRadii, ZoneWeights
 from flockana.kernels.zones import saturation as compiled_saturation
-from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.symbolic import bearing_distance as symbolic
 
 PLAIN = ZoneWeights(separation=1.0, cohesion_gain=1.0, alignment_gain=1.0)

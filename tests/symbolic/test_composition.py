@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import compose
-from flockana.environment.targets import CircleTarget, StaticTarget
+from flockana import CircleTarget, StaticTarget, compose
 from flockana.symbolic import composition as symbolic
 
 

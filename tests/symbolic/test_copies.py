@@ -3,10 +3,7 @@
 import pytest
 import sympy as sp
 
-from flockana.environment.copies import Copies
-from flockana.environment.spring import Spring
-from flockana.interactions import Gains
-from flockana.laws.peer_to_peer import PeerToPeer
+from flockana import Copies, Gains, PeerToPeer, Spring
 from flockana.symbolic import copies
 
 

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from flockana import Algorithm1, Algorithm2, Algorithm3, Sphere, StaticTarget, Wall
 from flockana.base.errors import ArgumentError
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.symbolic import linearisation as lin
 from flockana.symbolic.functions import adjacency, bump, phi_alpha, phi_beta
 from flockana.symbolic.norms import EPS

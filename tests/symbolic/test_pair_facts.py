@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import AlphaInteraction, DeadZoneInteraction, FormulaInteraction, RationalWeight
 from flockana.base.facts import Fact, conjunction
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, FormulaInteraction
-from flockana.interactions.weights import RationalWeight
 from flockana.symbolic.pair_facts import _NumericFormula
 from tests.toys.formulas import alpha_formula, spring
 

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from flockana.base.units import rescale
-from flockana.dynamics.trajectory import Trajectory
+from flockana import Tolerances, Trajectory, Verdict, rescale, theorem, verify
 from flockana.lattice import hexagonal_patch
-from flockana.theorems import Tolerances, Verdict, theorem, verify
 from flockana.theorems.observed import Observed
 
 

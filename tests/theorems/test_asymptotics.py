@@ -15,8 +15,7 @@ TOLERANCES = Tolerances()
 
 
 @pytest.mark.parametrize(
-    ("force", "mismatch", "expected"),
-    [(1.0, 1.0, True), (1.01, 1.0, False), (1.0, 1.01, False), (0.0, 0.0, True)],
+    ("force", "mismatch", "expected"), [(1.0, 1.0, True), (1.01, 1.0, False), (1.0, 1.01, False), (0.0, 0.0, True)]
 )
 def test_settled_is_within_both_tolerances(force, mismatch, expected):
     scales = Scales(2.0, 0.5)

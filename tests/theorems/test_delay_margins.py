@@ -6,8 +6,7 @@ from math import atan2, sqrt
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, StaticTarget
-from flockana.equilibria.solve import find_equilibrium
+from flockana import Algorithm1, Algorithm2, StaticTarget, find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.stability import delay_margin, delay_system, rightmost_roots
 from flockana.theorems import Tolerances, delay_margins, theorem

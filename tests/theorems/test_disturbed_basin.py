@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.equilibria.solve import find_equilibrium
-from flockana.laws.delayed import Delayed
-from flockana.laws.disturbed import Disturbed
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems import verify
+from flockana import Algorithm1, Delayed, Disturbed, find_equilibrium, rescale, simulate, verify
 
 PAIR = find_equilibrium(Algorithm1(), [[0.0], [7.0]]).q
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import SemiImplicitEuler, verify
 from flockana.base.errors import ArgumentError
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems import verify
 from flockana.theorems.fits import ensure_fits
+from tests.toys.formulas import breakable
 
 PAIR = ([[0.0, 0.0], [8.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]])
 
@@ -64,9 +64,7 @@ def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> N
 
 def test_a_run_that_leaps_over_a_spike_of_its_law_is_judged_not_accused() -> None:
     """The adjacency falls to -100 within a few thousandths of a length: steps of the usual tolerance may miss it."""
-    spiked = "(1-s/r)**2*(1-100*exp(-((s-1.29)*300)**2))"
-    pair = fl.pair_law("2*(s-2)**2*(r-s)**2*s**2", range=3, length=2, adjacency=spiked)
-    law = fl.Algorithm1(pair, fl.Gains(c1_alpha=0.05, c2_alpha=0.05))
+    law = fl.Algorithm1(breakable(c=100.0, o=1.29, w=300.0), fl.Gains(c1_alpha=0.05, c2_alpha=0.05))
     start = [[0.0, 0.0], [1.8, 0.0]], [[0.9, 0.0], [-0.9, 0.0]]
     verdict = verify("energy", law=law, q0=start[0], p0=start[1], t_span=(0.0, 0.6))
     assert verdict.claim("rate").status == "vacuous"

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from flint import arb
 
-from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, Tolerances, enclose, simulate, verify
+from flockana import Algorithm1, Algorithm2, Basin, Gains, StaticTarget, Tolerances, enclose, simulate, verify
 from flockana.base.errors import ArgumentError
-from flockana.certified.basin import Basin
 from flockana.certified.structure import Structure
 from flockana.theorems.from_tube import met, rest_strain
 

@@ -9,10 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.dynamics.trajectory import Trajectory
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, DeadZoneFlocking, Gains, Trajectory
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     alpha_gain,

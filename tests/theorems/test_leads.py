@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.interactions import AlphaInteraction
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, AlphaInteraction
 from flockana.theorems import Claim
 from flockana.theorems.leads import bridge, pairs_apart, squash, strained
 from tests.theorems.made_up import made_up

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import SemiImplicitEuler, Trajectory
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import sealed
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems.map_steps import ensure_steps_of_map
 
 _HEADINGS = fl.simulate(

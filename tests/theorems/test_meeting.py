@@ -5,9 +5,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from flockana import pair_law
-from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, AlphaInteraction, DeadZoneInteraction, Gains, pair_law
 from flockana.theorems.meeting import least_is_known, meeting
 from tests.theorems.made_up import made_up
 

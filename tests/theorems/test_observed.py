@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.interactions.weights import RationalWeight
+from flockana import RationalWeight, SemiImplicitEuler
 from flockana.laws.link_keeping import LinkKeeping
-from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems import Claim, Theorem, verify
 from flockana.theorems import second_runs as module
 from flockana.theorems.claims import judged

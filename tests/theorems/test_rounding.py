@@ -4,11 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import StaticTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
+from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, Sphere, StaticTarget
 from flockana.theorems.rounding import deepest_of, energy_error, frame_error, pair_force_error, spread_error
 
 PAIRS = [

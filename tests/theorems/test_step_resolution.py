@@ -11,24 +11,23 @@ from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
 from flockana.theorems.step_resolution import NAME, demand_of, steps_of
 
-FLAT, CUT = "0.1*(r - s)**2*(s - 1)**2", "(1 - s/r)**2"
-BARRIER = f"{FLAT} + 1.5*exp(-((s - 2.05)*width)**2)"
-BRAKE = f"{CUT}*(1 + 3000*exp(-((s - 2.05)*width)**2))"
+SPIKE = "exp(-((s - 2.05)*width)**2)"
+FORMULA = f"0.1*(r - s)**2*(s - 1)**2 + barrier*{SPIKE}", f"(1 - s/r)**2*(1 + brake*{SPIKE})"  # for all, compiled once
 START, SPEED = [[-1.4, 0.0], [1.4, 0.0]], [[1.0, 0.0], [-1.0, 0.0]]
 
 
-def meeting(potential, adjacency=CUT, width=700.0, until=0.6, **options):
+def meeting(barrier=0.0, brake=0.0, width=700.0, **options):
     """Two agents that fly towards each other, in range from the start on."""
-    known = {"width": width} if "width" in potential + adjacency else {}
-    pair = fl.pair_law(potential, adjacency=adjacency, range=3.0, length=1.0, parameters=known)
+    numbers = {"barrier": barrier, "brake": brake, "width": width}
+    pair = fl.pair_law(FORMULA[0], adjacency=FORMULA[1], range=3.0, length=1.0, parameters=numbers)
     law = fl.Algorithm1(pair, fl.Gains(c1_alpha=1.0, c2_alpha=1e-3))
-    return fl.simulate(law, START, SPEED, (0.0, until), **options)
+    return fl.simulate(law, START, SPEED, (0.0, 0.6), **options)
 
 
 @pytest.mark.parametrize("dense", [False, True], ids=["steps", "samples"])
-@pytest.mark.parametrize(("potential", "adjacency"), [(BARRIER, CUT), (FLAT, BRAKE)], ids=["force", "adjacency"])
-def test_a_spike_that_tighter_tolerances_alone_leap_over_too_is_noticed(potential, adjacency, dense):
-    run = meeting(potential, adjacency, t_eval=np.linspace(0.0, 0.6, 301) if dense else None)
+@pytest.mark.parametrize("spike", [{"barrier": 1.5}, {"brake": 3000.0}], ids=["force", "adjacency"])
+def test_a_spike_that_tighter_tolerances_alone_leap_over_too_is_noticed(spike, dense):
+    run = meeting(**spike, t_eval=np.linspace(0.0, 0.6, 301) if dense else None)
     alone = second_run(run, run.path.t, 1e-2, None)
     assert np.abs(alone.p[-1] - run.p[-1]).max() < 1e-6  # both alike, and both wrong
     seen = Observed.of(run)
@@ -39,7 +38,7 @@ def test_a_spike_that_tighter_tolerances_alone_leap_over_too_is_noticed(potentia
 
 
 def test_a_spike_too_narrow_for_any_number_of_steps_is_assumed_not_to_be_there():
-    run = meeting(BARRIER, width=1e9)
+    run = meeting(barrier=1.5, width=1e9)
     verdict = fl.verify("energy", run)
     (need,) = [one for one in verdict.hypotheses if one.name == NAME]
     assert need.status == "assumed"
@@ -59,7 +58,7 @@ def test_a_pole_counts_where_a_pair_comes_near_it(place, status):
 @pytest.mark.parametrize("about", ["run", "limit", "all"])
 @pytest.mark.parametrize("status", ["verified", "refuted"])
 def test_nothing_but_a_fact_about_the_run_rests_on_steps_that_may_leap(about, status):
-    seen = replace(Observed.of(meeting(FLAT)), unresolved="somewhere")
+    seen = replace(Observed.of(meeting()), unresolved="somewhere")
     given = Claim("i", status, about=about), Claim("ii", status, "smt", about=about)
     (need,), (first, proved) = with_resolution((), given, seen)
     kept = status == "verified" and about == "run"
@@ -70,7 +69,7 @@ def test_nothing_but_a_fact_about_the_run_rests_on_steps_that_may_leap(about, st
 
 @pytest.mark.parametrize("samples", [[0.0, 0.6], np.linspace(0.0, 0.6, 61), None], ids=["few", "many", "all"])
 def test_steps_are_those_of_the_solver_whatever_samples_are_kept(samples):
-    run, every = meeting(FLAT, t_eval=samples), meeting(FLAT)
+    run, every = meeting(t_eval=samples), meeting()
     steps, containing = steps_of(run)
     np.testing.assert_allclose(steps, np.diff(every.t), rtol=1e-9)
     assert len(containing) == len(run.path.t) - 1
@@ -79,7 +78,7 @@ def test_steps_are_those_of_the_solver_whatever_samples_are_kept(samples):
 
 def test_the_second_run_shares_no_stage_and_keeps_the_bound_of_the_first():
     for options in ({}, {"max_step": 0.01}):
-        run = meeting(FLAT, **options)
+        run = meeting(**options)
         again = Observed.of(run).run
         longest = steps_of(again)[0].max()
         assert longest <= 0.618 * steps_of(run)[0].max() * (1.0 + 1e-9)

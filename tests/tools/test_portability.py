@@ -5,8 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from flockana import scenario
-from flockana.theorems import Tolerances
+from flockana import Tolerances, scenario
 from tools import portability
 from tools.portability import Row, changes, choose, differences, environments, outcome, table, unfit
 

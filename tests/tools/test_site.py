@@ -12,9 +12,8 @@ import nbformat
 import pytest
 
 import flockana
-from flockana import plots, symbolic
+from flockana import plots, scenario, symbolic
 from flockana.report.stills import stills
-from flockana.scenarios import scenario
 from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
 from tools.site import cache, lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts

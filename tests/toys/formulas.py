@@ -32,6 +32,18 @@ def spring() -> FormulaInteraction:
     )
 
 
+def breakable(**changed: float) -> FormulaInteraction:
+    """A smooth law, until a parameter breaks it: the same compiled code for many laws.
+
+    b lets the force jump at the range; c takes a peak out of the adjacency, at o and of width 1/w; with e = 0 nothing
+    repels.
+    """
+    numbers = {"k": 0.01, "e": 2.0, "b": 0.0, "c": 0.0, "o": 110.5 * 3.0 / 256.0, "w": 1000.0} | changed
+    potential = "k*(s**2 - e**2)**2*(r**2 - s**2)**2 + b*(s**2 - e**2)**2"
+    adjacency = "(1 - s/r)**2*(1 - c*exp(-((s - o)*w)**2))"
+    return pair_law(potential, adjacency=adjacency, range=3.0, length=2.0, parameters=numbers)
+
+
 def formula_flock(seed: int) -> Scenario:
     """Four agents under `spring`, at random."""
     rng = np.random.default_rng(seed)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.laws.minimal import MinimalFlocking
-from flockana.theorems import Tolerances, theorem
+from flockana import MinimalFlocking, Tolerances, theorem
 from flockana.theorems.bearing_distance import j04
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.environment.zone_obstacles import Box
-from flockana.environment.zone_world import ZoneWorld
-from flockana.interactions import ZoneRadii
-from flockana.laws.bearing_distance import ZoneFlocking
+from flockana import Box, ZoneFlocking, ZoneRadii, ZoneWorld
 
 RADII = ZoneRadii(1.5, c=3.0, a=5.0)
 

@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.measures.metrics import min_distance
-from flockana.measures.nets import components, links
+from flockana import ZoneFlocking, components, links, min_distance, simulate
 from flockana.theorems.bearing_distance.random_starts import (
     crowd_start,
     runs_from_random_starts,

@@ -6,9 +6,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana import MinimalFlocking, Tolerances, simulate
+from flockana import MinimalFlocking, Tolerances, simulate, theorem
 from flockana.measures.perception import both_ways
-from flockana.theorems import theorem
 from flockana.theorems.observed import Observed
 
 PAIR, MU, RHO = ((0, 1),), 4.0, 2.0

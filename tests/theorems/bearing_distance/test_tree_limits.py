@@ -8,11 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.laws.minimal import MinimalFlocking
+from flockana import MinimalFlocking, rescale, simulate, verify
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
-from flockana.theorems import verify
 from flockana.theorems.bearing_distance.tree_case import tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles, state
 from flockana.theorems.bearing_distance.tree_spectrum import POLYNOMIAL, tree_spectrum

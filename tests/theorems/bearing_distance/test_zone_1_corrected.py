@@ -5,12 +5,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.targets import StaticTarget
-from flockana.laws.minimal import MinimalFlocking
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, MinimalFlocking, StaticTarget, Tolerances, simulate, theorem, verify
 from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
-from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.bearing_distance import zone_1_corrected
 from flockana.theorems.bearing_distance.tree_case import characteristic_residual, tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, state

@@ -76,10 +76,7 @@ def test_sums_that_are_not_divided_count_every_agent():
     q, p = [[0.0], [1.0], [3.0]], [[0.5], [0.0], [-0.5]]
     margins = [
         fl.verify("ha-liu", fl.simulate(law, q, p, (0.0, 0.1))).hypotheses[-1].margin
-        for law in (
-            fl.CuckerSmale(RationalWeight(1.0, 1.0)),
-            fl.CuckerSmale(RationalWeight(3.0, 1.0), mean=True),
-        )
+        for law in (fl.CuckerSmale(RationalWeight(1.0, 1.0)), fl.CuckerSmale(RationalWeight(3.0, 1.0), mean=True))
     ]
     assert margins[0] == pytest.approx(margins[1], rel=1e-12)
 

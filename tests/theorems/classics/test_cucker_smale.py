@@ -6,8 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from flockana import CuckerSmale, Tolerances
-from flockana.interactions.weights import RationalWeight
+from flockana import CuckerSmale, RationalWeight, Tolerances
 from tests.theorems.made_up import judged, made_up, same_in_all_units, statuses
 
 Q, P = np.array([[-1.0], [1.0]]), np.array([[-0.5], [0.5]])

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.interactions.weights import RationalWeight
-from flockana.laws.cucker_smale import CuckerSmale
+from flockana import CuckerSmale, RationalWeight
 from flockana.theorems.observed import Observed
 
 PSI = {True: 3.0, False: 6.0}  # λψ(0) for K = 3: the sum of one term, divided by n = 2, counts both ends

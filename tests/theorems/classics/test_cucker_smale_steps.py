@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flockana import CuckerSmale, simulate
-from flockana.interactions.weights import RationalWeight
-from flockana.laws.explicit_euler import ExplicitEuler
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.laws.taylor_step import TaylorStep
-from flockana.theorems import verify
+from flockana import CuckerSmale, ExplicitEuler, RationalWeight, SemiImplicitEuler, TaylorStep, simulate, verify
 from tests.theorems.made_up import hypothesis, statuses
 
 Q, P = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]), np.array([[0.3, 0.0], [-0.1, 0.2], [0.0, -0.4]])

@@ -5,8 +5,7 @@ from math import atan, pi, sqrt, tan
 import numpy as np
 import pytest
 
-from flockana import CuckerSmale
-from flockana.interactions.weights import RationalWeight
+from flockana import CuckerSmale, RationalWeight
 from tests.theorems.made_up import hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = CuckerSmale(RationalWeight(strength=1.5, length=2.0, decay=1.0), mean=True)

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import CircleTarget, LinearTarget, StaticTarget, compose
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, LinearTarget, StaticTarget, compose
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, gains_of, some_informed
 from flockana.theorems.limits import Certificate
 from flockana.theorems.observed import Observed

@@ -7,11 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana import compose, scenario, simulate, verify
-from flockana.dynamics.trajectory import Trajectory
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Trajectory, compose, scenario, simulate, verify
 from flockana.environment.targets import CircleTarget, LinearTarget
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.classics import leader_frame
 from flockana.theorems.classics.su_varying import convergence_rate
 from flockana.theorems.observed import Observed

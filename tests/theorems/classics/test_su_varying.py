@@ -5,9 +5,7 @@ from math import exp
 import numpy as np
 import pytest
 
-from flockana import CircleTarget, StaticTarget, compose, pair_law
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm2
+from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, StaticTarget, compose, pair_law
 from flockana.theorems.classics.leader_frame import as_the_leader_sees
 from flockana.theorems.classics.su_varying import centre_of, convergence_rate
 from flockana.theorems.observed import Observed

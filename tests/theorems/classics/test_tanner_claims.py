@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import pair_law, simulate, verify
-from flockana.interactions.log_potential import LogPotential
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.tanner import FixedNetFlocking
+from flockana import Algorithm1, FixedNetFlocking, LogPotential, pair_law, simulate, verify
 from flockana.theorems.classics.tanner_claims import _energy_error
 from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import least_distance, spread_over

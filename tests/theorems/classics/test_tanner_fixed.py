@@ -18,8 +18,7 @@ def at_rest(edges, *places):
 
 
 @pytest.mark.parametrize(
-    ("edges", "parts"),
-    [(((0, 1), (1, 2)), 1), (((0, 2), (1, 2)), 1), (((0, 1),), 2), (((1, 2),), 2), ((), 3)],
+    ("edges", "parts"), [(((0, 1), (1, 2)), 1), (((0, 2), (1, 2)), 1), (((0, 1),), 2), (((1, 2),), 2), ((), 3)]
 )
 def test_a_net_is_connected_or_says_nothing(edges, parts):
     verdict = judged("tanner-fixed", at_rest(edges, 0.0, 1.0, 2.0))

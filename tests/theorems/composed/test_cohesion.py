@@ -5,9 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana import compose, pair_law, simulate, verify
-from flockana.environment.obstacles import Sphere
-from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
+from flockana import CircleTarget, LinearTarget, Sphere, StaticTarget, compose, pair_law, simulate, verify
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.theorems.composed.cohesion import bound
 from flockana.theorems.enclosure import Enclosure

@@ -5,10 +5,7 @@ from math import inf, log
 import numpy as np
 import pytest
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
+from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler
 from flockana.theorems.dead_zone.case import (
     PROOF,
     dead_zone_law,

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana import DeadZoneFlocking, DeadZoneInteraction
 from flockana.theorems.dead_zone.hold import hold
 
 LAW = DeadZoneFlocking()

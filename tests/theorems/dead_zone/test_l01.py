@@ -5,8 +5,7 @@ from math import hypot, sqrt
 import numpy as np
 import pytest
 
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems import Tolerances, theorem
+from flockana import DeadZoneFlocking, Tolerances, theorem
 from flockana.theorems.dead_zone import l01
 
 PLACES = np.array([[0.0, 0.0], [2.0, 0.5], [-1.0, 2.5]])

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from flockana import LinearTarget, plots, rescale
+from flockana import LinearTarget, plots, rescale, scenario
 from flockana.plots.snapshot import in_view
 from flockana.report.figures import pictures
-from flockana.scenarios import scenario
 from flockana.theorems.dead_zone.l09 import led_run
 from tests.plots.artists import axes
 

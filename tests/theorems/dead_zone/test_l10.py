@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana import DeadZoneFlocking, simulate
 from flockana.theorems.dead_zone.l10 import energy_share, escaping_pair
 
 

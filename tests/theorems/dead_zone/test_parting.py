@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.scenarios import scenario
-from flockana.theorems import verify
+from flockana import DeadZoneFlocking, scenario, simulate, verify
 from flockana.theorems.dead_zone.parting import components_of
 
 

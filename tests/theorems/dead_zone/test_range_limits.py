@@ -10,13 +10,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
+from flockana import DeadZoneFlocking, SemiImplicitEuler, cohesion_radius, rescale, simulate, verify
 from flockana.interactions import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.measures.metrics import cohesion_radius
-from flockana.theorems import verify
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.parting import components_of
 from flockana.theorems.dead_zone.range_limits import first_entry

@@ -5,12 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.interactions import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.theorems import verify
+from flockana import Algorithm1, DeadZoneFlocking, DeadZoneInteraction, SemiImplicitEuler, simulate, verify
 from flockana.theorems.dead_zone.theorem_1_corrected import _rate
 from tests.theorems.made_up import statuses
 

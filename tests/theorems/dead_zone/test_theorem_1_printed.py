@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.laws.dead_zone import DeadZoneFlocking
+from flockana import DeadZoneFlocking, DeadZoneInteraction
 from flockana.theorems.dead_zone.hold import hold
 from tests.theorems.made_up import judged, made_up
 

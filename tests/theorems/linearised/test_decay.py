@@ -4,19 +4,13 @@ from math import exp, sqrt
 import numpy as np
 import pytest
 
+from flockana import DeadZoneFlocking, Gains, Trajectory, find_equilibrium, linearise, rescale, simulate
 from flockana.base.errors import ArgumentError
 from flockana.base.seals import sealed
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget, StaticTarget
-from flockana.equilibria import find_equilibrium
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability import decay as module
-from flockana.stability import linearise
 from flockana.stability.decay import (
     LinearRange,
     decay,

@@ -6,11 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flockana as fl
-from flockana.dynamics.simulate import simulate
+from flockana import Algorithm1, Tolerances, simulate, verify
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.metrics import cohesion_radius, net_measures
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import nets_at, nets_between, radius_over
 from tests.theorems.made_up import SCALINGS, hexagon, judged, made_up, same_in_all_units, statuses

@@ -7,9 +7,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from flockana import Gains, StaticTarget, pair_law, simulate
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems import verify
+from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, pair_law, simulate, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import any_potential
 from tests.theorems.made_up import hypothesis, made_up, same_in_all_units, statuses
@@ -22,8 +20,9 @@ Q = np.array([[0.0, 0.0], [1.0, 0.0], [0.4, 0.9]])
 P = np.array([[0.3, 0.0], [-0.1, 0.2], [0.0, -0.2]])
 
 
-def morse(**numbers):
-    return pair_law(MORSE, adjacency="(1 - s/r)**2", range=2.0, length=1.0, parameters={"k": 1.0, "a": 3.0} | numbers)
+def morse():
+    numbers, units = {"k": 1.0, "a": 3.0}, {"k": (2, -2), "a": (-1, 0)}
+    return pair_law(MORSE, adjacency="(1 - s/r)**2", range=2.0, length=1.0, parameters=numbers, units=units)
 
 
 def parabola(top=4.0):
@@ -94,9 +93,7 @@ def test_the_paper_s_law_is_a_special_case():
 
 
 def test_in_all_units():
-    units = {"k": (2, -2), "a": (-1, 0)}
-    pair = pair_law(MORSE, adjacency="1 - s/r", range=2.0, length=1.0, parameters={"k": 1.0, "a": 3.0}, units=units)
-    run = simulate(Algorithm2(pair, GAINS, ORIGIN), Q, P, (0.0, 1.0))
+    run = simulate(Algorithm2(morse(), GAINS, ORIGIN), Q, P, (0.0, 1.0))
     same_in_all_units("any-potential", run, (1e-3, 60.0))
 
 

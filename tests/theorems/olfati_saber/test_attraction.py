@@ -11,11 +11,9 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 import flockana as fl
-from flockana.base.units import rescale
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, rescale
 from flockana.equilibria.gradient_flow import structural_force
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.olfati_saber.attraction import _action, attraction, lipschitz_within
 from flockana.theorems.rounding import pair_force_error

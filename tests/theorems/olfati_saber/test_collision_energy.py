@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import compose, pair_law
-from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.composition import Composition
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, AlphaInteraction, Composition, Gains, compose, pair_law
 from flockana.theorems.rounding import energy_error
 from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 

@@ -8,13 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
+from flockana import Algorithm1, Algorithm2, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.path_bounds import contacts
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import collisions

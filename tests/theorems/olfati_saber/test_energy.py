@@ -7,15 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.environment.obstacles import Sphere
-from flockana.environment.target import Target
-from flockana.environment.targets import StaticTarget
+from flockana import Algorithm3, PairTerm, Sphere, StaticTarget, Target, Tolerances, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
-from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.laws.terms.pairs import PairTerm
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.olfati_saber.energy import balance, falling_share, never_rises, stays_outside
 from flockana.theorems.second_runs import Errors

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Tolerances, enclose, simulate, verify
-from flockana.environment.targets import StaticTarget
+from flockana import Algorithm1, Algorithm2, StaticTarget, Tolerances, enclose, simulate, verify
 
 SPAN = (1.0, 1.5)
 LED = Algorithm2(target=StaticTarget((1.0, 0.0)))

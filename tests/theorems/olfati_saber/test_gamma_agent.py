@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm3, simulate, verify
-from flockana.base.units import rescale
-from flockana.dynamics.trajectory import Trajectory
+from flockana import Algorithm2, Algorithm3, Trajectory, rescale, simulate, verify
 from flockana.environment.targets import (
     CallableTarget,
     CircleTarget,
@@ -14,7 +12,6 @@ from flockana.environment.targets import (
     SineTarget,
     StaticTarget,
 )
-from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.olfati_saber.gamma_agent import consistent, declared_rate_is_true, slip, target_rests
 from tests.theorems.made_up import SCALINGS
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget
-from flockana.theorems import theorem
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, theorem
 from flockana.theorems.leads import strained
 from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 

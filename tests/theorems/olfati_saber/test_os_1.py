@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Tolerances, simulate, verify
 from flockana.base.seals import sealed
-from flockana.dynamics.simulate import simulate
-from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.asymptotics import lattice_limit
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import disconnected_energy

@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 
 import flockana as fl
+from flockana import Algorithm2, Gains, Tolerances, simulate, verify
 from flockana.base.seals import sealed
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity, StaticTarget
-from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import pairs_at_one_instant
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flockana.dynamics.simulate import simulate
+from flockana import Algorithm1, Law, Tolerances, simulate, verify
 from flockana.lattice import (
     bcc,
     crossings,
@@ -23,9 +23,6 @@ from flockana.lattice import (
     square,
     triangular,
 )
-from flockana.laws.law import Law
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems import Tolerances, verify
 from flockana.theorems.olfati_saber import os_5
 from flockana.theorems.olfati_saber.os_5 import CLAIMS, Net, uncrossed
 from flockana.theorems.theorem import Hypothesis
@@ -64,12 +61,7 @@ def test_at_the_largest_ratio_second_neighbours_are_no_links(name):
 
 @pytest.mark.parametrize(
     ("q", "kappa"),
-    [
-        (fcc(2, 2, 2, D), 1.2),
-        (hcp(3, 2, 2, D), 1.2),
-        (bcc(3, 3, 3, D), 1.1),
-        (simple_cubic(3, 3, 3, D), 1.2),
-    ],
+    [(fcc(2, 2, 2, D), 1.2), (hcp(3, 2, 2, D), 1.2), (bcc(3, 3, 3, D), 1.1), (simple_cubic(3, 3, 3, D), 1.2)],
 )
 def test_in_space_edges_do_not_cross_whatever_the_graph(q, kappa):
     verdict = verify("os-5", q=q, d=D, r=kappa * D)

@@ -6,15 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.obstacles import Sphere, Wall
-from flockana.environment.target import Target
+from flockana import Algorithm2, Algorithm3, Gains, Sphere, Target, Trajectory, Wall, simulate, verify
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
-from flockana.interactions import Gains
-from flockana.laws.algorithm3 import Algorithm3
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems import verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.os_6 import condition_76
 from tests.theorems.made_up import judged, made_up
@@ -54,7 +47,7 @@ def test_a_static_gamma_agent_verifies(static: Trajectory) -> None:
 
 def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
     """p_d ≠ 0 at a fixed q_r, towards it: (76) holds once the flock is faster than p_d, as pulled it becomes."""
-    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=(Wall((0.0, -14.0), (0.0, 1.0)),))
+    law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=(Sphere((0.0, 90.0), 1.0), OBSTACLES[1]))
     run = simulate(law, [[-9.0, 0.0], [-9.0, 7.0]], [[1.0, 0.0], [1.0, 0.0]], (0.0, 6.0))
     slack, verdict = condition_76(run), verify("os-6", run)
     dense = [0.5 * np.sum(p * p) - 0.5 * len(p) * p.mean(axis=0) @ [2.0, 0.0] for p in run.p]

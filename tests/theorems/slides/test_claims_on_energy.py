@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.dynamics.trajectory import Trajectory
-from flockana.laws.olfati_saber import Algorithm1
+from flockana import Algorithm1, Trajectory
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides.claims_on_energy import rises, run_claim

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Tolerances
-from flockana.laws.directed import DirectedNet
+from flockana import Algorithm1, DirectedNet, Tolerances
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides import directed_nets
 

@@ -4,19 +4,10 @@ import numpy as np
 import pytest
 from scipy.stats import beta
 
+from flockana import Algorithm1, Gains, Tolerances, min_distance
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import terminal_state
-from flockana.interactions import Gains
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.measures.metrics import min_distance
-from flockana.theorems import Tolerances
-from flockana.theorems.slides.e03 import (
-    _certain_strain,
-    _is_lattice,
-    _Limit,
-    random_disc,
-    rhombus_with_double_agent,
-)
+from flockana.theorems.slides.e03 import _certain_strain, _is_lattice, _Limit, random_disc, rhombus_with_double_agent
 from tests.adversarial.published import changes
 
 

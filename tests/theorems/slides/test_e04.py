@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from flockana import Algorithm1, AlphaInteraction, verify
 from flockana.equilibria.barrier import (
     bound_range,
     coincident_lattice,
@@ -19,10 +20,7 @@ from flockana.equilibria.barrier import (
     least_infeasible_size,
     turan_pairs,
 )
-from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems import verify
 from flockana.theorems.slides import e04
 
 ALPHA = AlphaInteraction()

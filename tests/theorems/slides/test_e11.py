@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, StaticTarget, Tolerances, Trajectory, rescale, simulate, theorem, verify
 from flockana.base.errors import SolverError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
-from flockana.environment.targets import StaticTarget
 from flockana.equilibria.collapse import natural_ratio, threshold
 from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.lattice import hexagonal_patch
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.observed import Observed
 from flockana.theorems.slides import e11 as module
 from flockana.theorems.slides.e11 import collapse_threshold, collapses

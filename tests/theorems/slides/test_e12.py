@@ -6,19 +6,14 @@ from math import pi
 import numpy as np
 import pytest
 
+from flockana import Algorithm2, Gains, Tolerances, rescale, scenario, simulate, theorem, verify
 from flockana.base.errors import ArgumentError
-from flockana.base.units import rescale
-from flockana.dynamics.simulate import simulate
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
-from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
-from flockana.laws.olfati_saber import Algorithm2
-from flockana.scenarios import scenario
 from flockana.stability.tracking import response_ratio
 from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
-from flockana.theorems import Tolerances, theorem, verify
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides.measured_ratio import measured_ratio
 
