@@ -79,12 +79,13 @@ for N in (10, 60, 200):
 #    $\square$
 
 # %%
-figure, ax = plots.subplots(size=(7, 3.4))
-_ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60))), ax=ax)
+figure, axes = plots.subplots(1, 2, size=(10, 3.2))
+_ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60))), axes=axes)
 
 # %% [markdown]
-# **Figure 10.1.** 57 successes in 60 runs (dotted line). At the lower end, 0.861, so many or more have the probability
-# 2.5 % (hatched, right tail); at the upper end, 0.990, so few or fewer have it (dotted, left tail).
+# **Figure 10.1.** How many of 60 runs succeed, for the two ends of the interval of 57 successes. Left: with the
+# probability 0.861, the lower end, 57 or more (filled) come out in 2.5 % of all experiments. Right: with 0.990, the
+# upper end, 57 or fewer do.
 #
 # **By hand: 4 of 5.** The upper end has the tail "4 or fewer", which is everything but "all 5":
 # $1 - p^5 = 0.025$, so $p = 0.975^{1/5} = 0.995$. The lower end has the tail "4 or 5":
