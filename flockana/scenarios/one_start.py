@@ -130,13 +130,14 @@ ENTRIES: tuple[Entry, ...] = (
         "Dead zone",
         lambda q, p: DeadZoneFlocking(),
         "dead-zone-1-corrected",
-        "the saturated energy falls; velocities agree within each component; distances keep above an explicit bound",
+        "the saturated energy falls and distances stay above an explicit bound; that velocities agree within each "
+        "component is measured, not proved",
     ),
     Entry(
         "Cucker and Smale",
         lambda q, p: CuckerSmale(RationalWeight(strength=0.5, decay=0.25, length=RANGE)),
         "cucker-smale",
-        "every agent heeds all, with a weight that falls slowly (β < ½): from any start a flock",
+        "every agent averages over all others, with a weight that falls slowly (β < ½): from any start a flock",
     ),
     Entry(
         "Ha and Liu",

@@ -118,8 +118,7 @@ def test_a_lecture_is_more_than_a_companion_to_its_code(source):
     texts = [c.source for c in build.notebook(source, "student").cells if c.cell_type == "markdown"]
     taught = " ".join(texts[:1] + texts[2:-1])  # without the table of symbols and the references
     words = len(re.findall(r"[^\W\d_]{2,}", re.sub(r"\$\$.*?\$\$|\$[^$]+\$", " x ", taught, flags=re.DOTALL)))
-    least = {"00": 1000, **dict.fromkeys(("02", "03", "04", "05", "06", "13"), 2000)}
-    assert words >= least.get(number_of(source), 1500)
+    assert words >= (1000 if number_of(source) == "00" else 2000)
 
 
 @pytest.mark.parametrize("source", SOURCES[1:-2], ids=lambda path: path.stem)
