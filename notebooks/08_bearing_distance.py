@@ -121,8 +121,8 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
-# **Figure 8.2.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
-# circle) the same agents do not get through (right).
+# **Figure 8.2.** Five agents enter the gap between an obstacle and the wall (left, $t = 4$) and leave it (middle,
+# $t = 10$). With a buffer around the whole obstacle (dashed circle) the same agents turn back (right, $t = 10$).
 #
 # ## Two forms, and where they part
 #
