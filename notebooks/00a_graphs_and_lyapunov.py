@@ -178,9 +178,19 @@ slider(with_range, np.arange(1.0, 8.1, 0.5), name="r", title="the net of twelve 
 #   -1 + \tfrac32\sin^2t\end{pmatrix}x .$$
 #
 # At each instant the trace is $-\tfrac12$ and the determinant is $\tfrac12$, so the eigenvalues are
-# $\tfrac14(-1 \pm i\sqrt7)$, always the same, on the left. But $x = e^{t/2}(\cos t, -\sin t)$ is a solution, as one
-# checks by inserting it, and it grows. The direction in which the system pushes turns along with the state. One needs a
-# function that falls along every solution.
+# $\tfrac14(-1 \pm i\sqrt7)$, always the same, on the left. But $x = e^{t/2}(\cos t, -\sin t)$ is a solution, and it
+# grows. Insert it; the first row of the matrix times $(\cos t, -\sin t)$ is
+#
+# $$\begin{aligned}
+# &{-\cos t} + \tfrac32\cos^3t - \sin t + \tfrac32\sin^2t\cos t && \text{multiply out} \\
+# &= -\cos t - \sin t + \tfrac32\cos t\,(\cos^2t + \sin^2t) = \tfrac12\cos t - \sin t , && \text{collect}
+# \end{aligned}$$
+#
+# and that is the derivative of $e^{t/2}\cos t$, over $e^{t/2}$. (The second row gives $-\cos t - \tfrac12\sin t$ in
+# the same way.) How can that be? Take axes that turn with the time, $(\cos t, -\sin t)$ and $(\sin t, \cos t)$. In
+# them the state has the coordinates $y_1$, $y_2$ with $\dot y_1 = \tfrac12y_1$ and $\dot y_2 = -y_2$: one grows, one
+# decays, for ever. The eigenvalues of the instant belong to axes that stand still, in which no solution stays. Whoever
+# computes them has left out the turning. One needs a function that falls along every solution.
 #
 # ## Lyapunov
 #
@@ -293,6 +303,76 @@ assert np.ptp(expm(-6.0 * laplacians["path"]) @ start) > 0.3
 # **Figure 0a.4.** Two agents that repel each other. Their energy falls to a constant, as every energy with
 # $\dot H \le 0$ and $H \ge 0$ does; their distance grows without bound.
 #
+# ## A convoy of springs: the pattern of later proofs
+#
+# Here is an example in which everything can be done, and whose proof is the model of those for flocks. Let $n$ robots
+# on a line be joined, along the links of a fixed connected net, by springs and dampers of the strengths $a_{ij}$:
+#
+# $$\dot q = p, \qquad \dot p = -Lq - Lp .$$
+#
+# > **Theorem (convoy).** All positions come together, all velocities too, and the common velocity is the mean of the
+# > velocities at the start.
+#
+# *Proof.* Six steps, which have the same names in every later proof.
+#
+# 1. *What is conserved.* $\mathbf 1^\top L = 0$, so the mean velocity $p_c$ is constant, and the mean position $q_c$
+#    moves uniformly. So positions need not stay bounded: it is useless to look for a compact set of states $(q, p)$.
+# 2. *The frame.* Ride with the mean: $x_i = q_i - q_c$ and $v_i = p_i - p_c$. As $L\mathbf 1 = 0$, the equation is the
+#    same, $\dot x = v$, $\dot v = -Lx - Lv$, and now $\sum_ix_i = \sum_iv_i = 0$.
+# 3. *The energy.* Let $W = \tfrac12x^\top Lx + \tfrac12v^\top v$, springs and motion. Then
+#
+# $$\begin{aligned}
+# \dot W &= v^\top Lx + v^\top(-Lx - Lv) && \text{chain rule; } L \text{ is symmetric} \\
+# &= -v^\top Lv \le 0 . && \text{the springs cancel}
+# \end{aligned}$$
+#
+# 4. *Compactness.* $x$ is orthogonal to $\mathbf 1$, so $x^\top Lx \ge \lambda_2\|x\|^2$, and $\lambda_2 > 0$. So on
+#    $\{W \le W(0)\}$ one has $\|x\|^2 \le 2W(0)/\lambda_2$ and $\|v\|^2 \le 2W(0)$: closed and bounded.
+# 5. *Where nothing is lost.* $\dot W = 0$ means $v^\top Lv = 0$, so all $v_i$ are equal, because the net is connected.
+#    Their sum is 0, so $v = 0$.
+# 6. *Invariance.* A solution that stays there has $v = 0$ at all times, hence $0 = \dot v = -Lx$, hence equal $x_i$, of
+#    sum 0. Only $x = v = 0$ is left, and LaSalle's theorem says that every solution tends to it. $\square$
+#
+# The net is used twice, in steps 4 and 5. In a flock the springs end at the range: then step 4 is what breaks under
+# Algorithm 1 (lecture 02) and what the γ-agent repairs (lecture 03).
+#
+# How fast? Along an eigenvector of $\lambda_k$ the equation is $\ddot y + \lambda_k\dot y + \lambda_ky = 0$. For
+# $\lambda_k < 4$ its poles are complex, with the real part $-\tfrac12\lambda_k$. So on the path of six, with
+# $\lambda_2 = 0.268$, the slowest mode decays at the rate $0.134$, half of that of consensus; it overshoots, which
+# consensus does not. On the complete net all $\lambda_k = 6 > 4$: two real poles, $-1.27$ and $-4.73$, although
+# consensus has the rate 6. A well connected net damps so strongly that its springs creep.
+
+# %%
+path = laplacians["path"]
+flow = np.block([[np.zeros((6, 6)), np.eye(6)], [-path, -path]])
+away, wait = start - start.mean(), np.linspace(0.0, 40.0, 400)
+disagree = {
+    "springs and dampers": [np.linalg.norm((expm(flow * s) @ [*away, *np.zeros(6)])[:6]) for s in wait],
+    "consensus": [np.linalg.norm(expm(-path * s) @ away) for s in wait],
+}
+figure, ax = plots.subplots(size=(6.5, 3.2))
+for name, curve in disagree.items():
+    ax.semilogy(wait, curve, label=name)
+ax.semilogy(wait, np.linalg.norm(away) * np.exp(-0.134 * wait), label="a multiple of exp(−0.134 t)")
+ax.set(xlabel="time", ylabel="disagreement (length)", ylim=(1e-3, 10.0))
+_ = ax.legend()
+
+# %% tags=["facts"]
+poles = np.linalg.eigvals(flow)
+moving = poles[np.abs(poles) > 1e-6]
+assert f"{-moving.real.max():.3f}" == "0.134"
+full = np.roots([1.0, 6.0, 6.0])
+assert sorted(f"{each:.2f}" for each in full) == ["-1.27", "-4.73"]
+assert disagree["springs and dampers"][-1] > 10.0 * disagree["consensus"][-1]
+assert np.all(disagree["springs and dampers"] < 1.01 * np.linalg.norm(away) * np.exp(-0.134 * wait))
+turning = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])  # its columns are the axes
+spin = np.array([[-np.sin(0.7), np.cos(0.7)], [-np.cos(0.7), -np.sin(0.7)]])  # and these their derivatives
+assert np.allclose(turning.T @ (markus_yamabe(0.7) @ turning - spin), np.diag([0.5, -1.0]))
+
+# %% [markdown]
+# **Figure 0a.5.** Six robots on a path, from the six numbers of Figure 0a.2 as positions, at rest. With springs and
+# dampers the disagreement follows, in swings, a curve that falls at the rate 0.134; consensus falls at twice that rate.
+#
 # ## Barbalat
 #
 # LaSalle's theorem needs $\dot x = f(x)$ without explicit time. A flock that follows a moving target has a
@@ -342,7 +422,8 @@ assert np.ptp(expm(-6.0 * laplacians["path"]) @ start) > 0.3
 # - An energy that falls gives convergence by LaSalle only on a *compact* invariant set, and then to the largest
 #   invariant set on which it no longer falls, which need not be a point.
 # - With a moving target Barbalat's lemma takes LaSalle's place: it shows that what dissipates dies out.
-# - For flocks the hard part is compactness, that is cohesion.
+# - A proof for a flock has six steps: what is conserved, the frame, the energy, compactness, where nothing is lost,
+#   invariance. The hard one is compactness, that is cohesion.
 
 # %% [markdown] tags=["exercise"]
 # ## Exercises

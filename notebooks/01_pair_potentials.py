@@ -269,6 +269,8 @@ assert f"{(at / alpha.r_alpha - 0.2) / 0.8:.3f} {float(alpha.bump(at / alpha.r_a
 pair_force = [float(alpha.phi_alpha(alpha.sigma_norm(x))) * x / np.sqrt(1.0 + 0.1 * x**2) for x in (8.0, 6.0)]
 assert f"{float(alpha.phi_alpha(at)):.4f} {pair_force[0]:.3f} {pair_force[1]:.2f}" == "0.0747 0.220 -6.01"
 assert f"{-pair_force[1] / pair_force[0]:.0f}" == "27"
+assert f"{2.0 * np.sqrt(alpha.c_star - alpha.psi_alpha(alpha.r_alpha)):.1f}" == "14.4"
+assert abs(alpha.sigma_norm(4.3474) - 7.0) < 1e-4
 
 # %% [markdown]
 # ## Digits that disappear
@@ -306,10 +308,13 @@ print(f"as printed {(np.sqrt(1 + 0.1 * tiny**2) - 1) / 0.1:.3e},  as computed {a
 #
 # ## A collision in slow motion
 #
-# What happens when two agents do meet? The force is finite, so with enough speed they go through each other. Does
-# the law survive that? By the theorem it is once continuously differentiable in all positions, coincident ones too,
-# so a unique solution goes on. Shoot two agents at each other on a line, so fast that their energy exceeds the wall,
-# and twice more a little off the line:
+# What happens when two agents do meet? The force is finite, so with enough speed they go through each other. Does the
+# law survive that? By the theorem it is once continuously differentiable in all positions, coincident ones too, so a
+# unique solution goes on. Shoot two agents at each other on a line, and twice more a little off the line. How fast, so
+# that they get over the wall? In the frame of their middle each has half the relative speed, so a relative speed $v$ is
+# the kinetic energy $2\cdot\tfrac12(\tfrac12v)^2 = \tfrac14v^2$. From out of range, where the pair costs 0.74, they
+# reach the top of the wall if $\tfrac14v^2 + 0.74 > 52.4$, that is if $v > 14.4$. Each of ours has the speed 8, so $v =
+# 16$ and the energy is $64 + 0.7 = 64.7$:
 
 # %%
 meeting = {}
@@ -358,6 +363,11 @@ assert abs(aside[1] + 1.19) < 0.01
 # *Why is the force $\phi_\alpha n_{ij}$ and not $\psi_\alpha'$ along a unit vector?* It is the same kind of thing,
 # written in the σ-norm. The potential is a function of $\|q_j-q_i\|_\sigma$, and the chain rule brings the gradient of
 # the σ-norm with it, which is $n_{ij}$. Along the unit vector the force is $\phi_\alpha$ times the length of $n_{ij}$.
+#
+# *Why shift $\phi$ to $d_\alpha$, and not to $d$?* Because $\phi_\alpha$ takes σ-norms. With $\phi(z - d)$ the force
+# would vanish where the σ-norm of the distance is 7, that is at the distance $4.35$: agents would keep that. Whoever
+# programs the law from the paper should print the distance at which the force changes its sign; it is the quickest
+# test.
 #
 # *In which unit is a force measured here?* All agents have the mass 1, so a force is an acceleration, length/time$^2$,
 # and an energy is length$^2$/time$^2$. The gains of lecture 02 carry what is needed to make $\phi_\alpha

@@ -139,6 +139,8 @@ hexagon = fl.scenario("hexagon").run()
 print(fl.verify("os-1", hexagon))
 
 # %% tags=["facts"]
+assert f"{2.0 * rim:.2f} {alpha.c_star:.1f}" == "1.47 52.4"
+assert (13 * 12 // 2 - 1) * rim > alpha.c_star  # two at d, and eleven bystanders
 pairs = {n: n * (n - 1) // 2 for n in (7, 14, 15, 22, 23)}
 assert abs((pairs[7] - 16) * rim - 3.68) < 0.005
 assert abs((pairs[7] - 12) * rim - best[5]) < 1e-9
@@ -234,19 +236,22 @@ for order, share in ((doubled["blunt"], 1.5), (doubled["sharp"], 0.5)):
     assert abs((alpha.potential_energy(shifted) - alpha.potential_energy(q)) / by_hand - 1.0) < 1e-2
 
 # %% [markdown]
-# > **Theorem (a minimum refutes "almost every").** Let $q^*$ be a strict local minimum of $V$, up to motions of the
-# > whole, whose net is connected. Then the starts from which Algorithm 1 tends to copies of $q^*$ contain an open set.
+# > **Theorem (a minimum refutes "almost every").** Let $q^*$ be a critical point of $V$ with a connected net, at which
+# > $V$ has a positive curvature in every direction that is no motion of the whole. Then the starts from which
+# > Algorithm 1 tends to copies of $q^*$ contain an open set.
 #
 # *Proof.*
 #
 # 1. Work in the frame of the centre of mass, and with shapes instead of positions: all states that differ by a motion
-#    of the whole count as one. In this space $q^*$ is an isolated minimum of $V$.
+#    of the whole count as one. In this space $q^*$ is a strict minimum of $V$, and near it $\nabla V = 0$ at $q^*$
+#    only, because all curvatures are positive. (A strict minimum without that might have other critical points at any
+#    distance from it.)
 # 2. So on a small sphere about $(q^*, 0)$ the energy $V + K$ is at least $V(q^*) + e$ for some $e > 0$ (a continuous
 #    function has a least value on a compact set, and at $v = 0$ and $q = q^*$ only it is $V(q^*)$).
 # 3. All states inside this sphere with $V + K < V(q^*) + e$ form an open set. The energy does not rise, so solutions
 #    never cross the sphere.
 # 4. By LaSalle they tend to states with $v^\top\hat L v = 0$ for ever. The net is connected near $q^*$, so $v = 0$, so
-#    $\nabla V = 0$; inside a small enough sphere that holds at $q^*$ only. $\square$
+#    $\nabla V = 0$; inside a small enough sphere that holds at $q^*$ only, by 1. $\square$
 #
 # ## A statement that counts the wrong thing
 #
@@ -346,7 +351,8 @@ for sort in ("wrong", "incomplete", "vacuous", "confirmed"):
 #
 # What does this lecture **not** say? That agents of a flock of 23 collide: the theorem claims nothing about them, and
 # nothing is not "no". That Algorithm 1 is bad: the mended bound covers starts with some fifty units of energy above
-# rest. And that lattices are rare: from random starts most small flocks end in one.
+# rest. And how often a flock ends in a lattice: one minimum that is none says nothing about shares, and a share has to
+# be counted, over starts of a stated kind (lecture 10).
 #
 # Errata are no disgrace. Every source of this course is worth reading *because* its statements are sharp enough to
 # be wrong.

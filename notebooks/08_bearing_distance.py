@@ -121,8 +121,8 @@ for ax, case, t in zip(axes, ("zone-gap", "zone-gap", "zone-gap-buffer"), (4.0, 
     plots.snapshot(fl.scenario(case).run(), time=t, ax=ax, velocities=False)
 
 # %% [markdown]
-# **Figure 8.2.** Five agents before a gap (left) and in it (middle). With a buffer around the whole obstacle (dashed
-# circle) the same agents do not get through (right).
+# **Figure 8.2.** Five agents enter the gap between an obstacle and the wall (left, $t = 4$) and leave it (middle,
+# $t = 10$). With a buffer around the whole obstacle (dashed circle) the same agents turn back (right, $t = 10$).
 #
 # ## Two forms, and where they part
 #
@@ -267,9 +267,15 @@ lengths = np.linalg.norm(edge_vectors(rest, tree.law.edges), axis=1)
 print(f"edges {lengths.min():.3f} to {lengths.max():.3f} long, largest force {np.abs(force).max():.0e}")
 
 # %% [markdown]
-# $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge of length
-# $\|x\|$ contributes $s^2 + s + w$ with $w = w_0(1 - d/\|x\|)$ to the characteristic polynomial of $A_{cl}$
-# (erratum J2):
+# $x = 0$ is not even desirable: it means that all agents collide. Where did the proof go wrong? An edge whose parent
+# moves uniformly feels a spring and a damper,
+#
+# $$\ddot x = -w\,x - \dot x, \qquad w = w_0\Bigl(1 - \frac{d}{\|x\|}\Bigr) .$$
+#
+# If $w$ were a number, $x = e^{st}\nu$ would solve this for $s^2 + s + w = 0$. The printed proof does just that. It
+# writes all edges as $\dot z = A_{cl}\,z$, where the factors $w$ of the moment stand *in the matrix*, computes its
+# eigenvalues, and takes them for those of a linear system. But $w$ depends on $x$: it moves when the edge moves. Look
+# at what the frozen matrix says for three lengths (erratum J2):
 
 # %%
 for ratio in (2.0, 1.0, 0.5):
@@ -278,8 +284,10 @@ for ratio in (2.0, 1.0, 0.5):
 
 # %% [markdown]
 # Hurwitz where edges are too long, singular where they are right, unstable where they are too short. (The product of
-# the two roots is $w$ and their sum $-1$. So both are on the left exactly if $w > 0$.) And $A_{cl}$ depends on the
-# state: eigenvalues of a frozen matrix prove nothing about a trajectory.
+# the two roots is $w$ and their sum $-1$. So both are on the left exactly if $w > 0$.) The middle line is the oddest.
+# At the right length $w = 0$, so the frozen edge has no spring at all, though a real edge, stretched a little, is
+# pulled back: the frozen matrix is wrong even *at* the equilibrium, because freezing $w$ throws away how $w$ changes.
+# And $A_{cl}$ depends on the state: eigenvalues of a frozen matrix prove nothing about a trajectory.
 #
 # ## A swing that is pumped
 #

@@ -79,12 +79,13 @@ for N in (10, 60, 200):
 #    $\square$
 
 # %%
-figure, ax = plots.subplots(size=(7, 3.4))
-_ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60))), ax=ax)
+figure, axes = plots.subplots(1, 2, size=(10, 3.2))
+_ = figures.interval_tails(57, 60, tuple(map(float, fl.clopper_pearson(57, 60))), axes=axes)
 
 # %% [markdown]
-# **Figure 10.1.** 57 successes in 60 runs (dotted line). At the lower end, 0.861, so many or more have the probability
-# 2.5 % (hatched, right tail); at the upper end, 0.990, so few or fewer have it (dotted, left tail).
+# **Figure 10.1.** How many of 60 runs succeed, for the two ends of the interval of 57 successes. Left: with the
+# probability 0.861, the lower end, 57 or more (filled) come out in 2.5 % of all experiments. Right: with 0.990, the
+# upper end, 57 or fewer do.
 #
 # **By hand: 4 of 5.** The upper end has the tail "4 or fewer", which is everything but "all 5":
 # $1 - p^5 = 0.025$, so $p = 0.975^{1/5} = 0.995$. The lower end has the tail "4 or 5":
@@ -130,8 +131,38 @@ _ = ax.legend(loc="lower center")
 # $5/5 = 1\,\%$: the probability of a union is at most the sum of the probabilities, whether the claims depend on each
 # other or not. A student who looks at forty measures and reports the two that came out "significant" has found what
 # forty fair coins would give.
+#
+# **How many runs do I need?** Decide how wide the interval may be, and solve for $N$. In the middle, where successes
+# and failures are both frequent, the formula from school will do for planning; where all runs succeed, the end has a
+# closed form:
+#
+# $$\begin{aligned}
+# 1.96\sqrt{p(1-p)/N} &\le 0.98/\sqrt N && p(1-p) \le \tfrac14: \text{ half the width, in the middle} \\
+# 1 - 0.025^{1/N} &= 1 - e^{-(\ln 40)/N} \le (\ln 40)/N = 3.69/N && 1 - e^{-x} \le x: \text{ the whole width, if all
+#   succeed}
+# \end{aligned}$$
+#
+# | wanted | $N$ in the middle | $N$ if all succeed |
+# |---|---|---|
+# | to within 0.1 | 97 | 37 |
+# | to within 0.01 | 9 604 | 369 |
+# | to within 0.001 | 960 400 | 3 689 |
+#
+# *In the middle a further digit costs a hundred times the runs, at the edge ten times.* So a table of shares about one
+# half does not deserve three digits, whatever the computer prints, and a claim of "always" is cheaper to support than a
+# claim of "in 50 %". To support "at most one failure in a million starts" takes 3.7 million runs without a failure. For
+# claims of that kind one has to search, or to prove.
 
 # %% tags=["facts"]
+needed = [
+    [int(np.ceil((0.98 / width) ** 2 - 1e-9)), int(np.ceil(np.log(40.0) / width))] for width in (0.1, 0.01, 0.001)
+]
+assert needed == [[97, 37], [9604, 369], [960400, 3689]]
+assert all(
+    1.0 - float(fl.clopper_pearson(each[1], each[1])[0]) <= w
+    for each, w in zip(needed, (0.1, 0.01, 0.001), strict=True)
+)
+assert f"{np.log(40.0):.2f}" == "3.69"
 assert [f"{float(end):.3f}" for end in fl.clopper_pearson(57, 60)] == ["0.861", "0.990"]
 assert abs(float(fl.clopper_pearson(60, 60)[0]) - 0.025 ** (1 / 60)) < 1e-9
 assert [f"{float(end):.3f}" for end in fl.clopper_pearson(4, 5)] == ["0.284", "0.995"]
@@ -320,6 +351,9 @@ print(fl.replay(path))
 #
 # *If the interval is cautious, may I take a smaller one?* There are smaller ones, with a coverage of 95 % on average
 # over the true values instead of for each of them. Say which you use; for safety take the cautious one.
+#
+# *Which seeds shall I take?* 0 to 59 are as good as any, if they are chosen before the first run. Whoever tries seeds
+# until a nice picture comes out has searched, not sampled, and must report it as a search.
 #
 # *My 60 runs took a week. May I count each sample of a run?* No. Samples of one run depend on each other; a run is one
 # toss.

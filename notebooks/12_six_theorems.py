@@ -60,6 +60,21 @@ print(f"{len(q)} agents, position diameter {fl.diameter(q):.3g}, velocity diamet
 # %% [markdown]
 # **Figure 12.1.** The start: ten agents, links of nearly equal length, headings about one direction.
 #
+# Ten laws will move it. They differ in three things: which force two agents exert, how they compare velocities, and
+# whom an agent perceives.
+#
+# | law | force of a pair | velocities | whom an agent perceives |
+# |---|---|---|---|
+# | Algorithm 1 | $\phi_\alpha n_{ij}$, bounded | friction that fades at the range | all within $r$ |
+# | Algorithm 2; few informed | the same | the same, and to the target | within $r$; all, or three, the target |
+# | dead zone | none between $d_1$ and $d_2$ | constant friction | all within its range |
+# | Cucker and Smale; Ha and Liu | none | a weight that falls with distance, slowly or fast | everybody |
+# | Tanner, fixed; switching | infinite at contact, none at $d$ | constant friction | links of the start; within $r$ |
+# | links kept | $\psi = x^2/(r-x)$, infinite at the range | constant friction | links of the start |
+# | averaged headings | none | the mean of the headings | all within $r$ |
+#
+# Before you read on, guess: which of them will keep these ten together, and which of them *promise* to?
+#
 # ## What is promised
 #
 # Two kinds of promise. Some say what an **energy** does: it falls, so that velocities agree, *if* something keeps the
@@ -133,6 +148,23 @@ for outcome in outcomes:
 # that $\psi > H(0)$ on $(x_0, r)$. A link is shorter than $x_0$ at the start or has $\psi \le H(0)$ there, so it is not
 # in this interval; its length is continuous in time, and to reach $r$ it would have to pass through. $\square$
 #
+# **Two hypotheses with numbers.** Whether a theorem speaks of a start is often one inequality. Do two of them for the
+# start of Figure 12.1.
+#
+# *Ha and Liu.* Their weight is $4/(1 + x^2/r^2)$ with $r = 8.4$, divided by $n$. With the sizes of lecture 11 the start
+# has $y = 26.0$ in space and $z = 1.12$ in velocities, and the theorem asks for
+#
+# $$z < \int_y^\infty\frac{4\,dx}{1 + (2x/r)^2} = 2r\Bigl(\frac{\pi}{2} - \arctan\frac{2y}{r}\Bigr) = 2.69 .$$
+#
+# The hypothesis is met. With the same places and all velocities multiplied by 2.42 it would not be, and the theorem
+# would fall silent, although nothing visible changes at that number.
+#
+# *Links kept.* The start has 19 links, the longest of them 8.236 long: very near the range. Its tension alone costs
+# $8.236^2/(8.4 - 8.236) = 414$; all links and the kinetic energy, $10\cdot\tfrac12 = 5$, make $H(0) = 1356$. A single
+# link that cost as much would have $x^2/(8.4 - x) = 1356$, that is $x = 8.349$. So no link will ever be longer than
+# that, at any time. Had this pair been two tenths of a length farther apart at the start, it would have been no link,
+# and nothing would hold it.
+#
 # Note what it does *not* say. Nothing keeps agents apart: in Figure 12.2 the unbounded tensions draw the whole flock
 # into one place. A theorem on cohesion may cost you the one on collisions.
 #
@@ -204,6 +236,14 @@ print(f"spread after 12 steps: {np.ptp(heading):.4f}")
 # %% tags=["facts"]
 assert abs(np.ptp(heading) - 0.425 / 2.0**10) < 1e-12
 assert next(each for each in outcomes if each.entry.theorem == "links-kept").position_share < 1e-6
+sizes = [np.linalg.norm(each - each.mean(axis=0)) for each in (q, p)]
+room = 2.0 * 8.4 * (np.pi / 2.0 - np.arctan(2.0 * sizes[0] / 8.4))
+assert f"{sizes[0]:.1f} {sizes[1]:.2f} {room:.2f} {room / sizes[1]:.2f}" == "26.0 1.12 2.69 2.42"
+long = np.linalg.norm(np.diff(q[fl.links(q, 8.4)], axis=1)[:, 0], axis=1)
+H0 = (long**2 / (8.4 - long)).sum() + 5.0
+assert f"{len(long)} {long.max():.3f} {long.max() ** 2 / (8.4 - long.max()):.0f} {H0:.0f}" == "19 8.236 414 1356"
+assert f"{0.5 * (np.sqrt(H0**2 + 4.0 * 8.4 * H0) - H0):.3f}" == "8.349"
+assert np.linalg.norm(p, axis=1).max() < 1.0 + 1e-12
 assert abs(heading.mean() - 1.3 / 3.0) < 1e-12
 assert len(fl.joint_windows(3, [np.array([pair]) for pair in ((0, 1), (1, 2)) * 6])) == 6
 assert not any(np.linalg.eigvalsh(net)[1] > 1e-9 for net in turns)  # no single net is connected

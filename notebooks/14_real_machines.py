@@ -139,6 +139,16 @@ _ = ax.legend()
 # pumps energy, because it pulls on a position that is old. For the centre they are 0.953 and 3.81. For a pair they
 # are 0.51 and 0.0176: **the pair asks for a sample rate fifty times that of the centre.**
 #
+# *By hand, beyond the bound.* Sample the centre once in a time unit, $\Delta t = 1 > 0.953$. Then $\operatorname{tr} =
+# 2 - 2.098 - 0.55 = -0.648$ and $\det = 1 - 2.098 + 0.55 = -0.548$, and $z^2 + 0.648z - 0.548 = 0$ has the roots
+# $0.484$ and $-1.132$. The second one is outside the circle, and it is *negative*: in each sample the error changes its
+# sign and grows by 13 %. That is how too much friction looks: the agent is braked for so long that it comes back,
+# harder. Over forty samples the factor is 140. At $\Delta t = 0.9$ the roots are $0.519$ and $-0.852$: it still flips
+# at each sample, and dies out. A spring that pumps looks different. For the pair at $\Delta t = 0.03$ the trace is
+# $1.681$ and the determinant $1.083$, so the roots are complex, of modulus $\sqrt{1.083} = 1.041$: a swing that grows
+# by 4 % in each sample. *Look at the log: an error that flips at each sample calls for less friction, a swing that
+# grows for a softer spring, and both for a faster clock.*
+#
 # Notice that *different* bounds decide. The centre is limited by its friction: it would bear a stiffer spring. The pair
 # is limited by its spring: it would bear more friction. Only $c_2^\gamma\Delta t$ and $c_1^\gamma\Delta t^2$ enter,
 # both without a unit, so one picture holds all agents and all periods:
@@ -181,6 +191,19 @@ assert abs(held.q[-1, 0, 0]) > 1.0
 assert abs(weak.q[-1, 0, 0]) < 1e-6
 assert [f"{2.0 / c2:.3f}", f"{2.0 * c2 / c1:.2f}", f"{2.0 / 3.9277:.2f}"] == ["0.953", "3.81", "0.51"]
 assert drift > 1e-3
+
+
+def multipliers(spring, brake, period):
+    trace, det = 2.0 - brake * period - 0.5 * spring * period**2, 1.0 - brake * period + 0.5 * spring * period**2
+    return trace, det, np.roots([1.0, -trace, det])
+
+
+trace, det, roots = multipliers(c1, c2, 1.0)
+assert f"{trace:.3f} {det:.3f} {max(roots):.3f} {min(roots):.3f}" == "-0.648 -0.548 0.484 -1.132"
+assert f"{min(roots) ** 40:.0f}" == "140"
+assert [f"{each:.3f}" for each in sorted(multipliers(c1, c2, 0.9)[2])] == ["-0.852", "0.519"]
+trace, det, roots = multipliers(446.6, 3.9275, 0.03)
+assert f"{trace:.3f} {det:.3f} {abs(roots[0]):.3f}" == "1.681 1.083 1.041"
 
 # %% [markdown]
 # ## Delay
@@ -361,6 +384,11 @@ assert pushed["late: neighbours"] > 1e-4
 #
 # *Why does friction, which calms things, make a late flock unstable?* It acts against a velocity that the agent no
 # longer has. If that is long enough ago, it acts along the present velocity, and drives.
+#
+# *In which order should I put the four into a simulation?* One at a time, and each first for one agent, for which this
+# lecture has the answer: a simulation that does not reproduce it has an error. Then each alone for the flock. Then two
+# at a time, sampling and delay first, because their ages add up. A film with all four in it shows that something
+# shakes, and never what.
 #
 # *Can one not undo a delay by prediction?* In part, if one knows the law and the neighbours obey it. Then the
 # prediction's error takes the place of the delay.

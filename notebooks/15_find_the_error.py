@@ -205,6 +205,88 @@ assert [f"{100.0 * fitted[error][2]:.0f}" for error in ("unit vector", "no weigh
 # time. For the unit vector the residual grows with the force: the error is in the force. Without the weight there is
 # no such line: the error is elsewhere, in the other term.
 #
+# ## A curve instead of a number
+#
+# The residual says *where* the error is. Can the data also say what the program has *instead*? A gain is one number for
+# all distances. Ask for more: let the friction of a pair have an unknown weight that depends on the distance, one
+# number for each of eight intervals of distances. The inputs are linear in these eight numbers, so the same least
+# squares finds them. Nothing of the law's formula for the weight goes in:
+
+# %%
+from itertools import pairwise
+
+
+def weights(error, groups=8):
+    """Mean distance and weight in each interval of distances, read off a log."""
+    t, q, p = (each[:-1] for each in logs[error])
+    u = np.diff(logs[error][2], axis=0) / (t[1] - t[0])
+    lengths = np.linalg.norm(q[:, None] - q[:, :, None], axis=3)
+    slips = p[:, None] - p[:, :, None]  # p_j - p_i
+    linked = lengths[(lengths > 0.0) & (lengths < alpha.r)]
+    edges = np.linspace(linked.min(), linked.max() + 1e-9, groups + 1)
+    inside = [(lengths >= low) & (lengths < high) for low, high in pairwise(edges)]
+    columns = np.column_stack([np.einsum("tij,tijk->tik", each, slips).ravel() for each in inside])
+    found, *_ = np.linalg.lstsq(columns, (u - c1 * terms(q, p)[0]).ravel(), rcond=None)
+    share = np.sum(slips**2, axis=3)  # what a pair counts in the fit
+    return np.array([np.average(lengths[each], weights=share[each]) for each in inside]), found / c2
+
+
+figure, ax = plots.subplots(size=(6.5, 3.2))
+for error, marker in (("none", "o"), ("no weight", "s")):
+    ax.plot(*weights(error), marker, linestyle="none", label=f"from the log of '{error}'")
+x = np.linspace(6.0, 8.6, 200)
+ax.plot(x, alpha.bump(alpha.sigma_norm(x) / alpha.r_alpha), color="black", linestyle="-", label="the law's weight")
+ax.set(xlabel="distance of the pair (length)", ylabel="weight of the friction", ylim=(-0.1, 1.2))
+_ = ax.legend()
+
+# %% tags=["facts"]
+middle, read = weights("none")
+assert np.abs(read - alpha.bump(alpha.sigma_norm(middle) / alpha.r_alpha)).max() < 0.01
+assert np.abs(weights("no weight")[1] - 1.0).max() < 1e-6
+
+# %% [markdown]
+# **Figure 15.3.** The weight of the friction, read off two logs by intervals of distances. The right program has the
+# bump of the law; the other has 1 at all distances. It is no longer a guess which line of the program is wrong.
+#
+# So are the laws of starlings and of fish read off films. One pays for a curve with variance: each number rests on the
+# pairs of one interval, the outer ones on very few. And of distances at which no pair has been, from 7.5 to the range
+# here, one learns nothing.
+#
+# ## How sure is a gain?
+#
+# Let the accelerations have independent errors of standard deviation $e$, and let for a moment only $c_1$ be unknown.
+#
+# $$\begin{aligned}
+# \frac{\langle f, u\rangle}{\|f\|^2} &= \frac{\langle f, c_1f + \text{errors}\rangle}{\|f\|^2}
+#   = c_1 + \frac{\langle f, \text{errors}\rangle}{\|f\|^2} && \text{the fitted gain} \\
+# \text{its variance} &= \frac{\sum f_k^2\,e^2}{\|f\|^4} = \frac{e^2}{\|f\|^2} && \text{independent errors}
+# \end{aligned}$$
+#
+# So *a gain is known to $e/\|f\|$*. It gets better with the root of the number of samples, and in proportion to the
+# size of the term. (For two gains the variances are $e^2$ times the diagonal of the inverse of the normal matrix, by
+# the same two lines.) Take 50 samples at the start of the right program's log, and 50 at its end, when the flock has
+# calmed down, and add errors with $e = 1$, four hundred times over:
+
+# %%
+t, q, p = logs["none"]
+u = np.diff(p, axis=0) / (t[1] - t[0])
+f, g = terms(q[:-1], p[:-1])
+generator, sure = np.random.default_rng(2), {}
+for name, part in (("first", slice(0, 50)), ("last", slice(149, 199))):
+    columns = np.column_stack([f[part].ravel(), g[part].ravel()])
+    stated = np.sqrt(np.diag(np.linalg.inv(columns.T @ columns)))
+    noisy = u[part].ravel()[:, None] + generator.standard_normal((len(columns), 400))
+    scatter = np.linalg.lstsq(columns, noisy, rcond=None)[0].std(axis=1)
+    sure[name] = stated, scatter
+    print(f"{name:>5} samples: c1 known to {scatter[0]:.3f}, c2 to {scatter[1]:.3f}; by the formula {stated.round(3)}")
+
+# %% tags=["facts"]
+assert all(np.abs(scatter / stated - 1.0).max() < 0.15 for stated, scatter in sure.values())
+assert np.all(sure["last"][0] > 2.0 * sure["first"][0])
+
+# %% [markdown]
+# The same number of samples is worth less when the flock has calmed down, because there is less of $f$ and $g$ in them.
+#
 # ## The same with the library
 #
 # `fl.Recording` takes a log with the accuracy of its numbers, `fl.compare` does what we did, for more laws, more
@@ -279,6 +361,7 @@ print(f"by hand {(12.0 * np.sqrt(6.0) * e / np.sqrt(np.mean(fourth**2))) ** 0.25
 
 # %% tags=["facts"]
 assert 0.015 < strides[np.argmin(found["noisy positions"])] * 5e-4 < 0.03
+assert f"{0.01 / (np.sqrt(2.0) * 0.005):.1f} {np.sqrt(6.0) * 0.01 / 0.005**2:.0f}" == "1.4 980"
 assert 0.02 < (12.0 * np.sqrt(6.0) * e / np.sqrt(np.mean(fourth**2))) ** 0.25 < 0.025
 matrix, right_side = np.array([[5.0, 2.0], [2.0, 2.0]]), np.array([[11.0, 11.0], [2.0, 5.0]])
 assert np.allclose(np.linalg.solve(matrix, right_side), [[3.0, 2.0], [-2.0, 0.5]])
@@ -291,7 +374,7 @@ assert [f"{each:.3f}" for each in np.sqrt(1 + 0.1 * lengths**2) / lengths] == ["
 assert [f"{each:.2f}" for each in np.sqrt(1 + 0.1 * lengths**2)] == ["2.14", "2.57", "2.72"]
 
 # %% [markdown]
-# **Figure 15.3.** Errors of accelerations from second differences, over the step. Left of the best step the noise
+# **Figure 15.4.** Errors of accelerations from second differences, over the step. Left of the best step the noise
 # decides, right of it the formula. No step is good: at best the error is 0.7.
 #
 # Better than differences is to smooth, or to compare not accelerations but whole solutions: start at a sample, let the
@@ -353,6 +436,16 @@ assert abs(np.std(twice - true) / (np.sqrt(6.0) * 1e-3 / 0.005**2) - 1.0) < 0.1
 #
 # *Can two errors cancel?* In one recording, yes: a force that is too weak and a friction that is too strong may give
 # nearly the same motion. Record another start; errors that cancel for one rarely do so for the next.
+#
+# *My log has positions only. Where do I get velocities for the friction?* From central differences,
+# $(q(t+\Delta t) - q(t-\Delta t))/(2\Delta t)$. They belong to the time $t$, as the second differences do. One-sided
+# differences belong to half a step earlier or later, and a fit with them finds gains that are a little off. Noise is
+# milder here than in accelerations: the standard deviation is $e/(\sqrt2\,\Delta t)$, with $e = 0.01$ and
+# $\Delta t = 0.005$ that is 1.4, instead of a thousand.
+#
+# *The program cuts forces off at a limit. Would I see it?* Yes, if the recording reaches the limit. In a plot like
+# Figure 15.2 the residual along the force is 0 up to some size, and from there on it falls along a straight line of
+# slope $-c_1$. The corner is the limit.
 #
 # *How many agents and samples do I need?* Two gains need two independent numbers. All others serve to see whether the
 # form is right, and to average noise. The seven agents of this lecture give 2 786 numbers for two gains.

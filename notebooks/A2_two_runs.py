@@ -19,7 +19,7 @@
 # A student notebook (`fl.cite(fl.scenario("notebook-algorithm1"))`) animates two runs. The first is Algorithm 1 with
 # unit gains, $d = 1.9$, $r = 2.8$, $\varepsilon = 0.1$, $h = 0.4$, $a = 7$, $b = 9$, 27 agents in a box of 13 for 5
 # time units. The second is Algorithm 2 with $d = 1.7$, $r = 2.5$, $\varepsilon = 0.01$, $h = 0.2$, $a = 7$, $b = 15$,
-# $c_1^\gamma = 0$, $c_2^\gamma = 0.5$, 35 agents for 15 time units; its γ-agent stays at $(5, 5)$ and tells the
+# $c_1^\gamma = 0$, $c_2^\gamma = 0.5$, 35 agents for 15 time units; its γ-agent stays at $(5, 5)$ and reports the
 # velocity $(0.7, 0.1)$. The scenarios `notebook-algorithm1` and `notebook-algorithm2` hold them as continuous systems,
 # `notebook-algorithm1-map` and `notebook-algorithm2-map` as the notebook steps them.
 #
@@ -145,7 +145,7 @@ grade(share, 1.0, hint="add up the inputs of all agents")
 # ## The second run
 #
 # **6.** ★★ (2 points, derivation) In the second run the mean velocity $p_c$ obeys a linear equation. After what time is
-# its distance from the velocity that the γ-agent tells a thousandth of what it was at the start? (Four significant
+# its distance from the velocity that the γ-agent reports a thousandth of what it was at the start? (Four significant
 # digits.)
 
 # %% tags=["answer"]
@@ -166,7 +166,7 @@ grade(wait, 13.8155106, digits=4, hint="c1γ = 0: what is left of the equation o
 # *Your answer:*
 
 # %% [markdown] tags=["solution"]
-# The agents take on the velocity (0.7, 0.1) which the γ-agent tells, and so move past the point (5, 5) and away from
+# The agents take on the velocity (0.7, 0.1) which the γ-agent reports, and so move past the point (5, 5) and away from
 # it for ever. Responsible is c1 gamma = 0: the position of the γ-agent does not occur in the law. The energy of the
 # shape, without the pull, falls by the velocity consensus and by the velocity feedback, both of which need no pull;
 # but then it does not bound the size of the group, which splits.
@@ -176,7 +176,7 @@ grade(wait, 13.8155106, digits=4, hint="c1γ = 0: what is left of the equation o
 
 # %% [markdown] tags=["exercise"]
 # **8.** ★★ (2 points, derivation) Let $c_1^\gamma = c_2^\gamma = 0.5$ instead. At which $x$ does the centre of mass
-# come to rest, exactly? (The γ-agent still stays at $(5, 5)$ and tells $(0.7, 0.1)$.)
+# come to rest, exactly? (The γ-agent still stays at $(5, 5)$ and reports $(0.7, 0.1)$.)
 
 # %% tags=["answer"]
 rest = ...

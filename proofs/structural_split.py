@@ -26,7 +26,7 @@ def _exact() -> Iterator[Step]:
         split = derive_split(m)
         yield Step(
             f"m = {m}: forces between agents drop out of the mean, depend on differences only, and are -∇V - c2α L̂v; "
-            "the own force less that of the centre is linear in x_i and v_i alone",
+            "the feedback on an agent minus that on the centre is linear in x_i and v_i alone",
             split.holds,
             split.latex(),
             f"{len(split.residuals)} equations between components, for a generic pair and a generic agent",

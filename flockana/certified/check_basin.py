@@ -100,7 +100,7 @@ def _check_bounds(
     ensure(round_down_float(data["surplus"], min(moments)), "the surplus is not that of the shells")
     curvature, surplus = Fraction(data["curvature"]), Fraction(data["surplus"])
     ensure(curvature > 0 and level > 0, "the potential does not rise")
-    yield "U rises by the level at least on the way out, and the orbit holds all equilibria within"
+    yield "U at the boundary of the ball exceeds its minimum by the level; all equilibria in the ball are on the orbit"
     away = ball(radius * ROOT_TWO)
     second, degree = Fraction(data["second_eigenvalue"]), Fraction(data["degree"])
     weak = {pair: net.weight(length + away).lower() for pair, length in lengths.items()}

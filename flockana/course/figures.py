@@ -120,7 +120,7 @@ def target_pull(*, ax: Any = None) -> Any:
         _arrow(ax, each, each + 0.3 * (target - each), BLUE, "-")
     ax.scatter(*q.T, s=36, color=INK, zorder=3)
     ax.plot(*q.mean(axis=0), "x", color=VERMILLION, markersize=9, markeredgewidth=2.2, zorder=4)
-    ax.annotate("$q_c$", q.mean(axis=0), (-18, -10), textcoords="offset points", color=VERMILLION)
+    ax.annotate("$q_c$", q.mean(axis=0), (-6, 8), textcoords="offset points", color=VERMILLION)
     ax.plot(*target, "^", color=GREEN, markersize=11, zorder=4)
     _arrow(ax, target, target + velocity, GREEN, "-")
     ax.annotate("γ-agent $q_r$", target, (-10, -18), textcoords="offset points", color=GREEN)
@@ -159,7 +159,7 @@ def _agent_and_image(ax: Any, q: Any, p: Any, image: Any, image_p: Any) -> None:
     ax.plot(*q, "o", color=BLUE, markersize=7)
     ax.plot(*image, "D", color=VERMILLION, markersize=6)
     ax.annotate("$q_i$", q, (6, 3), textcoords="offset points", color=BLUE)
-    ax.annotate("$p_i$", q + p, (-4, 6), textcoords="offset points", color=BLUE)
+    ax.annotate("$p_i$", q + p, (6, -4) if p[0] > 0.0 else (-14, 4), textcoords="offset points", color=BLUE)
     ax.annotate("$\\hat q_{ik}$", image, (-4, -16), textcoords="offset points", color=VERMILLION)
     ax.annotate("$\\hat p_{ik}$", image + image_p, (4, 4), textcoords="offset points", color=VERMILLION)
 
@@ -183,20 +183,30 @@ def zones(radii: Mapping[str, float], *, ax: Any = None) -> Any:
 
 def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
     """Draw undamped motions of a pair: one below, one on and one above the energy at which it leaves the range."""
+    from scipy.optimize import brentq
+
     ax = ensure_axes(ax)
-    x = np.linspace(0.9 * interaction.d, 1.3 * interaction.r, 900)
-    psi = interaction.psi_alpha(interaction.sigma_norm(x))
     rim = float(interaction.psi_alpha(interaction.r_alpha))
+
+    def above(x: Any, energy: float) -> Any:
+        return interaction.psi_alpha(interaction.sigma_norm(x)) - energy
+
     looks = (
         (0.5, BLUE, "-", "0.5 of the rim: it swings"),
         (1.0, INK, "--", "the rim: separatrix"),
-        (1.6, VERMILLION, "-.", "1.6 of it: it leaves"),
+        (1.6, VERMILLION, "-.", "1.6 of the rim: it leaves"),
     )
     for share, colour, dash, name in looks:
-        rate = 2.0 * np.sqrt(np.clip(share * rim - psi, 0.0, None))
-        inside = share * rim >= psi - 1e-12
-        for sign, label in ((1.0, name), (-1.0, None)):
-            ax.plot(x[inside], sign * rate[inside], color=colour, linestyle=dash, label=label)
+        nearest = brentq(above, 0.5 * interaction.d, interaction.d, args=(share * rim,), xtol=1e-13)
+        swings = share < 1.0  # else it ends at the range, or leaves
+        end = brentq(above, interaction.d, interaction.r, args=(share * rim,), xtol=1e-13) if swings else interaction.r
+        end = 1.3 * end if share > 1.0 else end
+        x = nearest + (end - nearest) * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 400)))  # dense where it turns
+        rate = 2.0 * np.sqrt(np.clip(-above(x, share * rim), 0.0, None))
+        ax.plot([*x[::-1], *x], [*-rate[::-1], *rate], color=colour, linestyle=dash, label=name)
+        middle = int(np.argmax(rate))
+        _arrow(ax, (x[middle], rate[middle]), (x[middle + 4], rate[middle + 4]), colour, "-")
+        _arrow(ax, (x[middle], -rate[middle]), (x[middle - 4], -rate[middle - 4]), colour, "-")
     ax.axvline(interaction.r, color=MUTED, linestyle=":", linewidth=1.0)
     ax.annotate("r", (interaction.r, ax.get_ylim()[0]), (3, 4), textcoords="offset points", color=MUTED)
     ax.plot([interaction.d], [0.0], "o", color=INK, markersize=4)
@@ -217,7 +227,7 @@ def orbit_ball_level(*, ax: Any = None) -> Any:
     angle = 0.6 + 0.9 * (1.0 - np.exp(-3.0 * t))
     ax.plot((1.0 + away) * np.cos(angle), (1.0 + away) * np.sin(angle), color=INK, linestyle="-", label="a solution")
     ax.annotate("", (1.0 + thick, 0.0), (1.0, 0.0), arrowprops={"arrowstyle": "<->", "color": INK})
-    ax.annotate("$\\xi_0$", (1.0 + 0.5 * thick, 0.0), (-5, 5), textcoords="offset points")
+    ax.annotate("$\\xi_0$", (1.0 + thick, 0.0), (4, -4), textcoords="offset points")
     ax.set(xlim=(-1.6, 1.9), ylim=(-1.6, 1.6))
     return finish(ax)
 
@@ -228,7 +238,7 @@ def equilibria(*, axes: Any) -> Any:
     X, Y = np.meshgrid(x, x)
     kinds = {
         "minimum: eigenvalues 2, 3": (2.0, 3.0),
-        "saddle: eigenvalues 2, -1": (2.0, -1.0),
+        "saddle: eigenvalues 2, −1": (2.0, -1.0),
         "degenerate: eigenvalues 2, 0": (2.0, 0.0),
     }
     for ax, (name, (a, b)) in zip(axes, kinds.items(), strict=True):
@@ -247,10 +257,10 @@ def equilibria(*, axes: Any) -> Any:
 def held_at_a_jump(repulsion: float = 1.0, pull: float = 0.4, k2: float = 0.12, *, axes: Any) -> Any:
     """Draw a force that jumps, with Filippov's values at the jump, and a damped motion in the phase plane."""
     force, plane = axes
-    for ends, value, name in (((-1.0, 0.0), repulsion, "repulsion"), ((0.0, 1.0), -pull, "pull")):
+    for ends, value, name, below in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
         force.plot(ends, (value, value), color=BLUE, linestyle="-")
         force.plot(0.0, value, "o", color=BLUE, markerfacecolor="white", markersize=5, zorder=3)
-        force.annotate(name, (ends[0] + 0.25, value), (0, -12), textcoords="offset points", fontsize=8)
+        force.annotate(name, (ends[0] + 0.25, value), (0, below), textcoords="offset points", fontsize=8)
     force.plot((0.0, 0.0), (-pull, repulsion), color=VERMILLION, linestyle="--", label="Filippov: any of these")
     force.plot(0.0, 0.0, "o", color=VERMILLION, label="held: the force 0")
     y, rate, path = 0.0, 0.9, []
@@ -280,22 +290,23 @@ def crossing_links(*, ax: Any = None) -> Any:
     return ax
 
 
-def interval_tails(k: int, runs: int, interval: tuple[float, float], *, ax: Any = None) -> Any:
-    """Draw the number of successes at both ends of the Clopper-Pearson interval, with the tails of 2.5 % filled."""
+def interval_tails(k: int, runs: int, interval: tuple[float, float], *, axes: Any) -> Any:
+    """Draw the numbers of successes at both ends of the Clopper-Pearson interval on two axes, the tails filled."""
     from scipy.stats import binom
 
-    ax = ensure_axes(ax)
     counts = np.arange(runs + 1)
-    for p, colour, tail, hatch in (
-        (interval[0], BLUE, counts >= k, "//"),
-        (interval[1], VERMILLION, counts <= k, ".."),
+    for ax, p, tail, words, colour in zip(
+        axes, interval, (counts >= k, counts <= k), ("or more", "or fewer"), (BLUE, VERMILLION), strict=True
     ):
         mass = binom.pmf(counts, runs, p)
-        ax.bar(counts, mass, color="none", edgecolor=colour, width=0.8, label=f"success with probability {p:.3f}")
-        ax.bar(counts[tail], mass[tail], color=colour, edgecolor=INK, hatch=hatch, width=0.8)
-    ax.set_xlim(max(-1, k - 0.4 * runs), min(runs, k + 0.4 * runs) + 1)
-    ax.axvline(k, color=INK, linestyle=":", linewidth=1.4)
-    return finish(ax, f"successes in {runs} runs", "probability")
+        ax.bar(counts, mass, color="none", edgecolor=colour, width=0.8)
+        ax.bar(counts[tail], mass[tail], color=colour, edgecolor=INK, hatch="//", width=0.8)
+        said = f"filled: {k} {words}, {mass[tail].sum():.1%}"
+        ax.text(0.03, 0.9, said, transform=ax.transAxes, fontsize=8, color=INK)
+        ax.set_xlim(max(-1, k - 0.3 * runs), min(runs, k + 0.3 * runs) + 1)
+        write_title(ax, f"success with probability {p:.3f}")
+        finish(ax, f"successes in {runs} runs", "probability")
+    return axes
 
 
 def _arrow(ax: Any, start: Any, end: Any, colour: str, dash: str, *, width: float = 1.4) -> None:

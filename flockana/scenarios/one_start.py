@@ -128,7 +128,8 @@ ENTRIES: tuple[LawEntry, ...] = (
         "Dead zone",
         lambda q, p: DeadZoneFlocking(),
         "dead-zone-1-corrected",
-        "the saturated energy falls; velocities agree within each component; distances keep above an explicit bound",
+        "the saturated energy falls and distances stay above an explicit bound; that velocities agree within each "
+        "component is measured, not proved",
     ),
     LawEntry(
         "Cucker and Smale",

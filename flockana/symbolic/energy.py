@@ -232,7 +232,7 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
         Step("the sigma-distance of a pair:", sigma_distance(X, m)),
         *steps,
         Step(
-            r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; its own force less the centre's is",
+            r"One generic agent: $q_i = q_c + x_i$, $p_i = p_c + v_i$; the feedback on it minus that on the centre is",
             own,
         ),
         Step(r"and with $\lambda J + K$ it contributes", agent),

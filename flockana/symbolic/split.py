@@ -66,12 +66,12 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
             translational,
         ),
         Step(
-            r"Forces between agents depend on differences only: $f_{ij}(q, p) = f_{ij}(x, v)$;",
+            r"Forces between agents depend on differences only: $f_{ij}(q, p) = f_{ij}(x, v)$.",
             sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i))),
         ),
         Step(
-            r"the own force less that of the centre is free of $q_c, p_c, q_r, p_r$, and linear, so that "
-            r"the centre's is its mean ($\sum_i x_i = \sum_i v_i = 0$):",
+            r"The feedback on agent $i$ minus that on the centre contains none of $q_c, p_c, q_r, p_r$. It is linear, "
+            r"and $\sum_i x_i = \sum_i v_i = 0$, so its mean over the agents is 0:",
             own,
         ),
         Step(

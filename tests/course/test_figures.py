@@ -42,10 +42,15 @@ def test_the_norms_and_bumps_are_the_librarys():
 
 
 def test_three_orbits_keep_their_energies():
-    for share, curve in zip((0.5, 0.5, 1.0, 1.0, 1.6, 1.6), figures.three_orbits(ALPHA).lines, strict=False):
-        y, rate = np.asarray(curve.get_xydata(), float).T
+    curves = [np.asarray(line.get_xydata(), float).T for line in figures.three_orbits(ALPHA).lines[:3]]
+    for share, (y, rate) in zip((0.5, 1.0, 1.6), curves, strict=True):
         energy = ALPHA.psi_alpha(ALPHA.sigma_norm(y)) + rate**2 / 4.0
         assert np.allclose(energy, share * ALPHA.psi_alpha(ALPHA.r_alpha), rtol=1e-9)
+        assert abs(rate[len(rate) // 2]) < 1e-4  # it turns where it is nearest
+    (swinging, stays), (edge, _), (leaving, goes) = curves
+    assert stays[0] == stays[-1] == 0.0  # closed
+    assert swinging.max() < ALPHA.r == edge.max() < leaving.max()
+    assert goes[-1] > 1.0
 
 
 def test_two_links_of_length_1_cross_and_two_ends_are_near():
@@ -68,9 +73,11 @@ def test_the_velocity_of_a_beta_agent_is_the_projection():
 
 def test_the_tails_of_an_interval_are_two_and_a_half_per_cent():
     ends = tuple(map(float, fl.clopper_pearson(57, 60)))
-    bars = figures.interval_tails(57, 60, ends).containers
-    for drawn in (bars[1], bars[3]):
-        assert sum(bar.get_height() for bar in drawn) == pytest.approx(0.025, rel=1e-6)
+    for ax in figures.interval_tails(57, 60, ends, axes=subplots(1, 2)[1]):
+        whole, tail = ax.containers
+        assert sum(bar.get_height() for bar in whole) == pytest.approx(1.0, rel=1e-9)
+        assert sum(bar.get_height() for bar in tail) == pytest.approx(0.025, rel=1e-6)
+        assert "2.5%" in ax.texts[0].get_text()
 
 
 def test_a_held_pair_turns_about_the_jump_and_dies_out():
@@ -90,15 +97,48 @@ def test_zones_are_nested_and_named_once():
     assert sorted(text.get_text() for text in ax.texts) == ["far = 3", "middle = 2", "near = 1"]
 
 
-@pytest.mark.parametrize("draw", [figures.orbit_ball_level, figures.target_pull, figures.wall_and_well])
-def test_other_figures_draw_something(draw):
-    ax = draw(ALPHA) if draw is figures.wall_and_well else draw()
-    assert ax.lines or ax.collections
+def arrows(ax):
+    """Return tail and head of each arrow of a figure."""
+    found = [each for each in ax.texts if getattr(each, "arrow_patch", None) is not None and not each.get_text()]
+    return [np.array([each.xyann, each.xy], float) for each in found]
+
+
+def test_the_pull_of_a_target_grows_with_the_distance_from_it():
+    ax = figures.target_pull()
+    target = np.asarray(ax.lines[1].get_xydata(), float)[0]
+    pulls = arrows(ax)[:5]
+    shares = [(head - tail) / (target - tail) for tail, head in pulls]
+    assert np.allclose(shares, 0.3)
+    assert np.allclose(np.asarray(ax.lines[0].get_xydata(), float)[0], np.mean([tail for tail, _ in pulls], axis=0))
+
+
+def test_wall_well_and_rim_are_the_potentials():
+    ax = figures.wall_and_well(ALPHA)
+    inset = ax.child_axes[0]
+    x, psi = np.asarray(ax.lines[0].get_xydata(), float).T
+    assert psi[0] == pytest.approx(ALPHA.c_star, rel=1e-12)
+    assert x[np.argmin(psi)] == pytest.approx(7.0, abs=0.02)
+    assert [text.get_text() for text in ax.texts] == ["wall: $c^* = 52.4$"]
+    assert [text.get_text() for text in inset.texts] == ["well", "rim: 0.736"]
+    assert inset.get_ylim()[1] < 2.0  # enlarged: the wall is 52 high
+
+
+def test_a_solution_stays_inside_the_level_set_and_ends_on_the_orbit():
+    level, _, orbit, solution = (
+        np.hypot(*np.asarray(line.get_xydata(), float).T) for line in figures.orbit_ball_level().lines
+    )
+    assert np.allclose(orbit, 1.0)
+    assert np.abs(solution - 1.0).max() < level[0] - 1.0 < 0.45  # of the ball
+    assert abs(solution[-1] - 1.0) < 0.01
 
 
 def test_kinds_of_equilibria_are_told_by_eigenvalues():
     axes = figures.equilibria(axes=subplots(1, 3)[1])
     assert [ax.get_title(loc="left").split(":")[0] for ax in axes] == ["minimum", "saddle", "degenerate"]
+    ends = [np.asarray(ax.lines[0].get_xydata(), float)[-1] for ax in axes]
+    assert np.abs(ends[0]).max() < 0.01  # it arrives
+    assert ends[1][1] > 1.5  # it leaves
+    assert np.allclose(ends[2], [0.0, 0.3], atol=0.01)  # it arrives somewhere in the valley
 
 
 def test_a_net_draws_its_links_and_numbers():

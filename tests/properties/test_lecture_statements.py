@@ -9,6 +9,7 @@ import numpy as np
 import flockana as fl
 from flockana.course import build
 from flockana.course.pages import number_of
+from flockana.scenarios.one_start import ENTRIES
 
 TEXT = {
     number_of(source): " ".join(source.read_text(encoding="utf-8").replace("\n# ", " ").split())
@@ -71,6 +72,36 @@ def test_connectedness_bounds_positions_and_a_level_set_does_not():
 def test_the_bump_is_defined_where_the_exercises_need_it():
     assert "\\rho_h(z) = \\begin{cases} 1 & 0 \\le z < h" in TEXT["01"]
     assert "with $0 < a \\le b$" in TEXT["01"]
+
+
+def test_the_bound_on_links_asks_for_three_agents():
+    from flockana import lattice
+
+    assert "(ii) it has at most $3n - 6$ links, $m = 2$, $n \\ge 3$" in TEXT["04"]
+    assert len(lattice.links(lattice.line(2, 7.0), 8.4)) == 1 > 3 * 2 - 6
+
+
+def test_neighbours_of_the_zones_are_others_and_the_strength_is_named():
+    from flockana.symbolic import spanning_trees
+
+    assert "$\\mathcal R_i = \\{j \\ne i : d_{ij} \\le z_c\\}$" in TEXT["08"]
+    assert "\\mu" in spanning_trees.spacing_spectrum(2).result._repr_latex_()
+    assert "(The output writes `μ` for the strength $w_0$ of the spring.)" in TEXT["08"]
+
+
+def test_matching_under_the_dead_zone_is_called_measured_wherever_the_theorem_is_printed():
+    assert "velocities match within components is measured and not proved" in TEXT["12"]
+    law = fl.DeadZoneFlocking()
+    run = fl.simulate(law, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 0.5))
+    assert fl.verify("dead-zone-1-corrected", run).claim("components").proof is None
+    assert "(measured, not proved;" in fl.theorem("dead-zone-1-corrected").statement
+    promise = next(entry.promise for entry in ENTRIES if entry.theorem == "dead-zone-1-corrected")
+    assert "is measured, not proved" in promise
+
+
+def test_no_share_of_lattices_is_claimed_that_nobody_counted():
+    assert "most small flocks end in one" not in TEXT["07"]
+    assert "40 lattices" not in TEXT["07"]
 
 
 def test_what_sets_the_rate_of_late_consensus():

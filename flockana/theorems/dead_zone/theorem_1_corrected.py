@@ -73,9 +73,9 @@ THEOREM = Theorem(
     title="Dead-zone flocking corrected: saturated energy, matching within components, explicit distances",
     statement=(
         "With the potential of each pair held constant beyond r, H̄ is continuous and dH̄/dt = -k₂ pᵀL̂p <= 0 across all "
-        "switches; velocities match within each component of the net (nothing keeps it connected, as ψ(r) is finite); "
-        "from distinct starts no distance falls below 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which is positive but "
-        "exponentially small."
+        "switches; velocities match within each component of the net (measured, not proved; nothing keeps the net "
+        "connected, as ψ(r) is finite); from distinct starts no distance falls below "
+        "1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which is positive but exponentially small."
     ),
     source="ours; repairs Li, Yuan and Liu, Theorem 1",
     kind="trajectory",
