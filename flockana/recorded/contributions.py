@@ -21,6 +21,7 @@ SYMBOLS = {
     "c1_gamma": ("c1γ", "pull to the γ-agent"),
     "c2_gamma": ("c2γ", "velocity feedback to the γ-agent"),
 }
+_BESIDE = {"thrust": 0.0, "brake": 0.0, "feedforward": False}
 
 
 @dataclass(frozen=True)
@@ -39,26 +40,29 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
-    parts = []
+    parts, gained = [], replace(law, **_beside(law))
     for name in _used(law):
         symbol, text = SYMBOLS[name]
         own = getattr(gains, name)
         if isinstance(own, tuple):
-            single = replace(law, gains=_only(name, own))
+            single = replace(gained, gains=_only(name, own))
             parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single)))
         else:
-            single = replace(law, gains=_only(name, 1.0))
+            single = replace(gained, gains=_only(name, 1.0))
             parts.append(Contribution(name, symbol, text, float(own), _acts(single)))
     return tuple(parts)
 
 
 def remainder(law: Any) -> Part | None:
     """Return the acceleration of a law with all gains 0, such as drag; None if it is 0."""
-    if not isinstance(getattr(law, "gains", None), Gains) or not any(
-        getattr(law, name, 0.0) for name in ("thrust", "brake", "told")
-    ):
+    if not isinstance(getattr(law, "gains", None), Gains) or not _beside(law):
         return None
     return _acts(replace(law, gains=_only("", 0.0)))
+
+
+def _beside(law: Any) -> dict[str, Any]:
+    """Return the values at which the accelerations of a law that no gain scales vanish, by their fields."""
+    return {name: none for name, none in _BESIDE.items() if getattr(law, name, none)}
 
 
 def _used(law: Any) -> list[str]:
