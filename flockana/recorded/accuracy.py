@@ -55,10 +55,15 @@ def ensure_error(name: str, value: Any, shape: tuple[int, int]) -> float | Float
     """Return a stated error: None, one number >= 0, or one for each sample of each agent, shape (T, n)."""
     if value is None:
         return None
-    if np.ndim(value) == 0:
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.array(np.nan)
+    if array.ndim == 0:
         return ensure_nonnegative(name, value)
-    array = np.array(value, dtype=np.float64)
-    if array.shape != shape or (array < 0.0).any():
-        raise ArgumentError(f"{name} has shape {array.shape}: expected a number >= 0, or an array of them of {shape}")
+    if array.shape != shape or not (np.isfinite(array) & (array >= 0.0)).all():
+        raise ArgumentError(
+            f"{name} has shape {array.shape}: expected a finite number >= 0, or an array of them of {shape}"
+        )
     array.setflags(write=False)
     return array

@@ -21,6 +21,7 @@ SYMBOLS = {
     "c1_gamma": ("c1γ", "pull to the γ-agent"),
     "c2_gamma": ("c2γ", "velocity feedback to the γ-agent"),
 }
+_NO_OTHERS = {"thrust": 0.0, "brake": 0.0, "feedforward": False}
 
 
 @dataclass(frozen=True)
@@ -39,26 +40,29 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
     gains = getattr(law, "gains", None)
     if not isinstance(gains, Gains):
         return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
-    parts, rest = [], remainder(law)
+    parts, gained = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
         symbol, text = SYMBOLS[name]
         own = getattr(gains, name)
         if isinstance(own, tuple):
-            single = replace(law, gains=_single_gain(name, own))
-            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single, rest)))
+            single = replace(gained, gains=_single_gain(name, own))
+            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single)))
         else:
-            single = replace(law, gains=_single_gain(name, 1.0))
-            parts.append(Contribution(name, symbol, text, float(own), _acts(single, rest)))
+            single = replace(gained, gains=_single_gain(name, 1.0))
+            parts.append(Contribution(name, symbol, text, float(own), _acts(single)))
     return tuple(parts)
 
 
 def remainder(law: Any) -> Part | None:
     """Return the acceleration of a law with all gains 0, such as drag or a feedforward; None if it is 0."""
-    if not isinstance(getattr(law, "gains", None), Gains) or not any(
-        getattr(law, name, 0.0) for name in ("thrust", "brake", "feedforward")
-    ):
+    if not isinstance(getattr(law, "gains", None), Gains) or not _other_terms(law):
         return None
     return _acts(replace(law, gains=_single_gain("", 0.0)))
+
+
+def _other_terms(law: Any) -> dict[str, Any]:
+    """Return the values at which the accelerations of a law that no gain scales vanish, by their fields."""
+    return {name: none for name, none in _NO_OTHERS.items() if getattr(law, name, none)}
 
 
 def _used_gains(law: Any) -> list[str]:
@@ -79,10 +83,10 @@ def _single_gain(name: str, value: Any) -> Gains:
     return Gains(**{each: value if each == name else 0.0 for each in SYMBOLS})
 
 
-def _acts(law: Any, rest: Part | None = None) -> Part:
+def _acts(law: Any) -> Part:
     def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         u: FloatArray = law.flow(t, q, p)[0]
-        return u if rest is None else u - rest(t, q, p)
+        return u
 
     return acts
 

@@ -9,11 +9,12 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
 from flockana.recorded.accelerations import Accelerations
+from flockana.recorded.clustered import covariance_over_agents
 from flockana.recorded.contributions import contributions, remainder
 from flockana.recorded.variants import variants
 
 _OTHER = 0.01  # relative difference from which on a gain is reported
-_SIGMAS = 4.0  # standard errors, likewise
+_CHANCE = 3e-5  # probability that noise alone shows a gain as larger, likewise
 _CLEAR = 0.3  # of the residual's squares: a form that leaves no more is reported
 _WORTH = 1e-4  # of all squares that a form must explain beyond the law's own
 _FITS = 0.99  # share explained by which a law fits
@@ -32,11 +33,12 @@ class Share(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """Gains by least squares, their standard errors, and the residual sum of squares."""
+    """Gains by least squares, their standard errors, the residual sum of squares, and degrees of freedom."""
 
     gains: FloatArray
     errors: FloatArray
     left: float
+    freedom: int
 
 
 class Explained(NamedTuple):
@@ -76,16 +78,14 @@ class Regression:
         used = norms > 0.0
         gains, errors = np.zeros(len(columns)), np.zeros(len(columns))
         if not used.any():
-            return Solution(gains, errors, float(np.sum(y**2)))
+            return Solution(gains, errors, float(np.sum(y**2)), y.size)
         a = matrix[:, used] / norms[used]
-        inverse = np.linalg.pinv(a.T @ a)
-        beta = inverse @ (a.T @ y.ravel())
+        beta = np.linalg.pinv(a.T @ a) @ (a.T @ y.ravel())
         rest = y - (a @ beta).reshape(y.shape)
-        scores = np.einsum("kimc,kim->ic", a.reshape(*y.shape, -1), rest)
-        covariance = inverse @ (scores.T @ scores) @ inverse
+        covariance, freedom = covariance_over_agents(a.reshape(*y.shape, -1), rest)
         gains[used] = beta / norms[used]
         errors[used] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norms[used]
-        return Solution(gains, errors, float(np.sum(rest**2)))
+        return Solution(gains, errors, float(np.sum(rest**2)), freedom)
 
 
 def explained(data: Accelerations, law: Any) -> Explained:
@@ -103,7 +103,7 @@ def explained(data: Accelerations, law: Any) -> Explained:
         for part, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
     )
     if left > _EXACT * total and solution.left < 0.5 * total:
-        texts += [_of_gain(one) for one in shares if _differs(one)]
+        texts += [_of_gain(one) for one in shares if _differs(one, solution.freedom)]
     if total and 1.0 - solution.left / total < _FITS and data.basis != "splines":
         most = 1.0 - solution.left / total
         texts.append(f"{most:.1%} is the most that these terms explain with any gains: another law acts")
@@ -131,9 +131,11 @@ def _with_better_forms(
     return current, texts
 
 
-def _differs(one: Share) -> bool:
+def _differs(one: Share, freedom: int) -> bool:
+    from scipy.stats import t
+
     off = abs(one.found - one.stated)
-    return off > _SIGMAS * one.error and off > _OTHER * abs(one.stated)
+    return off > float(t.isf(_CHANCE, freedom)) * one.error and off > _OTHER * abs(one.stated)
 
 
 def _of_gain(one: Share) -> str:

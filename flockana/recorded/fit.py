@@ -12,6 +12,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.laws.discrete import DiscreteLaw, ensure_law
+from flockana.recorded.clustered import covariance_over_agents
 from flockana.recorded.parameters import FreeParameters
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.shooting import MatchResult, matched, usual_window, windows
@@ -160,8 +161,10 @@ def _stepped(rec: Recording, parameters: FreeParameters) -> Fit:
     if len(rec.t) < 2:
         raise ArgumentError("one sample: expected two or more to step between")
     assert rec.p is not None
-    h, p = np.diff(rec.t)[:, None, None], rec.p
-    start = parameters.values
+    p, start = rec.p, parameters.values
+    place, speed = (np.broadcast_to(each, rec.q.shape[:2])[1:] for each in (rec.accuracy.place, rec.accuracy.speed))
+    stated = bool((place > 0.0).all() and np.isfinite(place).all() and (speed > 0.0).all())
+    sizes = (place, speed) if stated else (np.diff(rec.t)[:, None], np.ones(1))
     unit = np.where(start == 0.0, 1.0, np.abs(start))
 
     def residual(z: FloatArray) -> FloatArray:
@@ -169,25 +172,17 @@ def _stepped(rec: Recording, parameters: FreeParameters) -> Fit:
             q_next, p_next = predicted(parameters.with_values(z * unit), rec.t, rec.q, p, refine=2)
         except FlockanaError:
             return np.full(2 * (len(rec.t) - 1) * rec.n * rec.m, _FAR)
-        return np.concatenate([((rec.q[1:] - q_next) / h).ravel(), (p[1:] - p_next).ravel()])
+        off = rec.q[1:] - q_next, p[1:] - p_next
+        return np.concatenate([(x / size[..., None]).ravel() for x, size in zip(off, sizes, strict=True)])
 
     low = np.where(start > 0.0, _LEAST, -inf)
     found: Any = least_squares(residual, start / unit, bounds=(low, inf), xtol=1e-10, ftol=1e-10, max_nfev=60)
     left = found.fun.reshape(2 * (len(rec.t) - 1), rec.n, rec.m)
-    slopes = found.jac.reshape(*left.shape, -1)
-    inverse = np.linalg.pinv(found.jac.T @ found.jac)
-    scores = np.einsum("kimc,kim->ic", slopes, left)
-    freedom = max(left.size - len(start), 1)
-    spread = inverse @ (scores.T @ scores) @ inverse
-    plain = inverse * float(np.sum(left**2)) / freedom
-    covariance = spread if rec.n >= 2 * len(start) else plain
-    speed = rec.accuracy.speed
-    stated = float(np.median(speed)) if np.ndim(speed) else float(speed)
-    misfit = float(np.sqrt(np.mean(left**2)) / stated) if 0.0 < stated < inf else np.nan
+    covariance, freedom = covariance_over_agents(found.jac.reshape(*left.shape, -1), left)
     covariance = covariance * np.outer(unit, unit)
-    return _result(
-        parameters, found.x * unit, covariance, np.abs(found.jac).max(axis=0) > 0.0, misfit, freedom, str(found.message)
-    )
+    misfit = float(np.sqrt(np.mean(left**2))) if stated else np.nan
+    told = np.abs(found.jac).max(axis=0) > 0.0
+    return _result(parameters, found.x * unit, covariance, told, misfit, freedom, str(found.message))
 
 
 def _result(

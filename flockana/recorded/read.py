@@ -113,11 +113,7 @@ def _read_metadata(arrays: Mapping[str, Any]) -> dict[str, Any]:
     if not {"ids", "source", "estimated"} <= arrays.keys():
         return {}
     found = {name: arrays[name][()] for name in _ACCURACY if name in arrays}
-    return found | {
-        "ids": arrays["ids"].tolist(),
-        "source": str(arrays["source"]),
-        "estimated": bool(arrays["estimated"]),
-    }
+    return found | {"ids": arrays["ids"].tolist(), "source": str(arrays["source"])}
 
 
 def _starts_with_item(path: Path) -> bool:

@@ -25,6 +25,7 @@ from flockana.recorded.unknown import UnknownLaw
 if TYPE_CHECKING:
     import xarray
 
+_FARTHEST = 1e50  # size of a number whose fifth power, as smoothing takes it, is finite
 _ERRORS = ("bound", "sd", "p_bound", "p_sd")
 _UNITS = {"t": (0, 1), "q": (1, 0), "p": (1, -1), "u": (1, -2)} | {
     "bound": (1, 0),
@@ -349,9 +350,10 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
     if array.dtype.kind not in "fiu":
         raise ArgumentError(f"{name}: expected real numbers, got {format_value(array.dtype.name)}")
     array = array.astype(np.float64)
-    if np.isinf(array).any():
-        where = ", ".join(str(int(k)) for k in np.argwhere(np.isinf(array))[0])
-        raise ArgumentError(f"{name}[{where}] is infinite: expected finite numbers, and NaN for a gap")
+    if (far := np.abs(array) > _FARTHEST).any():
+        at = tuple(np.argwhere(far)[0].tolist())
+        where, limit = ", ".join(map(str, at)), f"{_FARTHEST:g}"
+        raise ArgumentError(f"{name}[{where}] = {array[at]:g}: expected numbers up to {limit} in size, NaN for a gap")
     return array
 
 

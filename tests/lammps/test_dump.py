@@ -125,6 +125,7 @@ def damage(text, how):
         "an unknown item": text + "ITEM: ENTRIES\n1\n",
         "stray text": "Step Temp\n" + text,
         "nothing": "",
+        "a column twice": text.replace("ATOMS id type x y", "ATOMS id type x x"),
         "no ids": text.replace("ATOMS id", "ATOMS mol"),
     }[how]
 
@@ -147,8 +148,8 @@ def _twice(text):
         ("cut within a number", "the end of the file where 4 lines of 8 numbers were expected; was it cut off"),
         ("cut within a snapshot", "the end of the file where 4 lines"),
         ("cut after a step", "ends within the snapshot of step 2000; was it cut off"),
-        ("not finite", "a number that is not finite"),
-        ("a word", "expected numbers in every column"),
+        ("not finite", r"'nan' in column 4 of .*; expected a finite number"),
+        ("a word", r"'far' in column 4 of .*; expected a finite number"),
         ("an agent lost", "snapshot 200 has 3 agents .* were agents lost"),
         ("one id twice", "two agents of one id; expected each once"),
         ("steps fall", "step 0 follows step 2000; expected rising steps"),
@@ -161,6 +162,7 @@ def _twice(text):
         ("an unknown item", "unknown item 'ITEM: ENTRIES'"),
         ("stray text", "'Step Temp' where an ITEM was expected"),
         ("nothing", "holds no snapshot: expected a text dump"),
+        ("a column twice", "or with a column twice"),
         ("no ids", "expected a dump of style custom with id"),
     ],
 )

@@ -8,6 +8,7 @@ import pytest
 import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.recorded.contributions import contributions, remainder
+from flockana.recorded.recording import recording_of
 from flockana.recorded.schemes import kinematic_scheme, scheme_by_law
 from flockana.recorded.variants import variants
 from tests.recorded.written import LAW, P0, Q0, own_acceleration, own_run
@@ -29,6 +30,14 @@ def test_a_users_own_right_code_is_explained_and_its_gains_are_found():
     assert found["c1α"] == pytest.approx(30.0, rel=2e-3)
     assert found["c2γ"] == pytest.approx(2.0 * np.sqrt(1.1), rel=2e-3)
     assert sum(one.share for one in seen.shares) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_accelerations_that_no_gain_scales_are_the_laws_too():
+    """The γ-agent's own acceleration and a thrust, both far from 0."""
+    circle = fl.CircleTarget((0.0, 0.0), 20.0, 0.3)
+    for law in (fl.compose(navigation=circle, feedforward=True), fl.compose(navigation=circle, speed=(0.5, 0.1))):
+        run = fl.simulate(law, Q0, P0, (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 101))
+        assert fl.compare(recording_of(run), law).explained > 1.0 - 1e-12
 
 
 def test_two_errors_at_once_are_told_apart():
@@ -151,8 +160,8 @@ def test_shares_errors_and_ranks_are_those_of_one_regression():
     u = 2.0 * x + 0.1 * rest
     seen = fl.compare(fl.Recording(T[:9], q, p, u), law)
     gain = np.sum(x * u) / np.sum(x**2)
-    scores = np.sum(x * (u - gain * x), axis=(0, 2))
-    error = np.sqrt(np.sum(scores**2)) / np.sum(x**2)
+    scores, squares = np.sum(x * (u - gain * x), axis=(0, 2)), np.sum(x**2, axis=(0, 2))
+    error = np.sqrt(0.8 * np.sum((scores / (squares.sum() - squares)) ** 2))  # the jackknife's, of 5 agents
     assert seen.shares[0].found == pytest.approx(gain)
     assert seen.shares[0].error == pytest.approx(error)
     assert f"= {gain:.5g} ± {2.0 * error:.2g}, 1 in the law" in str(seen)

@@ -161,26 +161,33 @@ def test_differences_of_a_polynomial_are_its_slopes():
     np.testing.assert_allclose(found, [[4.0, 3.0], [0.0, 1.0]], atol=1e-8)
 
 
-def test_errors_of_steps_count_how_agents_differ_once_there_are_two_for_each_parameter():
-    """Places and velocities after a step of 0.1 are those of the closed form; two agents that feel only the pull."""
-    h, noise = 0.1, np.random.default_rng(0).normal(0.0, 0.02, (3, 30, 2))
-    q, later = (place(np.arange(30)[:, None] * h + e, [3.0, -2.0], [-1.0, 0.0], 2.0, 0.6) for e in (0.0, 1e-5))
+def test_errors_of_steps_count_how_agents_differ_if_there_are_others():
+    """Places and velocities after a step of 0.1 are those of the closed form; three agents that feel only the pull.
+
+    Their variance is the jackknife's: (n - 1)/n of the squares by which estimates without each of them differ.
+    """
+    h, noise = 0.1, np.random.default_rng(0).normal(0.0, 0.02, (2, 30, 3))
+    times = np.arange(30)[:, None] * h
+    q, later = (place(times + e, [3.0, -2.0, 1.0], [-1.0, 0.0, 2.0], 2.0, 0.6) for e in (0.0, 1e-5))
     q, p = q + noise[0], (later - q) / 1e-5 + noise[1]
 
     def off(c2, n):
         before, at, after = (place(h + e, q[:-1, :n], p[:-1, :n], 2.0, c2) for e in (-1e-5, 0.0, 1e-5))
         return np.stack([(q[1:, :n] - at) / h, p[1:, :n] - (after - before) / 2e-5])
 
-    for n in (1, 2):
+    for n in (1, 3):
         rec = fl.Recording(np.arange(30) * h, q[:, :n, None], p[:, :n, None], bound=0.1)
         found = fl.fit(rec, pulled(), free=("c2_gamma",))
         best = least_squares(lambda c, n=n: off(c[0], n).ravel(), [0.6], jac="3-point")
         rest, slope = best.fun.reshape(-1, n), best.jac.reshape(-1, n)
-        plain = np.sum(rest**2) / (rest.size - 1) * np.sum(slope**2)
-        spread = plain if n == 1 else np.sum(np.sum(slope * rest, axis=0) ** 2)
-        assert found.freedom == rest.size - 1
+        squares, own = np.sum(slope**2, axis=0), np.sum(slope * rest, axis=0)
+        variance, freedom = np.sum(rest**2) / (rest.size - 1) / squares.sum(), rest.size - 1
+        if n > 1:
+            without = -own / (squares.sum() - squares)
+            variance, freedom = (n - 1) / n * np.sum(without**2), n - 1
+        assert found.freedom == freedom
         assert found.values["c2_gamma"] == pytest.approx(best.x[0], rel=1e-4)
-        assert found.errors["c2_gamma"] == pytest.approx(np.sqrt(spread) / np.sum(slope**2), rel=1e-3)
+        assert found.errors["c2_gamma"] == pytest.approx(np.sqrt(variance), rel=1e-3)
 
 
 def test_what_the_data_cannot_tell_is_said():

@@ -68,6 +68,8 @@ def test_frames_arrays_and_files_of_arrays_are_read_alike(tmp_path):
     ensure_same(fl.read_recording(long_table()))
     np.savez(tmp_path / "it.npz", time=T, positions=Q, velocities=P)
     ensure_same(fl.read_recording(tmp_path / "it.npz"))
+    np.save(tmp_path / "it.npy", Q)
+    np.testing.assert_array_equal(fl.read_recording(tmp_path / "it.npy", dt=0.25).q, Q)
     savemat(tmp_path / "it.mat", {"t": T, "pos": Q, "vel": P})
     ensure_same(fl.read_recording(tmp_path / "it.mat"))
     run = fl.simulate(fl.Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
@@ -127,6 +129,7 @@ MESSAGES = [
     ("t,x1,y1,x2\n0,1,2,3\n", "expected y too|other columns for agent"),
     ("x1,x2\n0,1\n", "has no times"),
     ("id,x\n1,2\n1,3\n", "several times and no times"),
+    ('t,id,"x\n[m]"\n0,1,2\n', "line 1: .* has an open quote; expected a header in one line"),
 ]
 
 
@@ -154,6 +157,9 @@ def test_wrong_bytes_and_files_are_refused(tmp_path):
         fl.read_recording({"t": T, "q": np.zeros((5, 2, 3))})
     np.savez(tmp_path / "bad.npz", q=np.array([None]))
     with pytest.raises(FileError, match="as npz"):
+        fl.read_recording(tmp_path / "bad.npz")
+    np.savez(tmp_path / "bad.npz", t=T, q=Q, ids=["a", "b"], source="it", estimated=np.zeros(3))
+    with pytest.raises(ArgumentError, match=r"estimated = .*expected True or False"):
         fl.read_recording(tmp_path / "bad.npz")
 
 

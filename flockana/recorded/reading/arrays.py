@@ -66,9 +66,10 @@ def npz_arrays(path: Path) -> dict[str, Any]:
     import zipfile
 
     try:
-        with np.load(path, allow_pickle=False) as file:
-            if not hasattr(file, "files"):
-                return {"q": np.asarray(file)}
+        found = np.load(path, allow_pickle=False)
+        if isinstance(found, np.ndarray):  # of a file .npy
+            return {"q": found}
+        with found as file:
             return {name: file[name] for name in file.files}
     except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, zipfile.error) as error:
         raise FileError(f"cannot read {path} as npz: {' '.join(str(error).split())}; write it by numpy.savez") from None

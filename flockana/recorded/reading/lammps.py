@@ -144,9 +144,10 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
         elif item[:1] == ["UNITS"]:
             next(file, "")
         elif item[:1] == ["ATOMS"]:
-            if step is None or count is None or "id" not in item:
+            if step is None or count is None or "id" not in item or len(set(item)) < len(item):
                 raise FileError(
-                    f"{path}: atoms without a step, a number or ids; expected a dump of style custom with id"
+                    f"{path}: atoms without a step, a number or ids, or with a column twice; expected a dump of style "
+                    "custom with id"
                 )
             yield Snapshot(step, time, box, _columns(file, item[1:], count, path))
             step, time, count, box = None, None, None, None
@@ -181,15 +182,31 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: S
     bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
     cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
     if len(lines) < rows or bad is not None or cut:
-        shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
-        raise FileError(f"{path}: {shown} where {rows} lines of {width} numbers were expected; was it cut off?")
+        shown, size = (
+            "the end of the file" if bad is None else repr(bad.strip()[:60]),
+            "" if width is None else f"{width} ",
+        )
+        raise FileError(f"{path}: {shown} where {rows} lines of {size}numbers were expected; was it cut off?")
     for row in cells:
         for k in words:
             row[k] = "nan"
     try:
         values = np.array(cells, dtype=np.float64)
-    except ValueError as error:
-        raise FileError(f"{path}: {error}; expected numbers in every column") from error
-    if not np.isfinite(np.delete(values, words, axis=1)).all():
-        raise FileError(f"{path}: a number that is not finite; the run of LAMMPS blew up")
+    except ValueError:
+        values = np.array([[_number(cell) for cell in row] for row in cells])
+    wrong = ~np.isfinite(values)
+    wrong[:, list(words)] = False
+    if wrong.any():
+        k, j = np.argwhere(wrong)[0].tolist()
+        raise FileError(
+            f"{path}: {cells[k][j]!r} in column {j + 1} of {lines[k].strip()[:60]!r}; expected a finite number; is the "
+            "dump damaged, or did the run blow up?"
+        )
     return values
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan

@@ -29,6 +29,8 @@ def read_text(path: Path, names: Sequence[str] | None = None) -> Any:
             f"{path}, line 1: {first.strip()[:_SHOWN]!r} are numbers; expected a header such as time,id,x,y; add one, "
             'or name the columns by columns=["t", "id", "x", "y"]'
         )
+    if first.count('"') % 2:
+        raise FileError(f"{path}, line 1: {first.strip()[:_SHOWN]!r} has an open quote; expected a header in one line")
     twice = sorted({cell for cell in cells if cells.count(cell) > 1}) if names is None else []
     if twice:
         raise FileError(f"{path}, line 1: the column {twice[0]!r} is given twice; expected each once")
@@ -90,8 +92,8 @@ def row_name(frame: Any, k: int) -> str:
 
 def _bad_cell(frame: Any, k: int, column: str, value: Any) -> FileError:
     return FileError(
-        f"{row_name(frame, k)}, column {column!r}: {str(value)[:_SHOWN]!r}; expected a finite number, or nothing for a "
-        "gap"
+        f"{row_name(frame, k)}, column {column!r}: {str(value)[:_SHOWN]!r}; expected a finite number such as 0.5, or "
+        "nothing for a gap"
     )
 
 

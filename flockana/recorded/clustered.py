@@ -1,0 +1,28 @@
+"""Covariance of least-squares estimates from residuals that are independent between agents only."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.base.checks import FloatArray
+
+_ALONE = 1e-9  # share of the squares of slopes that the other agents leave an estimate, below which one tells it alone
+
+
+def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[FloatArray, int]:
+    """Return the covariance (P, P) of estimates, by the jackknife over agents, and its degrees of freedom.
+
+    Slopes have the shape (K, n, m, P), residuals (K, n, m). Residuals of one agent are dependent, and less than its
+    errors, as the estimates follow them: each agent's count as large as they are to estimates from all the others.
+    Where there are no others, or these do not tell a parameter, all residuals count as independent.
+    """
+    n, count = residuals.shape[1], slopes.shape[-1]
+    squares = np.einsum("kimc,kimd->icd", slopes, slopes)
+    inverse = np.linalg.pinv(squares.sum(axis=0))
+    others = np.eye(count) - squares @ inverse
+    if n < 2 or np.linalg.eigvals(others).real.min() < _ALONE:
+        freedom = max(residuals.size - count, 1)
+        return inverse * (float(np.sum(residuals**2)) / freedom), freedom
+    scores = np.linalg.solve(others, np.einsum("kimc,kim->ic", slopes, residuals)[:, :, None])[:, :, 0]
+    covariance: FloatArray = inverse @ (scores.T @ scores) @ inverse * ((n - 1) / n)
+    return covariance, n - 1
