@@ -23,6 +23,7 @@ _TITLES = {
     "lammps": "LAMMPS",
     "laws": "Laws",
     "measures": "Measures",
+    "player": "Players",
     "plots": "Films",
     "recorded": "Recorded flocks",
     "scenarios": "Scenarios and flocks",
