@@ -55,15 +55,20 @@ def text(record: Mapping[str, Any], pictures: list[str]) -> str:
     machine = "".join(f"| {name} | {value} |\n" for name, value in record["machine"].items())
     parts = [
         _HEAD.format(command=record["command"]),
-        f"<details><summary>The machine</summary>\n\n| machine | |\n|---|---|\n{machine}\n</details>\n",
+        _folded("The machine", f"| machine | |\n|---|---|\n{machine}"),
     ]
     parts += [f"![{name.removesuffix('.png')}]({name})\n" for name in pictures]
     rows = from_json(record["rows"])
     parts.insert(1, f"## In short\n\n{in_short(rows)}")
     for study, own in groupby(rows, key=lambda row: row.study):
-        parts.append(f"<details><summary>{study}</summary>\n\n{table(list(own))}\n</details>\n")
+        parts.append(_folded(study, table(list(own))))
     if short := missed(rows):
-        parts.append(f"## Asked for and not reached\n\n{short}")
+        parts.append(_folded(f"Asked for and not reached: {len(short.splitlines())}", short))
     if record["notices"]:
-        parts.append("## Left out\n\n" + "".join(f"- {line}\n" for line in record["notices"]))
+        parts.append(_folded("Left out", "".join(f"- {line}\n" for line in record["notices"])))
     return "\n".join(parts)
+
+
+def _folded(title: str, text: str) -> str:
+    """Return Markdown that opens at a click."""
+    return f"<details><summary>{title}</summary>\n\n{text}\n</details>\n"

@@ -115,6 +115,7 @@ from .measures.nets import components as components
 from .measures.nets import laplacian as laplacian
 from .measures.nets import links as links
 from .measures.windows import joint_windows as joint_windows
+from .player.own import player as player
 from .plots.animation import animate as animate
 from .recorded.compare import compare as compare
 from .recorded.fit import fit as fit

@@ -143,6 +143,21 @@ def test_a_flock_is_filmed_and_exported(tmp_path):
     assert [path.read_text() for path in made.files] == [path.read_text() for path in again.files]
 
 
+def test_a_start_is_drawn_from_the_seed_by_whatever_shows_or_exports_it(tmp_path):
+    flock = fl.Flock(LAW, start, t_span=(0, 1))
+    for given in ((flock, {}), (None, {"law": LAW, "q0": start, "t_span": (0, 1)})):
+        shown = fl.player(given[0], seed=4, **given[1])
+        assert np.array_equal(shown.trajectory.q[0], start(4))
+    assert fl.player(shown.trajectory).trajectory is shown.trajectory
+    made = fl.export_lammps(LAW, start, t_span=(0, 1), folder=tmp_path / "made", seed=4)
+    again = fl.export_lammps(LAW, start(4), t_span=(0, 1), folder=tmp_path / "again")
+    assert [path.read_text() for path in made.files] == [path.read_text() for path in again.files]
+    drawn = [fl.animate(flock, tmp_path / f"{k}.gif", seed=k, seconds=0.1).read_bytes() for k in (0, 4)]
+    assert drawn[0] != drawn[1]
+    with pytest.raises(ArgumentError, match="trajectory = 3: expected a run, as simulate"):
+        fl.player(3)
+
+
 def test_gif_lasts_as_long_as_asked(tmp_path):
     from PIL import Image
 

@@ -102,6 +102,21 @@ def ensure_state(q: Any, p: Any) -> tuple[FloatArray, FloatArray]:
     return q, p
 
 
+def draw_start(q0: Any, p0: Any, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Return positions and velocities of a start, given as arrays or as functions of a seed; at rest without p0.
+
+    Examples
+    --------
+    >>> draw_start(lambda seed: [[1.0 * seed]], None, 3)
+    (array([[3.]]), array([[0.]]))
+    """
+    q = q0(seed) if callable(q0) else q0
+    p = p0(seed) if callable(p0) else p0
+    if p is None and isinstance(q, tuple) and len(q) == 2 and np.ndim(q[0]) == 2:
+        q, p = q
+    return ensure_state(q, np.zeros(np.shape(q)) if p is None else p)
+
+
 def ensure_kind(name: str, value: Any, kind: type | str, example: str) -> None:
     """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library."""
     names = {each.__name__ for each in type(value).__mro__}

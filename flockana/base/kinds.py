@@ -26,6 +26,8 @@ _EXAMPLES = {
     "Linearisation": "what linearise(...) gives",
     "Mapping": "a mapping, such as a dict of values by label",
     "Mode": "one of the modes of linearise(...)",
+    "Obstacle": "an obstacle, such as Sphere(centre, radius)",
+    "Outcome": "one of what scenarios.one_start.compare() gives",
     "NormTable": "what stability.norms_against_size(...) gives",
     "Reynolds": "what reynolds.reynolds(...) gives",
     "SampledBasin": "what sample_basin(...) gives",
@@ -41,11 +43,13 @@ _PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequen
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Decorate a function so that it refuses, by name, an argument of another class than its annotation."""
-    # Annotations are read as text, so that no library is imported for a check.
+    # Annotations are read as text, so that no library is imported for a check. Items of a sequence are checked too.
     called = inspect.signature(function)
     texts = {name: str(p.annotation).strip("'\"") for name, p in called.parameters.items()}
     kinds = {name: text.partition("[")[0].rpartition(".")[2] for name, text in texts.items()}
     kinds = {name: kind for name, kind in kinds.items() if kind in (*_EXAMPLES, *_ARRAYS, *_SYMBOLIC)}
+
+    items = {name: texts[name].partition("[")[2].rstrip("]").rpartition(".")[2] for name in kinds}
 
     @functools.wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
@@ -57,6 +61,9 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
                 _ensure_symbolic(name, given[name])
             elif name in given:
                 ensure_kind(name, given[name], _PROTOCOLS.get(kind, kind), _EXAMPLES[kind])
+                if items[name] in _EXAMPLES and isinstance(given[name], Sequence):  # an iterator can be read only once
+                    for k, item in enumerate(given[name]):
+                        ensure_kind(f"{name}[{k}]", item, items[name], _EXAMPLES[items[name]])
         return function(*args, **kwargs)
 
     return checked

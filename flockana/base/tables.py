@@ -7,41 +7,47 @@ from html import escape
 
 MARKS = {"verified": "✓", "refuted": "✗", "vacuous": "∅", "inconclusive": "?", "met": "✓", "unmet": "✗", "assumed": "?"}
 _TEX = {"\\": r"\textbackslash{}", **{c: "\\" + c for c in "&%$#_{}"}, "~": r"\textasciitilde{}", "^": r"\^{}"}
-_GREEK = {"α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "φ": "varphi", "ψ": "psi"}
-_MORE = {"κ": "kappa", "λ": "lambda", "σ": "sigma", "π": "pi", "μ": "mu", "Σ": "Sigma", "≤": "le", "≥": "ge"}
-_OTHER = {
-    "∞": "infty",
-    "→": "to",
-    "‖": "Vert",
-    "√": "surd",
-    "∇": "nabla",
-    "∈": "in",
-    "·": "cdot",
-    "−": "-",
-    "Δ": "Delta",
+_NAMES = {"epsilon": "varepsilon", "phi": "varphi", "lamda": "lambda", "Lamda": "Lambda"}  # of TeX for Unicode's
+_SIGNS = {
+    **{"≤": "le", "≥": "ge", "≪": "ll", "±": "pm", "×": "times", "·": "cdot", "∘": "circ", "⊗": "otimes"},
+    **{"∞": "infty", "→": "to", "‖": "Vert", "√": "surd", "∇": "nabla", "∂": "partial", "∫": "int", "∈": "in"},
+    **{"⟨": "langle", "⟩": "rangle", "⌊": "lfloor", "⌋": "rfloor", "′": "prime", "…": "ldots", "ℓ": "ell"},
+    "∅": "emptyset",
 }
-_SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+_WORDS = {"−": "$-$", "<": "$<$", ">": "$>$", "Ł": r"\L{}", "ł": r"\l{}", "✓": "yes", "✗": "no", "°": r"$^\circ$"}
+_ACCENTS = {"\u0303": "tilde", "\u0304": "bar", "\u0302": "hat", "\u0338": "not"}
+_ACUTE = "\u0301"
 
 
 def tex(text: str) -> str:
     """Return text with LaTeX's own characters escaped and Greek letters as mathematics."""
-    commands = {**_GREEK, **_MORE, **_OTHER}
     apart = unicodedata.normalize("NFD", text)
-    pieces = re.split("(\\w\u0303)", apart)
-    return "".join(
-        rf"$\tilde{{{piece[0]}}}$" if piece[1:] == "\u0303" else "".join(_letter(one, commands) for one in piece)
-        for piece in pieces
+    return re.sub(
+        f"(.)([{''.join(_ACCENTS)}{_ACUTE}]?)", lambda found: _letter(*found.groups()), apart, flags=re.DOTALL
     )
 
 
-def _letter(letter: str, commands: dict[str, str]) -> str:
-    if letter in "<>":
-        return f"${letter}$" if letter == "<" else letter
-    if letter in commands:
-        return "$-$" if letter == "−" else f"$\\{commands[letter]}$"
-    if (digit := letter.translate(_SUBSCRIPTS)) != letter:
-        return f"$_{digit}$"
-    return _TEX.get(letter, letter)
+def _letter(letter: str, accent: str) -> str:
+    """Return a letter of text, perhaps with an accent, as LaTeX."""
+    if accent:
+        return rf"\'{{{letter}}}" if accent == _ACUTE else rf"$\{_ACCENTS[accent]}{{{_letter(letter, '').strip('$')}}}$"
+    if letter in _WORDS or letter in _TEX:
+        return _WORDS.get(letter) or _TEX[letter]
+    if letter in _SIGNS:
+        return rf"$\{_SIGNS[letter]}$"
+    kind, _, codes = unicodedata.decomposition(letter).partition(" ")
+    parts = [chr(int(code, 16)) for code in codes.split()]
+    if kind in ("<super>", "<sub>"):
+        return f"${'^' if kind == '<super>' else '_'}{{{_letter(parts[0], '').strip('$')}}}$"
+    if kind == "<compat>":  # such as three primes in one
+        return "".join(_letter(part, "") for part in parts)
+    if kind == "<fraction>":  # 1, a fraction slash, 2
+        return rf"$\frac{{{parts[0]}}}{{{parts[2]}}}$"
+    greek = re.fullmatch("GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?([A-Z]+)", unicodedata.name(letter, ""))
+    if greek:
+        name = greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
+        return rf"$\{_NAMES.get(name, name)}$"
+    return letter
 
 
 def html_table(rows: Iterable[Sequence[str]], heads: Sequence[str], caption: str = "") -> str:

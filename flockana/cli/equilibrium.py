@@ -40,7 +40,7 @@ def equilibrium_command(
     Exit status: 0 found, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
     from flockana.base.errors import SolverError
-    from flockana.cli.flock import read_flock
+    from flockana.cli.flock import announce_time, read_flock
     from flockana.cli.picture import KINDS, ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
@@ -50,6 +50,7 @@ def equilibrium_command(
     ensure_file(picture, KINDS)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
+        announce_time(len(q))
         equilibrium = find_equilibrium(law, q)
     except SolverError as error:
         print_error(error)

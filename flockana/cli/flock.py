@@ -5,8 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 if TYPE_CHECKING:
     from flockana.base.checks import FloatArray
+
+
+_SEARCH, _MODES = 5.0, 2.0  # seconds for 1000 agents: an equilibrium with its modes, or the slowest modes alone
+_SHORT, _LONGEST = 10.0, 600.0
 
 
 def read_flock(
@@ -38,6 +44,30 @@ def read_flock(
     _ensure_no_scenario(source, seed=seed, start=start)
     law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time, potential=potential)
     return law, q
+
+
+def announce_time(n: int, *, as_given: bool | None = None) -> None:
+    """Print the expected time for a large flock to stderr; raise if it is too long.
+
+    `as_given` tells whether only the modes at given positions are sought; None where there is no such choice.
+
+    Examples
+    --------
+    >>> announce_time(30_000, as_given=True)
+    Traceback (most recent call last):
+    flockana.base.errors.ArgumentError: n = 30000: about 1800 s on a machine of 2024: expected at most 17320 agents
+    """
+    from flockana.base.errors import ArgumentError
+
+    seconds = (_MODES if as_given else _SEARCH) * (n / 1000.0) ** 2
+    if seconds < _SHORT:
+        return
+    text = f"n = {n}: about {seconds:.0f} s on a machine of 2024"
+    if seconds > _LONGEST:
+        most, bare = (int(1000.0 * (_LONGEST / each) ** 0.5) for each in (_SEARCH, _MODES))
+        choice = f", or {bare} with --as-given (slowest modes at these positions)" if as_given is False else ""
+        raise ArgumentError(f"{text}: expected at most {bare if as_given else most} agents{choice}")
+    typer.echo(text, err=True)
 
 
 def _ensure_free(name: str, **given: object) -> None:

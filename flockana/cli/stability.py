@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from flockana.stability import Linearisation, Mode
 
-_SECONDS = {False: 5.0, True: 2.0}  # for 1000 agents: equilibrium and modes, or the slowest modes alone
-_SHORT, _LONGEST = 10.0, 600.0
 DENSE = 1200  # n m above which only the slowest modes are sought, without a dense matrix
 
 
@@ -56,7 +54,7 @@ def stability_command(
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
     from flockana.base.errors import SolverError
-    from flockana.cli.flock import read_flock
+    from flockana.cli.flock import announce_time, read_flock
     from flockana.cli.picture import KINDS, ensure_file, write_figure
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.rest import resting_state
@@ -66,7 +64,7 @@ def stability_command(
     ensure_file(plot, KINDS)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
-        _print_expected_time(len(q), as_given=as_given)
+        announce_time(len(q), as_given=as_given)
         here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
         linear = linearise(law, here, allow_residual=as_given)
         slow = slowest(linear, modes)
@@ -83,21 +81,6 @@ def stability_command(
     if not as_json:
         show_files(picture=plot)
     return OK
-
-
-def _print_expected_time(n: int, *, as_given: bool) -> None:
-    """Print the expected time for a large flock on the error stream; raise if it is too long."""
-    from flockana.base.errors import ArgumentError
-
-    seconds = _SECONDS[as_given] * (n / 1000.0) ** 2
-    if seconds < _SHORT:
-        return
-    what = "its slowest modes take" if as_given else "the search for its equilibrium takes"
-    text = f"n = {n}: {what} about {seconds:.0f} s on a machine of 2024"
-    if seconds > _LONGEST:
-        remedy = "measure fewer agents" if as_given else "with --as-given only the slowest modes at q are sought"
-        raise ArgumentError(f"{text}, more than {_LONGEST:.0f} s; {remedy}")
-    typer.echo(text, err=True)
 
 
 def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:

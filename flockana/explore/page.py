@@ -7,8 +7,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from flockana import player
 from flockana.explore.starts import law_names
+from flockana.player import script, style
 from flockana.report.catalogues import scenario_entries
 
 _SCRIPTS = ("form.js", "handles.js", "answers.js", "history.js", "explore.js")
@@ -26,10 +26,10 @@ def page(first: dict[str, Any], nonce: str) -> str:
     if first["kind"] == "file":
         groups.append({"label": "File", "kind": "file", "names": {first["name"]: ""}})
     data = json.dumps({"first": first, "groups": groups}).replace("<", "\\u003c")
-    scripts = player.script() + "".join(map(_text, _SCRIPTS))
+    scripts = script() + "".join(map(_text, _SCRIPTS))
     return (
         _text("explore.html")
-        .replace("/*STYLE*/", player.style() + _text("explore.css"))
+        .replace("/*STYLE*/", style() + _text("explore.css"))
         .replace("/*DATA*/", data)
         .replace("/*SCRIPT*/", scripts)
         .replace("NONCE", nonce)

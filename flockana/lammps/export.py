@@ -12,10 +12,11 @@ import numpy as np
 
 from flockana.base.checks import (
     FloatArray,
+    draw_start,
     ensure_finite_scalar,
     ensure_known,
     ensure_positive,
-    ensure_state,
+    ensure_seed,
     ensure_time_span,
 )
 from flockana.base.errors import ArgumentError, FileError
@@ -74,6 +75,7 @@ def export_lammps(
     dt: float | None = None,
     samples: int = 200,
     consensus: str = "missing",
+    seed: int = 0,
 ) -> LammpsExport:
     """Write law, start and run for LAMMPS: data file, tabulated pair style, input script, README.txt.
 
@@ -85,8 +87,8 @@ def export_lammps(
     ----------
     law : Law, Flock or Scenario
         A sum of terms with a pair term, such as Algorithm 1, 2 or 3; a flock has a start and a time span, too.
-    q0, p0 : array_like, shape (n, m)
-        Initial positions and velocities; at rest by default.
+    q0, p0 : array_like, shape (n, m), or callable
+        Initial positions and velocities, or functions of the seed; at rest by default.
     folder : path
         Folder to write to; it is made if it is not there. An export from before is replaced, another's file is not.
     points : int
@@ -100,6 +102,8 @@ def export_lammps(
         Snapshots to write, beside the start.
     consensus : {"missing", "nearest"}
         What to do with a velocity consensus that LAMMPS has no style for.
+    seed : int
+        Seed of a start that is drawn.
 
     Raises
     ------
@@ -117,13 +121,13 @@ def export_lammps(
     >>> [path.name for path in result.files], result.force_error < 1e-4, len(result.missing)
     (['in.flock', 'flock.data', 'pair.table', 'README.txt'], True, 1)
     """
-    flock = law.scenario() if hasattr(law, "scenario") else law
+    flock = law.scenario(seed) if hasattr(law, "scenario") else law
     if hasattr(flock, "q0"):  # a flock or a scenario, of a layer above
         law, q0, p0, t_span = flock.law, flock.q0, flock.p0, flock.t_span
     law, term = _translatable(law)
     folder = ensure_path(folder, action="write to", remedy="choose another folder")
     _ensure_own(folder / name for name in (SCRIPT, DATA, TABLE, README))
-    q0, p0 = ensure_state(q0, np.zeros(np.shape(q0)) if p0 is None else p0)
+    q0, p0 = draw_start(q0, p0, ensure_seed(seed))
     law.check_dimension(q0.shape[1])
     law.check_start(q0, p0)
     points, samples = _count("points", points, 2, _MOST_POINTS), _count("samples", samples, 1, 10**9)

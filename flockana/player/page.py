@@ -43,6 +43,7 @@ def page(data: bytes, *, title: str = "A run") -> str:
     """Return a self-contained page with the player and one run."""
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<link rel="icon" href="data:,">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<style>{style()}\n{_WHOLE}</style></head>"
         f'<body><main><h1 class="fp-hidden">{escape(title)}</h1><div id="player"></div></main>'

@@ -20,13 +20,14 @@ from flockana.dynamics.predicates import ensure_run
 from flockana.laws.discrete import DiscreteLaw
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
 from flockana.plots.style import style
-from flockana.scenarios.flock import Flock, chosen
-from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.flock import run_of
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
 
     from flockana.dynamics.trajectory import Trajectory
+    from flockana.scenarios.flock import Flock
+    from flockana.scenarios.scenario import Scenario
 
 _DPI = 100
 _STILL: dict[Any, Any] = {"figure.constrained_layout.use": False}
@@ -101,13 +102,14 @@ def animation(
 
 
 def animate(
-    trajectory: Trajectory | Flock | Scenario | None = None,
+    trajectory: Trajectory | Flock | Scenario | str | None = None,
     path: str | os.PathLike[str] = "",
     *,
     law: Any = None,
     q0: Any = None,
     p0: Any = None,
     t_span: Any = None,
+    seed: int = 0,
     seconds: float = 10.0,
     fps: float = 15.0,
     velocities: bool = False,
@@ -118,10 +120,12 @@ def animate(
 
     Parameters
     ----------
-    trajectory : Trajectory, Flock or Scenario, optional
-        The run, or what is simulated first.
+    trajectory : Trajectory, Flock, Scenario or str, optional
+        The run, or what is simulated first: a flock, a scenario or its name.
     law, q0, p0, t_span : optional
         Instead of it: the parts of a `Flock`.
+    seed : int
+        Seed of a start that is drawn.
     path : path-like
         File to write, ``.gif`` or ``.mp4``; an existing one is replaced only when the new one is whole.
     fps : float
@@ -143,8 +147,7 @@ def animate(
     from flockana.plots.gif import GifWriter
 
     target = ensure_film(path, seconds=seconds, fps=fps)
-    given = chosen(trajectory, law=law, q0=q0, p0=p0, t_span=t_span)
-    run = given.run() if isinstance(given, Flock | Scenario) else given
+    run = run_of(trajectory, law=law, q0=q0, p0=p0, t_span=t_span, seed=seed)
     film = animation(run, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
     writer = GifWriter(fps=fps) if target.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)  # type: ignore[arg-type]
     # Ctrl-C is heard between frames: before the first one the writer has nothing to end, and a callback may swallow it.

@@ -7,6 +7,7 @@ from typing import Any
 import matplotlib as mpl
 
 from flockana.base.checks import ensure_known
+from flockana.base.errors import ArgumentError, format_value
 from flockana.base.files import ensure_path
 
 COLUMNS = {  # widths in inches
@@ -47,6 +48,8 @@ def save(drawing: Any, path: str | os.PathLike[str], *, column: str = "") -> Pat
     ('empty.pdf', 3.5)
     """
     target = ensure_path(path, action="write")
+    if not hasattr(drawing, "get_figure"):
+        raise ArgumentError(f"drawing = {format_value(drawing)}: expected a figure or Axes of matplotlib")
     figure = drawing if hasattr(drawing, "savefig") else drawing.get_figure()
     if column:
         ensure_known("column", column, COLUMNS)

@@ -1,6 +1,5 @@
 """Findings that stand first in the report: plain sentences, each on a verdict of the catalogue."""
 
-import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -29,15 +28,6 @@ class FrontFinding(NamedTuple):
     thumbnail: str  # SVG of the flock at the end; empty without figures
 
 
-_STILL = re.compile(r'<svg [^>]*aria-label="The flock at .*?</svg>', re.DOTALL)
-
-
-def thumbnail(page: ScenarioPage) -> str:
-    """Return the last still of a scenario's figures as SVG, or an empty text."""
-    found = [still for picture in page.pictures for still in _STILL.findall(picture.source)]
-    return found[-1] if found else ""
-
-
 def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
     """Return the findings whose verdicts are in the report and as expected."""
     by_name = {page.name: page for page in pages if isinstance(page, ScenarioPage)}
@@ -47,5 +37,5 @@ def front_findings(pages: Iterable[object]) -> tuple[FrontFinding, ...]:
         verdicts = [] if page is None else [f for f in page.findings if f.verdict.theorem == theorem]
         if page is not None and verdicts and verdicts[0].as_expected:
             address = verdict_id(scenario, theorem)
-            found.append(FrontFinding(text, verdicts[0].verdict.status, address, thumbnail(page)))
+            found.append(FrontFinding(text, verdicts[0].verdict.status, address, page.thumbnail))
     return tuple(found)

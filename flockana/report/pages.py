@@ -12,6 +12,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
+from flockana.report.stills import still
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
 from flockana.scenarios.checks import SOURCE
@@ -84,6 +85,7 @@ class ScenarioPage:
     early_end: str = ""  # why the run ended early; empty if it did not
     references: tuple[str, ...] = ()  # keys of the bibliography
     play: str = ""  # the run for the player, as text (`flockana.player`); empty if there are no figures
+    thumbnail: str = ""  # the flock at the end, as SVG; empty if there are no figures
 
     @property
     def surprises(self) -> tuple[str, ...]:
@@ -133,6 +135,7 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         early_end,
         tuple(scenario.references),
         _play(scenario, run, result.verdicts) if figures else "",
+        still(run, float(run.t[-1])) if figures else "",
     )
 
 

@@ -54,6 +54,12 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     return f'<div class="panels">{"".join(drawn)}</div>'
 
 
+def still(run: Trajectory, time: float) -> str:
+    """Return the sample nearest to a time as one SVG, on a scale of its own."""
+    text, end = stills(run, [time]), "</svg>"
+    return text[text.index("<svg ") : text.index(end) + len(end)]
+
+
 def _project(points: FloatArray) -> FloatArray:
     """Project points for drawing: on a line to one height, in space from the player's first view."""
     if points.shape[1] == 1:

@@ -5,10 +5,9 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import Any
 
-import numpy as np
-
-from flockana.base.checks import ensure_seed, ensure_state, ensure_time_span
+from flockana.base.checks import draw_start, ensure_seed, ensure_state, ensure_time_span
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.predicates import ensure_run
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import ensure_law
 from flockana.scenarios.scenario import Scenario
@@ -34,6 +33,7 @@ class Flock:
 
     Examples
     --------
+    >>> import numpy as np
     >>> from flockana.laws.olfati_saber import Algorithm1
     >>> flock = Flock(Algorithm1(), lambda seed: 6.0 * np.random.default_rng(seed).normal(size=(5, 2)), t_span=(0, 1))
     >>> flock.scenario(seed=1).q0.shape, flock.run(seed=1).status
@@ -60,11 +60,7 @@ class Flock:
 
     def start(self, seed: int = 0) -> tuple[Any, Any]:
         """Return positions and velocities, each of shape (n, m)."""
-        q = self.q0(ensure_seed(seed)) if callable(self.q0) else self.q0
-        p = self.p0(seed) if callable(self.p0) else self.p0
-        if p is None and isinstance(q, tuple) and len(q) == 2 and np.ndim(q[0]) == 2:
-            q, p = q
-        return ensure_state(q, np.zeros(np.shape(q)) if p is None else p)
+        return draw_start(self.q0, self.p0, ensure_seed(seed))
 
     def scenario(self, seed: int = 0, **parameters: Any) -> Scenario:
         """Return the flock as a scenario.
@@ -112,6 +108,18 @@ def as_scenario(given: Any, seed: int = 0) -> Scenario:
     if not isinstance(given, Scenario):
         raise ArgumentError(f"scenario = {given!r}: expected a name of the catalogue, a Scenario or a Flock")
     return given
+
+
+def run_of(given: Any = None, *, seed: int = 0, **parts: Any) -> Trajectory:
+    """Return a run as it is, or simulate a scenario, its name, a flock, or the parts of a flock.
+
+    Parameters
+    ----------
+    **parts
+        law, q0, p0, t_span, as of `chosen`.
+    """
+    item = chosen(given, **parts)
+    return as_scenario(item, seed).run() if isinstance(item, str | Flock | Scenario) else ensure_run(item)
 
 
 def law_parameter(law: Any, name: str) -> Any:

@@ -99,7 +99,7 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
     >>> blocks(np.zeros((2, 2)), np.eye(2), np.array([[0.0, 0.0]])).drifting.shape
     (2, 0)
     """
-    rigid = rigid_motions(q)
+    rigid = rigid_motions(ensure_points("q", q))
     neutral = _kernel(stiffness, rigid)
     return Blocks(stiffness, damping, rigid, neutral, _kernel(damping, neutral))
 

@@ -23,7 +23,7 @@ from flockana.equilibria.curvature import EPS
 from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-from flockana.stability.blocks import Blocks, complement, law_blocks
+from flockana.stability.blocks import Blocks, complement, ensure_pairs_and_pull, law_blocks
 from flockana.stability.rounding import eigen
 
 if TYPE_CHECKING:
@@ -268,6 +268,7 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
     >>> bool(table.h2[1] > table.h2[0] and np.all(table.bounds[:, 0] <= table.h2))
     True
     """
+    ensure_pairs_and_pull(law)
     counts = tuple(ensure_count("sizes", n) for n in sizes)
     rows = []
     for n in counts:

@@ -23,5 +23,9 @@ def test_a_finding_has_its_verdict_its_place_and_a_picture():
     assert (found.status, found.address) == ("verified", "scenario-hexagon--os-1")
     assert found.thumbnail.startswith("<svg ")
     assert found.thumbnail.count("<svg ") == 1
+    width = float(found.thumbnail.split('viewBox="0 0 ')[1].split()[0])
+    dots = found.thumbnail.split('class="agents"')[1].split('d="M')[1].split('"')[0].removesuffix("h0").split("h0M")
+    x = [float(dot.split()[0]) for dot in dots]
+    assert max(x) - min(x) > 0.85 * width  # the flock at the end fills the picture
     other = tuple(replace(finding, expected={"os-1": "refuted"}) for finding in made.findings)
     assert len(front_findings([replace(made, findings=other)])) <= 1

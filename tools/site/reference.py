@@ -23,6 +23,7 @@ _TITLES = {
     "lammps": "LAMMPS",
     "laws": "Laws",
     "measures": "Measures",
+    "player": "Players",
     "plots": "Films",
     "recorded": "Recorded flocks",
     "scenarios": "Scenarios and flocks",
@@ -96,4 +97,4 @@ def _row(entry: tuple[str, str]) -> tuple[str, str]:
     """Return a name and the first sentence of its docstring."""
     item = getattr(importlib.import_module(entry[0]), entry[1])
     first = (inspect.getdoc(item) or "").partition("\n\n")[0].replace("\n", " ")
-    return f"`{entry[1]}`", plain(first) or "—"
+    return f"{{py:obj}}`{entry[1]} <{'.'.join(entry)}>`", plain(first.replace("`", "")) or "—"
