@@ -41,5 +41,5 @@ def study(*, quick: bool) -> Found:
 def _taken(arguments: tuple[str, ...]) -> float:
     started = time.perf_counter()
     with all_cores():
-        subprocess.run([sys.executable, *arguments], capture_output=True, check=False)
+        subprocess.run([sys.executable, *arguments], capture_output=True, check=True)  # no wait for a refusal
     return time.perf_counter() - started

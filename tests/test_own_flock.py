@@ -40,8 +40,16 @@ def test_verify_without_a_theorem_gives_one_table_of_those_about_the_law():
     assert len(str(found).splitlines()) == 1 + len(found)
     assert found._repr_html_().count("<tr>") == 1 + len(found)
     assert r"\toprule" in found.to_latex()
-    with pytest.raises(ArgumentError, match=r"expected a Trajectory, or law=..., q0=..."):
-        fl.verify(law=LAW)
+    for call, message in (
+        (lambda: fl.verify(law=LAW), r"expected a Trajectory, or law=..., q0=..."),
+        (lambda: fl.verify(law=LAW, q0=start), r"a function of a seed: expected Flock\(law, q0, p0, t_span\).verify"),
+        (
+            lambda: fl.verify(None, fl.Flock(LAW, start)),
+            r"trajectory is a Flock: expected flock.run\(seed\), or flock.verify",
+        ),
+    ):
+        with pytest.raises(ArgumentError, match=message):
+            call()
 
 
 def test_ensemble_of_an_own_flock_over_seeds_and_numbers_of_its_law():

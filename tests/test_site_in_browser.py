@@ -12,7 +12,8 @@ import pytest
 
 HERE = Path(__file__).resolve().parent
 HTML = HERE.parent / "site" / "html"
-PAGES = ("start.html", "generated/theorems/os-3.html", "generated/scenarios/hexagon.html", "howto/verify.html")
+FOUND = "search.html?q=Theorem+3"
+PAGES = ("start.html", "generated/theorems/os-3.html", "generated/scenarios/hexagon.html", "howto/verify.html", FOUND)
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -65,6 +66,8 @@ def too_wide(tab):
 def test_a_page_is_quiet_fits_and_can_be_read_by_all(visit, name, width, scheme):
     tab = visit(name, width=width, scheme=scheme)
     typeset(tab)
+    if name == FOUND:
+        tab.wait_for_selector("#search-results .highlighted")
     unnamed = "[...document.images].filter(i => !i.alt && i.getAttribute('role') !== 'presentation').length"
     assert tab.evaluate(unnamed) == 0
     assert too_wide(tab) <= 0

@@ -6,6 +6,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from inspect import unwrap
 
 _EVERY = 2.0  # seconds between looks; two in a row within the compiler are no accident
 _TEXT = "compiling for this machine, which happens once and takes up to a minute ..."
@@ -38,7 +39,7 @@ def _watch(thread: int, over: threading.Event) -> None:
 def in_compiler(thread: int) -> bool:
     """Return whether a thread compiles a kernel."""
     jit = sys.modules.get("flockana.jit")  # not imported for this: most commands need no compiler
-    compile_functions = (jit.Kernel._compile.__code__, jit.callback.__code__) if jit else ()
+    compile_functions = [unwrap(each).__code__ for each in (jit.Kernel._compile, jit.callback)] if jit else []
     frame = sys._current_frames().get(thread)
     while frame is not None:
         if frame.f_code in compile_functions:

@@ -187,7 +187,7 @@ def verify(
     if name is None:
         from flockana.theorems.together import verify_together  # which checks each theorem by this function
 
-        run = trajectory if trajectory is not None else _simulated(law, q0, p0, t_span)
+        run = _run(trajectory, law, q0, p0, t_span)
         return verify_together(run, tolerances=tolerances, subject=subject)
     item = name if isinstance(name, Theorem) else theorem(name)
     used = Tolerances() if tolerances is None else tolerances
@@ -206,21 +206,28 @@ def verify(
     if basin is not None:
         raise ArgumentError("a basin decides the limit of a tube: expected verify(theorem, enclose(...), basin=...)")
     if item.kind == "trajectory":
-        run = trajectory if trajectory is not None else _simulated(law, q0, p0, t_span)
-        if not isinstance(run, Trajectory):
-            raise ArgumentError(f"trajectory = {run!r}: expected a Trajectory, such as scenario('collapse').run()")
-        return _verified_run(item, run, used, subject)
+        return _verified_run(item, _run(trajectory, law, q0, p0, t_span), used, subject)
     subject_data: tuple[Any, ...] = ()
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
     return Verdict(item.id, *item.examine(*subject_data, used), used, subject, item.author)
 
 
-def _simulated(law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
-    """Return a run from a start; without p0 at rest, without t_span over 20 time units."""
-    if law is None or q0 is None:
-        raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
-    return simulate(law, q0, np.zeros(np.shape(q0)) if p0 is None else p0, T_SPAN if t_span is None else t_span)
+def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
+    """Return the run, or one from a start; without p0 at rest, without t_span over 20 time units."""
+    if trajectory is None:
+        if law is None or q0 is None:
+            raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
+        if callable(q0) or callable(p0):
+            raise ArgumentError("the start is a function of a seed: expected Flock(law, q0, p0, t_span).verify(seed)")
+        p = np.zeros(np.shape(q0)) if p0 is None else p0
+        return simulate(law, q0, p, T_SPAN if t_span is None else t_span)
+    if not isinstance(trajectory, Trajectory):
+        if hasattr(trajectory, "drawn"):  # a flock, of a layer above
+            raise ArgumentError("trajectory is a Flock: expected flock.run(seed), or flock.verify(seed)")
+        given = format_value(trajectory)
+        raise ArgumentError(f"trajectory = {given}: expected a Trajectory, such as scenario('collapse').run()")
+    return trajectory
 
 
 def _is_recording(run: Any) -> TypeGuard[Recording]:

@@ -15,6 +15,7 @@ from flockana.theorems.of_schemes import ON_STEPS, is_about_steps
 from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
 
 _HEADS = ("theorem", "status", "rigour", "decided by", "title")
+_COLUMN = 28  # characters
 
 
 class Verdicts(tuple[Verdict, ...]):
@@ -27,7 +28,9 @@ class Verdicts(tuple[Verdict, ...]):
         return [(v.theorem, v.status, v.rigour, _deciding(v), _title(v.theorem)) for v in self]
 
     def __str__(self) -> str:
-        rows = [(name, f"{MARKS[status]} {status}", *rest) for name, status, *rest in self.rows()]
+        rows = [
+            (v, f"{MARKS[status]} {status}", rigour, _cut(by), title) for v, status, rigour, by, title in self.rows()
+        ]
         return text_table(rows, _HEADS)
 
     def __repr__(self) -> str:
@@ -74,6 +77,11 @@ def _is_about(item: Theorem, seen: Observed) -> bool:
     if item.kind != "trajectory":
         return False
     return item.law is None or item.law(seen).status != "unmet" or (item.id in ON_STEPS and is_about_steps(item, seen))
+
+
+def _cut(text: str) -> str:
+    """Return a text that fits a column: a hypothesis can be a sentence."""
+    return text if len(text) <= _COLUMN else f"{text[: _COLUMN - 1]}…"
 
 
 def verify_together(
