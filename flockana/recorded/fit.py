@@ -43,8 +43,8 @@ class Fit:
         95 % confidence intervals.
     misfit : float
         Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
-    freedom : int
-        Degrees of freedom.
+    freedom : float
+        Degrees of freedom of the intervals.
     untold : tuple of str
         What the data cannot tell, in words.
     message : str
@@ -56,7 +56,7 @@ class Fit:
     errors: Mapping[str, float]
     correlation: FloatArray
     misfit: float
-    freedom: int
+    freedom: float
     untold: tuple[str, ...]
     message: str = ""
 
@@ -186,7 +186,7 @@ def _stepped(rec: Recording, parameters: Free) -> Fit:
 
 
 def _result(
-    parameters: Free, values: FloatArray, covariance: FloatArray, told: Any, misfit: float, freedom: int, message: str
+    parameters: Free, values: FloatArray, covariance: FloatArray, told: Any, misfit: float, freedom: float, message: str
 ) -> Fit:
     names, errors = parameters.names, np.sqrt(np.maximum(np.diag(covariance), 0.0))
     scale = np.where(errors > 0.0, errors, 1.0)
