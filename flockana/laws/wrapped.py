@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_count
+from flockana.base import checks
+from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.law import Law
@@ -232,9 +233,9 @@ def ensure_wrappable(law: Any) -> None:
 
 def ensure_seed(seed: Any) -> int:
     """Return a seed, a whole number from 0 to 2⁶² − 1."""
-    if seed == 0 and not isinstance(seed, bool):
-        return 0
-    return ensure_count("seed", seed)
+    if (found := checks.ensure_seed(seed)) >= 2**62:  # times the channels it is part of a key, and files hold 64 bits
+        raise ArgumentError(f"seed = {found}: expected a whole number below 2**62")
+    return found
 
 
 def needs_steps(law: Any) -> bool:
@@ -303,5 +304,5 @@ def ensure_hears(law: Law) -> None:
     if not any(isinstance(term, PairTerm) for term in core.terms):
         raise ArgumentError(
             f"law = {core!r}: expected a sum of terms with a pair term, such as Algorithm1(), in which the states "
-            'of others are apart from an agent\'s own; delayed="all" takes any law'
+            'of others are apart from an agent\'s own; late="all" and of="all" take any law'
         )

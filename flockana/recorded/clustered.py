@@ -9,11 +9,12 @@ from flockana.base.checks import FloatArray
 _ALONE = 1e-9  # share of the squares of slopes that the other agents leave an estimate, below which one tells it alone
 
 
-def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[FloatArray, int]:
+def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
     """Return the covariance (P, P) of estimates, by the jackknife over agents, and its degrees of freedom.
 
     Slopes have the shape (K, n, m, P), residuals (K, n, m). Residuals of one agent are dependent, and less than its
     errors, as the estimates follow them: each agent's count as large as they are to estimates from all the others.
+    Where few agents tell an estimate, it has as many degrees of freedom: (Σv)²/Σv² of their shares v in its variance.
     Where there are no others, or these do not tell a parameter, all residuals count as independent.
     """
     n, count = residuals.shape[1], slopes.shape[-1]
@@ -25,4 +26,7 @@ def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[F
         return inverse * (float(np.sum(residuals**2)) / freedom), freedom
     scores = np.linalg.solve(others, np.einsum("kimc,kim->ic", slopes, residuals)[:, :, None])[:, :, 0]
     covariance: FloatArray = inverse @ (scores.T @ scores) @ inverse * ((n - 1) / n)
-    return covariance, n - 1
+    shares = np.einsum("ab,ibc,ca->ia", inverse, squares, inverse)
+    told = shares.sum(axis=0) > 0.0
+    effective = shares.sum(axis=0)[told] ** 2 / np.sum(shares[:, told] ** 2, axis=0)
+    return covariance, float(effective.min(initial=n - 1))

@@ -38,7 +38,7 @@ class Solution(NamedTuple):
     gains: FloatArray
     errors: FloatArray
     left: float
-    freedom: int
+    freedom: float
 
 
 class Explained(NamedTuple):
@@ -131,7 +131,7 @@ def _with_better_forms(
     return current, texts
 
 
-def _differs(one: Share, freedom: int) -> bool:
+def _differs(one: Share, freedom: float) -> bool:
     from scipy.stats import t
 
     off = abs(one.found - one.stated)

@@ -43,8 +43,8 @@ class Fit:
         95 % confidence intervals.
     misfit : float
         Root mean square residual over the accuracy, 1 if the law fits within it; NaN where none is stated.
-    freedom : int
-        Degrees of freedom.
+    freedom : float
+        Degrees of freedom of the intervals.
     untold : tuple of str
         What the data cannot tell, in words.
     message : str
@@ -56,7 +56,7 @@ class Fit:
     errors: Mapping[str, float]
     correlation: FloatArray
     misfit: float
-    freedom: int
+    freedom: float
     unidentifiable: tuple[str, ...]
     message: str = ""
 
@@ -191,7 +191,7 @@ def _result(
     covariance: FloatArray,
     identifiable: Any,
     misfit: float,
-    freedom: int,
+    freedom: float,
     message: str,
 ) -> Fit:
     names, errors = parameters.names, np.sqrt(np.maximum(np.diag(covariance), 0.0))

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import ensure_path
 from flockana.recorded.reading.arrays import mat_arrays, named_arrays, netcdf_arrays, npz_arrays
@@ -70,10 +71,19 @@ def read_recording(
     2
     """
     accuracy = {"bound": bound, "sd": sd, "p_bound": p_bound, "p_sd": p_sd}
+    dt = None if dt is None else ensure_positive("dt", dt)
     if isinstance(source, Mapping):
         by_name = columns if isinstance(columns, Mapping) else None
         return Recording(**named_arrays(source, "the mapping", columns=by_name, dt=dt), **accuracy)
     if hasattr(source, "columns") and hasattr(source, "iloc"):
+        if any(name is not None and name not in source.columns for name in source.index.names):
+            source = source.reset_index()  # times or agents are the index
+        if columns is not None and not isinstance(columns, Mapping):
+            if len(columns) != len(source.columns):
+                raise ArgumentError(
+                    f"columns has {len(columns)} names: expected {len(source.columns)}, as the frame has"
+                )
+            source = source.set_axis(list(columns), axis=1)
         return Recording(**table_arrays(source, columns=columns, dt=dt, clock=clock), source="a frame", **accuracy)
     if not isinstance(source, str | os.PathLike):
         raise ArgumentError(

@@ -141,6 +141,33 @@ def test_wrong_tables_are_refused_with_row_column_and_remedy(tmp_path, text, mes
         fl.read_recording(path)
 
 
+@pytest.mark.parametrize(
+    ("source", "how", "message"),
+    [
+        (long_table().set_axis(["t", "id", "x", "x", "y", "vx"], axis=1), {}, "the column 'x' is given twice"),
+        (long_table().iloc[:0], {}, "the frame has no rows"),
+        (long_table().assign(vx=1j), {}, "row 0, column 'vx': '1j'; expected a finite number"),
+        (long_table(), {"columns": ["t", "id"]}, "columns has 2 names: expected 6"),
+        (long_table(), {"columns": {"t": "Time (s)", "q": None}}, "the frame has no column None"),
+        (pd.DataFrame({"t": pd.to_datetime(["2024-05-01", None]), "x": [0.0, 1.0]}), {"clock": 1.0}, "row 1.*no time"),
+        ({"q": Q}, {"dt": 0.0}, "dt = 0: expected a number > 0"),
+        ({"t": T, "q": [[[0.0]], [[1.0], [2.0]]]}, {}, "q has rows of different lengths"),
+        ({"t": T, "q": Q}, {"columns": {"q": ["x", "y"]}}, r"has no array \['x', 'y'\]: expected one of t, q"),
+    ],
+)
+def test_wrong_frames_and_arrays_are_refused_in_one_line(source, how, message):
+    with pytest.raises(FlockanaError, match=message) as refused:
+        fl.read_recording(source, **how)
+    assert "\n" not in str(refused.value)
+
+
+def test_arrays_and_frames_may_be_named():
+    ensure_same(fl.read_recording({"a": T, 1: 0, "b": Q, "c": P}, columns={"t": "a", "q": "b", "p": "c"}))
+    frame = long_table()
+    ensure_same(fl.read_recording(frame.set_index(["Time (s)", "ID"])))
+    ensure_same(fl.read_recording(frame.set_axis(range(6), axis=1), columns=list(frame)))
+
+
 def test_wrong_bytes_and_files_are_refused(tmp_path):
     path = tmp_path / "it.csv"
     for data, message in ((b"t,x\n0,\xff\n", "line 2: byte 0xff"), (b"\xff\xfet\0", "UTF-16"), (b"t\0", "null bytes")):

@@ -23,21 +23,23 @@ def named_arrays(
     arrays: Mapping[str, Any], where: str, *, columns: Mapping[str, Any] | None = None, dt: float | None = None
 ) -> dict[str, Any]:
     """Return t, q, p and u among arrays by name."""
-    lower = {name.lower(): name for name in arrays}
+    given = {} if columns is None else dict(columns)
+    lower = {str(name).lower(): name for name in arrays if name not in given.values()}
     found: dict[str, Any] = {}
     for kind, names in _NAMES.items():
-        if columns is not None and kind in columns:
-            if columns[kind] not in arrays:
-                raise ArgumentError(f"{where} has no array {columns[kind]!r}: expected one of {', '.join(arrays)}")
-            found[kind] = np.asarray(arrays[columns[kind]])
+        if kind in given:
+            if given[kind] not in list(arrays):
+                raise ArgumentError(
+                    f"{where} has no array {given[kind]!r}: expected one of {', '.join(map(str, arrays))}"
+                )
+            found[kind] = _array(arrays[given[kind]], kind, where)
         elif (name := next((lower[each] for each in names if each in lower), None)) is not None:
-            found[kind] = np.asarray(arrays[name])
+            found[kind] = _array(arrays[name], kind, where)
     shown = ", ".join(f"{name} {np.shape(value)}" for name, value in arrays.items()) or "nothing"
     if "q" not in found:
         raise ArgumentError(
             f'{where} holds {shown}: expected t (T,) and q (T, n, m); name them by columns={{"t": ..., "q": ...}}'
         )
-    _check_numbers(found, where)
     q = found["q"]
     if q.ndim != 3:
         raise ArgumentError(
@@ -55,10 +57,15 @@ def named_arrays(
     return found
 
 
-def _check_numbers(found: Mapping[str, Any], where: str) -> None:
-    for kind, array in found.items():
-        if array.dtype.kind not in "fiu":
-            raise ArgumentError(f"{where}: {kind} is an array of {array.dtype}: expected real numbers")
+def _array(value: Any, kind: str, where: str) -> Any:
+    """Return an array of real numbers, or raise."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ArgumentError(f"{where}: {kind} has rows of different lengths: expected an array of numbers") from None
+    if array.dtype.kind not in "fiu":
+        raise ArgumentError(f"{where}: {kind} is an array of {array.dtype}: expected real numbers")
+    return array
 
 
 def npz_arrays(path: Path) -> dict[str, Any]:

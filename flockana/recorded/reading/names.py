@@ -100,7 +100,8 @@ def given_layout(columns: Mapping[str, Any], names: Sequence[Any], where: str) -
     unknown = set(columns) - {"t", "frame", "id", "q", "p", "u"}
     if unknown:
         raise ArgumentError(f"columns has {format_value(sorted(unknown))}: expected t, frame, id, q, p, u")
-    kinds = {k: [columns[k]] if isinstance(columns[k], str) else list(columns[k]) for k in "qpu" if k in columns}
+    given = {k: columns[k] for k in "qpu" if k in columns}
+    kinds = {k: [x] if isinstance(x, str) else list(x) if isinstance(x, Sequence) else [x] for k, x in given.items()}
     asked = [*(columns[k] for k in ("t", "frame", "id") if k in columns), *(x for v in kinds.values() for x in v)]
     lacking = [x for x in asked if x not in list(names)]
     if lacking:

@@ -24,6 +24,11 @@ def table_arrays(
 ) -> dict[str, Any]:
     """Return t, q, p, u and ids of a table, as `Recording` takes them."""
     where = str(frame.attrs.get("where", "the frame"))
+    if not len(frame):
+        raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
+    if not frame.columns.is_unique:
+        twice = frame.columns[frame.columns.duplicated()][0]
+        raise ArgumentError(f"{where}: the column {twice!r} is given twice; expected each once")
     layout = (
         given_layout(columns, list(frame), where) if isinstance(columns, Mapping) else layout_of(list(frame), where)
     )
@@ -41,12 +46,13 @@ def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, wh
     if layout.time is not None:
         series = frame[layout.time]
         if series.dtype.kind == "M" or (series.dtype.kind not in "fiu" and _is_date(series.iloc[0])):
-            return _read_dates(series, clock, where, layout.time)
-        t = numbers(frame, layout.time)
+            t = _read_dates(series, clock, where, layout.time)
+        else:
+            t = numbers(frame, layout.time)
         if np.isnan(t).any():
             k = int(np.argmax(np.isnan(t)))
             raise FileError(f"{row_name(frame, k)}, column {layout.time!r}: no time; expected one in every row")
-        return t  # type: ignore[no-any-return]
+        return t
     if layout.frame is None:
         raise ArgumentError(f'{where} has no times: expected a column time or frame; name it by columns={{"t": ...}}')
     if dt is None:
@@ -55,7 +61,7 @@ def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, wh
     if np.isnan(steps).any() or (steps != np.rint(steps)).any():
         k = int(np.argmax(~(steps == np.rint(steps))))
         raise FileError(f"{row_name(frame, k)}, column {layout.frame!r}: expected a whole number")
-    return steps * ensure_positive("dt", dt)  # type: ignore[no-any-return]
+    return steps * dt  # type: ignore[no-any-return]
 
 
 def _is_date(value: Any) -> bool:

@@ -66,6 +66,8 @@ def numbers(frame: Any, column: str) -> Any:
     import pandas as pd
 
     series = frame[column]
+    if series.dtype.kind == "c":
+        raise _bad_cell(frame, 0, column, series.iloc[0])
     if series.dtype.kind in "fiu":
         values = series.to_numpy(dtype=np.float64)
     else:
