@@ -7,11 +7,12 @@ from collections.abc import Callable
 from html import escape
 from io import StringIO
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_MEASURED_DPI = 72  # that of SVG: texts are as long where they are measured as where they are drawn
 _COLOURS = {
     "#222222": "--ink",
     "#000000": "--ink",
@@ -40,16 +41,39 @@ def plots() -> ModuleType:
 def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
     """Return a figure in flockana's style as an ``<svg>`` element."""
     import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
+        figure = _placed(draw, size, _MEASURED_DPI).figure
+        text = StringIO()
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(text, metadata={"Date": None})
+    return _adapt_svg(text.getvalue())
+
+
+def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
+    """Return the drawn canvas of a figure in flockana's style."""
+    import matplotlib as mpl
+
+    with plots().style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
+        canvas = _placed(draw, size, dpi)
+        canvas.draw()
+    return canvas
+
+
+def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: float) -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    look = {"svg.fonttype": "none", "path.simplify_threshold": 0.3, "axes.formatter.use_mathtext": False}
-    with plots().style(), mpl.rc_context(look):  # type: ignore[arg-type]  # the stubs know each key's type
-        # not pyplot's: nothing to close, safe in any process; of SVG's dpi, so that texts are as long as measured
-        figure = Figure(figsize=size, dpi=72, layout="constrained")
-        draw(figure)
-        text = StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    return _adapt_svg(text.getvalue())
+    from flockana.plots.scales import plain_scales
+    from flockana.report.layout import place_axes
+
+    figure = Figure(figsize=size, dpi=dpi)  # not pyplot's: nothing to close, safe in any process
+    figure.set_layout_engine("none")
+    canvas: Any = FigureCanvasAgg(figure)
+    draw(figure)
+    place_axes(figure, canvas.get_renderer(), plain_scales(figure))
+    return canvas
 
 
 def _adapt_svg(text: str) -> str:
