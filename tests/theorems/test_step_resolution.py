@@ -9,7 +9,7 @@ import flockana as fl
 from flockana.theorems import Claim
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.second_runs import second_run
-from flockana.theorems.step_resolution import NAME, demand_of, steps_of
+from flockana.theorems.step_resolution import NAME, Formula, _hidden, demand_of, steps_of
 
 SPIKE = "exp(-((s - 2.05)*width)**2)"
 FORMULA = f"0.1*(r - s)**2*(s - 1)**2 + barrier*{SPIKE}", f"(1 - s/r)**2*(1 + brake*{SPIKE})"  # for all, compiled once
@@ -53,6 +53,17 @@ def test_a_pole_counts_where_a_pair_comes_near_it(place, status):
     run = fl.simulate(fl.Algorithm1(pair), [[0.0], [place]], [[0.0], [0.0]], (0.0, 0.5))
     found = {one.name: one.status for one in fl.verify("os-1", run).hypotheses}
     assert found.get(NAME) == status
+
+
+def test_slopes_count_where_the_pair_is():
+    """ψ = 0.01 (3 − s)²/s has ψ″ = 0.18/s³: a pole at contact, and 0.01152 at 2.5."""
+    pair = fl.pair_law("0.01*(r - s)**2/s", adjacency="(1 - s/r)**2", range=3.0, length=1.0)
+    apart = np.zeros((3, 6, 3))
+    apart[:, :, 0] = [[0.001], [2.5], [3.5]]
+    rates, ways = _hidden(Formula(pair, 1.0, 1.0), apart, np.zeros(3), 1.0)
+    assert rates[0] > 2e6
+    assert rates[1] == pytest.approx(2.0 * 0.01152, rel=0.1)
+    assert (rates[2], *ways) == (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("about", ["run", "limit", "all"])
