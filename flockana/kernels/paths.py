@@ -215,6 +215,24 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
 
 
 @njit(cache=True)
+def closest_of_few(t, states, slack, stops, tols, all_pairs):
+    """Return `closest_pair` over all pairs of a small flock in each interval, five arrays; skip those with stop 0.
+
+    `states` are (q, p, u) over time; `slack`, (T − 1, n), adds to reaches and allowances.
+    """
+    (q, p, u), (first, second), steps = states, all_pairs, len(t) - 1
+    lower, reached, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
+    a, b = np.full(steps, -1), np.full(steps, -1)
+    for k in range(steps):
+        if stops[k] == 0.0:
+            continue
+        points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        found = closest_pair(points, reach + slack[k], allowance + slack[k], first, second, stops[k], tols[k])
+        lower[k], reached[k], where[k], a[k], b[k] = found
+    return lower, reached, where, a, b
+
+
+@njit(cache=True)
 def touching_pairs(points, reach, first, second, tol, out):
     """Mark in `out` the first parameter at which each pair's quintics are within tol of each other, -1 if never."""
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))

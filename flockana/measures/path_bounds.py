@@ -5,15 +5,18 @@ them (`flockana.kernels.paths` says when that is): those of the solver's own ste
 not. So a run keeps the steps between its samples (`flockana.dynamics.between`).
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.kernels.neighbours import pair_blocks
-from flockana.kernels.paths import bernstein, closest_pair, control_points, farthest, touching_pairs
+from flockana.kernels.neighbours import DENSE_MAX, pair_blocks
+from flockana.kernels.paths import bernstein, closest_of_few, closest_pair, control_points, farthest, touching_pairs
 from flockana.measures.metrics import cohesion_radii, min_distances
+
+States = tuple[FloatArray, FloatArray, FloatArray]  # q, p, u over time
 
 ROUNDING = 2.0**-50  # of the coordinates: a smaller distance is lost in their rounding and counts as 0
 RELATIVE_TOL = 1e-6  # of the subdivision: far below the interpolation allowance of any real run
@@ -47,28 +50,39 @@ def closest_approach(
     k = int(np.argmin(at_samples))
     lower = reached = float(at_samples[k])
     when, pair = float(t[k]), _pair_at(q[k], reached)
-    for k in range(len(t) - 1):
-        h = t[k + 1] - t[k]
-        points, reach, allowance = control_points(h, q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-        if slack is not None:
-            reach, allowance = reach + slack[k], allowance + slack[k]
-        stop = float(min(at_samples[k], at_samples[k + 1]))
-        noise = ROUNDING * float(extents[k])
-        bounds[k] = stop if stop > noise else 0.0
-        if bounds[k] == 0.0:
-            lower = 0.0
-            continue
-        for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
-            tol = max(RELATIVE_TOL * bounds[k], noise)
-            low, distance, at, a, b = closest_pair(points, reach, allowance, i, j, bounds[k], tol)
-            if a < 0:
-                continue
-            bounds[k] = low
-            if low < lower:
-                share = at if at >= 0.0 else float(at_samples[k + 1] < at_samples[k])  # nowhere below both ends
-                lower, when, pair = low, float(t[k] + share * h), (int(min(a, b)), int(max(a, b)))
-            reached = min(reached, distance)
+    stops, noises = np.minimum(at_samples[:-1], at_samples[1:]), ROUNDING * extents[:-1]
+    bounds = np.where(stops > noises, stops, 0.0)
+    if len(bounds) and bounds.min() == 0.0:
+        lower = 0.0
+    slack = np.zeros((len(bounds), q.shape[1])) if slack is None else slack
+    for k, low, distance, at, a, b in _nearer(t, (q, p, u), slack, bounds.copy(), noises):
+        bounds[k] = low
+        if low < lower:
+            share = at if at >= 0.0 else float(at_samples[k + 1] < at_samples[k])  # nowhere below both ends
+            lower, when, pair = low, float(t[k] + share * (t[k + 1] - t[k])), (int(min(a, b)), int(max(a, b)))
+        reached = min(reached, distance)
     return ClosestApproach(lower, reached, when, pair, bounds)
+
+
+def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray, noises: FloatArray) -> Iterator[Any]:
+    """Yield (interval, lower bound, distance reached, share, i, j) where a pair may come nearer than at both ends."""
+    q, p, u = (np.ascontiguousarray(x) for x in states)
+    if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
+        tols = np.maximum(RELATIVE_TOL * stops, noises)
+        first, second = (x.astype(np.int32) for x in np.triu_indices(q.shape[1], 1))  # as of `pair_blocks`
+        found = closest_of_few(t, (q, p, u), slack, stops, tols, (first, second))
+        near = np.flatnonzero(found[3] >= 0)
+        yield from zip(near.tolist(), *(each[near].tolist() for each in found), strict=True)
+        return
+    for k in np.flatnonzero(stops).tolist():
+        points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        reach, allowance, stop = reach + slack[k], allowance + slack[k], float(stops[k])
+        for i, j in pair_blocks(q[k], (stop + 2.0 * float(reach.max())) * (1.0 + 1e-9)):
+            tol = max(RELATIVE_TOL * stop, noises[k])
+            low, distance, at, a, b = closest_pair(points, reach, allowance, i, j, stop, tol)
+            if a >= 0:
+                stop = low
+                yield k, low, distance, at, a, b
 
 
 def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flockana.kernels.paths import ALLOWED, bernstein
+from flockana.measures import path_bounds
 from flockana.measures.metrics import cohesion_radii
 from flockana.measures.path_bounds import closest_approach, cohesion_bound, contacts
 
@@ -195,6 +196,24 @@ def test_the_right_pair_among_many():
     assert [(c.i, c.j) for c in hits] == [(12 + k, 30) for k in range(6)]
     reach = np.sqrt(0.06**2 - 0.05**2)
     np.testing.assert_allclose([c.time for c in hits], (3.5 + np.arange(6) - reach) / 13.0, atol=1e-6)
+
+
+def test_small_flocks_are_bounded_as_large_ones_are(monkeypatch):
+    """All pairs in one compiled loop over intervals, or those that a search finds in each: the same numbers."""
+    rng, t = np.random.default_rng(0), np.linspace(0.0, 3.0, 40)
+    motions = [
+        circle(rng.uniform(1, 3), rng.uniform(-2, 2), rng.uniform(0, 6), rng.uniform(-3, 3, 2)) for _ in range(12)
+    ]
+    motions.append(motions[0])  # two in one place: intervals in which the distance is 0 from the start are skipped
+    for states in (sampled(t, *motions), sampled(t, *motions[:-1])):
+        slack = 0.01 * rng.uniform(size=(39, states[0].shape[1]))
+        few = closest_approach(t, *states, slack)
+        with monkeypatch.context() as patch:
+            patch.setattr(path_bounds, "DENSE_MAX", 0)
+            many = closest_approach(t, *states, slack)
+        assert (few.lower, few.distance, few.time, few.pair) == (many.lower, many.distance, many.time, many.pair)
+        np.testing.assert_array_equal(few.lower_by_interval, many.lower_by_interval)
+    assert few.lower < few.distance
 
 
 def test_contacts_across_samples_say_who_crossed():
