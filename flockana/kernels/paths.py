@@ -215,19 +215,27 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
 
 
 @njit(cache=True)
-def closest_of_few(t, states, slack, stops, tols, all_pairs):
+def closest_of_few(t, states, slack, stops, tols):
     """Return `closest_pair` over all pairs of a small flock in each interval, five arrays; skip those with stop 0.
 
     `states` are (q, p, u) over time; `slack`, (T − 1, n), adds to reaches and allowances.
     """
-    (q, p, u), (first, second), steps = states, all_pairs, len(t) - 1
+    (q, p, u), steps, n = states, len(t) - 1, states[0].shape[1]
+    first, second = np.empty(n * (n - 1) // 2, np.int32), np.empty(n * (n - 1) // 2, np.int32)
     lower, reached, where = stops.copy(), stops.copy(), np.full(steps, -1.0)
     a, b = np.full(steps, -1), np.full(steps, -1)
     for k in range(steps):
         if stops[k] == 0.0:
             continue
         points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-        found = closest_pair(points, reach + slack[k], allowance + slack[k], first, second, stops[k], tols[k])
+        reach, allowance = reach + slack[k], allowance + slack[k]
+        x, limit, count = points[:, 0].copy(), ((stops[k] + 2.0 * reach.max()) * (1.0 + 1e-9)) ** 2, 0
+        for i in range(n):
+            for j in range(i + 1, n):
+                first[count], second[count] = i, j
+                d0, d1, d2 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+                count += d0 * d0 + d1 * d1 + d2 * d2 < limit
+        found = closest_pair(points, reach, allowance, first[:count], second[:count], stops[k], tols[k])
         lower[k], reached[k], where[k], a[k], b[k] = found
     return lower, reached, where, a, b
 
@@ -292,3 +300,13 @@ def farthest(points, allowance, floor, tol):
         if bound + slack > upper:
             upper, agent, at = bound + slack, i, where
     return upper, agent, at
+
+
+@njit(cache=True)
+def farthest_in_turn(t, states, slack, floors, tols):
+    """Return the upper bound of `farthest` in each interval; arguments as of `closest_of_few`."""
+    (q, p, u), upper = states, np.empty(len(t) - 1)
+    for k in range(len(t) - 1):
+        points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
+        upper[k] = farthest(points, allowance + slack[k], floors[k], tols[k])[0]
+    return upper

@@ -13,7 +13,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 from flockana.kernels.neighbours import DENSE_MAX, pair_blocks
-from flockana.kernels.paths import bernstein, closest_of_few, closest_pair, control_points, farthest, touching_pairs
+from flockana.kernels.paths import closest_of_few, closest_pair, control_points, farthest_in_turn, touching_pairs
 from flockana.measures.metrics import cohesion_radii, min_distances
 
 States = tuple[FloatArray, FloatArray, FloatArray]  # q, p, u over time
@@ -69,8 +69,7 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
     q, p, u = (np.ascontiguousarray(x) for x in states)
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
-        first, second = (x.astype(np.int32) for x in np.triu_indices(q.shape[1], 1))  # as of `pair_blocks`
-        found = closest_of_few(t, (q, p, u), slack, stops, tols, (first, second))
+        found = closest_of_few(t, (q, p, u), slack, stops, tols)
         near = np.flatnonzero(found[3] >= 0)
         yield from zip(near.tolist(), *(each[near].tolist() for each in found), strict=True)
         return
@@ -97,14 +96,11 @@ def cohesion_bound(
     t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, slack: FloatArray | None = None
 ) -> FloatArray:
     """Return an upper bound of the cohesion radius max_i ‖q_i − q_c‖ over each interval between samples."""
-    radii, bounds = cohesion_radii(q), np.empty(len(t) - 1)
-    for k in range(len(t) - 1):
-        points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
-        if slack is not None:
-            allowance = allowance + slack[k]
-        floor = float(max(radii[k], radii[k + 1]))
-        noise = ROUNDING * float(np.abs(q[k : k + 2]).max())
-        bounds[k] = farthest(points, allowance, floor, max(RELATIVE_TOL * floor, noise))[0]
+    radii, extents = cohesion_radii(q), np.maximum(q.max(axis=(1, 2)), -q.min(axis=(1, 2)))
+    floors, noises = np.maximum(radii[:-1], radii[1:]), ROUNDING * np.maximum(extents[:-1], extents[1:])
+    slack = np.zeros((len(floors), q.shape[1])) if slack is None else slack
+    states = tuple(np.ascontiguousarray(x) for x in (q, p, u))
+    bounds: FloatArray = farthest_in_turn(t, states, slack, floors, np.maximum(RELATIVE_TOL * floors, noises))
     return bounds
 
 
