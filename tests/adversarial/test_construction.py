@@ -117,6 +117,8 @@ LAWS = {
     "fixed net": lambda: FixedNetFlocking(((0, 1), (1, 2)), LogPotential(49.0, 7.0)),
     "links kept": lambda: LinkKeeping(((0, 1), (1, 2)), r=12.0, k=30.0, c=1.0),
     "dead zone": lambda: fl.DeadZoneFlocking(),
+}
+FURTHER = {
     "obstacles": lambda: fl.Algorithm3(
         target=fl.StaticTarget((0.0, 0.0)), obstacles=(fl.Sphere((3.0, 20.0), 3.0), fl.Wall((-15.0, 0.0), (1.0, 0.0)))
     ),
@@ -153,20 +155,32 @@ LIMITS = {
 }
 
 
-@effort(1.0)
-@given(
-    st.sampled_from(list(LAWS)),
+DRAWN = (
     st.integers(0, 2**32 - 1),
     st.sampled_from((0.3, 1.0, 1.5)),
     st.sampled_from((0.0, 1e-8, 1e-2, 1.0, 5.0)),
     st.sampled_from((1e-3, 0.3, 3.0, 40.0)),
     st.sampled_from(TOLERANCES[:5]),
 )
+
+
+@effort(1.0)
+@given(st.sampled_from(list(LAWS)), *DRAWN)
 def test_no_true_claim_reads_refuted_and_no_limit_verified_without_a_certificate(law, seed, spread, speed, until, rtol):
+    hold_of_a_run(LAWS[law](), seed, spread, speed, until, rtol)
+
+
+@effort(0.5)
+@given(st.sampled_from(list(FURTHER)), *DRAWN)
+def test_nor_of_laws_with_obstacles_formulas_switches_and_limits(law, seed, spread, speed, until, rtol):
+    hold_of_a_run(FURTHER[law](), seed, spread, speed, until, rtol)
+
+
+def hold_of_a_run(law, seed, spread, speed, until, rtol):
     rng = np.random.default_rng(seed)
     q = 7.0 * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.9]]) * spread + rng.uniform(-0.5, 0.5, (3, 2))
     p = speed * rng.uniform(-1.0, 1.0, (3, 2))
-    run = fl.simulate(LAWS[law](), q, p, (0.0, until), rtol=rtol)
+    run = fl.simulate(law, q, p, (0.0, until), rtol=rtol)
     for name in theorems():
         if theorem(name).kind != "trajectory" or name in ("E11", "E12", "linearised-decay-terminal"):
             continue
