@@ -130,5 +130,5 @@ def _bare(text: str) -> str:
 class _Ahead(Constants):
     """Constant subexpressions that are computed first, but for single parameters."""
 
-    def _named(self, constant: sp.Expr) -> sp.Expr:
-        return constant if constant.is_Symbol or (-constant).is_Symbol else super()._named(constant)
+    def _symbol_for(self, constant: sp.Expr) -> sp.Expr:
+        return constant if constant.is_Symbol or (-constant).is_Symbol else super()._symbol_for(constant)

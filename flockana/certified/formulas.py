@@ -7,6 +7,8 @@ series lies. The checkers have formulas of their own.
 """
 
 # fmt: off
+from __future__ import annotations
+
 from typing import Any
 
 from flint import arb

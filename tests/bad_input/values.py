@@ -87,8 +87,8 @@ PATHS = {
     "nothing": "",
 }
 _REMEDY = re.compile(
-    "expected|choose|did you mean|Known|nearest of|run the simulation again|search again|give |ask for|take |use |start"
-    "|needs|is checked on|it has|the run spans"
+    "expected|choose|did you mean|[Kk]nown:|nearest of|run the simulation again|search again|give |ask for|take |use "
+    "|start|needs|is checked on|it has|the run spans"
 )
 
 

@@ -28,7 +28,7 @@ def test_every_sign_in_a_verdict_has_its_latex():
 
 
 def test_tables_as_text_html_and_latex():
-    assert tex("c1α > 5% of ψ_α") == r"c1$\alpha$ > 5\% of $\psi$\_$\alpha$"
+    assert tex("c1α > 5% of ψ_α") == r"c1$\alpha$ $>$ 5\% of $\psi$\_$\alpha$"
     assert html_table([["i", "verified"]], ["claim", "status"])[:24] == "<table><thead><tr><th sc"
     rows = [["os-3", "verified"], ["energy", "refuted"]]
     assert text_table(rows, ["theorem", "status"]).split() == ["theorem", "status", *rows[0], *rows[1]]

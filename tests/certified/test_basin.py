@@ -143,7 +143,7 @@ def test_what_is_no_strict_minimum_of_a_connected_flock_of_distinct_agents_is_re
         certify([[0.0, 0.0], [6.0, 0.0]], law=law)
     with pytest.raises(ArgumentError, match="disconnected"):
         certify([[0.0, 0.0], [7.0, 0.0], [30.0, 0.0], [37.0, 0.0]], law=law)
-    with pytest.raises(ArgumentError, match="agents at one place"):
+    with pytest.raises(ArgumentError, match="the equilibrium has coincident agents"):
         certify([[0.0, 0.0], [7.0, 0.0], [7.0, 0.0]], law=law)
     saddle = find_equilibrium(led, [[-7.0, 0.0], [0.0, 0.0], [7.0, 0.0]], method="root")
     assert saddle.kind == "saddle"

@@ -340,7 +340,7 @@ def test_errata_come_as_pairs_of_printed_and_right(call, monkeypatch):
     monkeypatch.setattr("flockana.report.work.theorems", lambda: ("E8",))
     _, out, _ = call("verify", "errata", "--no-report", "--jobs", 1)
     assert "✗ MSN project: rank(A)/n is 1 on a connected net" in out
-    assert "✓ right: rank(L)/(n - 1) is, as the slides print it" in out
+    assert "✓ right: rank(L)/(n - 1) is 1, as the slides print it" in out
 
 
 @pytest.mark.parametrize(

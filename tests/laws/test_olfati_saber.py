@@ -7,6 +7,7 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Law, LinearTarget, StaticTarget
 from flockana.base.errors import ArgumentError
+from flockana.base.scales import Scales
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.olfati_saber import alpha_scales
 from flockana.measures.frame import moving_frame
@@ -105,4 +106,4 @@ def test_huge_positions_do_not_break_the_law():
 
 
 def test_the_time_of_a_law_is_that_of_its_leading_term():
-    assert alpha_scales(AlphaInteraction(d=4.0, r=5.0), Gains(c1_alpha=0.0, c1_gamma=0.25)) == (4.0, 2.0)
+    assert alpha_scales(AlphaInteraction(d=4.0, r=5.0), Gains(c1_alpha=0.0, c1_gamma=0.25)) == Scales(4.0, 2.0)

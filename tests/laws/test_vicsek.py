@@ -119,7 +119,7 @@ def test_bad_parameters(options, match):
 
 
 def test_bad_starts():
-    with pytest.raises(ArgumentError, match=r"agent 1 has the speed 0: expected speed = 0.1 of all"):
+    with pytest.raises(ArgumentError, match=r"agent 1 has the speed 0: expected speed = 0.1 for all agents"):
         simulate(LAW, np.zeros((2, 2)), [[0.1, 0.0], [0.0, 0.0]], (0.0, 1.0))
     with pytest.raises(ArgumentError, match="expected the plane, m = 2"):
         simulate(LAW, np.zeros((2, 3)), np.zeros((2, 3)), (0.0, 1.0))

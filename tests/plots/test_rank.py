@@ -32,4 +32,4 @@ def test_the_report_draws_it_of_the_projects_map():
     drawn = pictures(entry.run(), entry.instants)
     assert len(drawn) == 5
     assert "rank(A)/n" in drawn[-1].caption
-    assert "source shows, 6" in drawn[0].caption
+    assert "6 instants that the source shows" in drawn[0].caption

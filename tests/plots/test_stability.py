@@ -127,9 +127,9 @@ def test_titles():
         (lambda: plots.pole_map("x"), "poles = 'x': expected complex numbers"),
         (
             lambda: plots.mode_shape([[0.0], [7.0]], [], [[1.0]]),
-            r"shape is \(1, 1\) of float64: expected numbers \(2, 1\)",
+            r"shape is \(1, 1\) of float64: expected real numbers of shape \(2, 1\)",
         ),
-        (lambda: plots.mode_shape([[0.0], [7.0]], [], [["x"], ["y"]]), "shape is .* of <U1: expected numbers"),
+        (lambda: plots.mode_shape([[0.0], [7.0]], [], [["x"], ["y"]]), "shape is .* of <U1: expected real numbers"),
         (lambda: plots.mode_shape([[0.0], [7.0]], [[0, 2]], [[1.0], [1.0]]), r"links\[0\] = \[0, 2\]: expected two"),
     ],
 )

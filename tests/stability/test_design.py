@@ -225,7 +225,7 @@ def test_critical_gains_decay_as_the_double_root_of_the_centre():
         (
             lambda: design_gains(ALONE, Specifications(decay=1.0)),
             ArgumentError,
-            "problem.law = None: expected what gain",
+            "problem.law = None: expected a problem from gain_problem",
         ),
     ],
 )

@@ -151,7 +151,7 @@ def alignment_slope(law):
         (ZoneFlocking(noise=ZoneNoise(weights=0.1)), *SIDE_BY_SIDE, "no steady motion of ZoneFlocking: step changes"),
         (HeadingAveraging(speed=1.0), [[0.0, 0.0], [2.0, 0.0]], [[1.0, 0.0], [0.0, 1.0]], "headings differ by up to 1"),
         (HeadingAveraging(speed=1.0), [[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [1.0, 0.0]], "at the edge of each other"),
-        (HeadingAveraging(speed=1.0), [[0.0, 0.0]], None, "agent 0 has the speed 0: expected speed = 1 of all"),
+        (HeadingAveraging(speed=1.0), [[0.0, 0.0]], None, "agent 0 has the speed 0: expected speed = 1 for all agents"),
         (ZoneFlocking(), [[0.0, 0.0], [2.0, 0.0]], SIDE_BY_SIDE[1], "no steady motion of ZoneFlocking: p changes by"),
         (TaylorStep(Algorithm1(), 0.1), [[0.0, 0.0], [8.0, 0.0]], None, "the state is no equilibrium of Algorithm1"),
     ],

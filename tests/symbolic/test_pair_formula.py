@@ -1,6 +1,6 @@
 import sympy as sp
 
-from flockana.symbolic.pair_formula import Cut, S, derive_piece, read_pair
+from flockana.symbolic.pair_formula import PiecewiseFormula, S, derive_piece, read_pair
 
 
 def test_a_formula_is_read_derived_and_cut_where_its_pieces_meet():
@@ -9,4 +9,4 @@ def test_a_formula_is_read_derived_and_cut_where_its_pieces_meet():
     piece = derive_piece(S**2 * (S - 1) ** 2 / 2, sp.Integer(1), S, forces=False)
     assert str(sp.expand(piece.weight)) == "-3*sqrt(s2) + 2*s2 + 1"
     pieces = read_pair("Piecewise((s**2, s < k), (0, True))", "", "0", ["k"])
-    assert Cut(pieces, {sp.Symbol("k", real=True): 2.0}, 5.0).marks == (0.0, 2.0, 5.0)
+    assert PiecewiseFormula(pieces, {sp.Symbol("k", real=True): 2.0}, 5.0).marks == (0.0, 2.0, 5.0)

@@ -6,7 +6,7 @@ from flockana.symbolic.printing import Constants, function_text
 def test_constants_become_parameters():
     x, k = sp.symbols("x k")
     constants = Constants([x], 2)
-    assert str(constants.taken_out(sp.sqrt(k) * x + 1)) == "c2*x + 1"
+    assert str(constants.extract_constants(sp.sqrt(k) * x + 1)) == "c2*x + 1"
     assert constants.values == [sp.sqrt(k)]
 
 

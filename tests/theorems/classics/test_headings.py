@@ -27,7 +27,7 @@ def test_two_that_hear_each_other_agree_after_one_step():
     assert verdict.claim("contraction").computed == 0.0  # ½(1, 1) of both: nothing is left of a spread
     assert verdict.claim("contraction").witness == {"blocks": 2, "steps of the first missed": None}
     assert verdict.claim("agreement").witness == {"heading": 0.5}
-    assert "2 windows seen, of 1 steps at most" in hypothesis(verdict, "for ever").detail
+    assert "2 windows seen, of 1 steps at most" in hypothesis(verdict, "at all later times").detail
 
 
 @pytest.mark.parametrize(
@@ -61,21 +61,21 @@ def test_what_the_nets_do_not_leave_of_a_spread_is_missed(left, missed):
 def test_two_that_never_hear_each_other_are_in_no_window():
     verdict = verdict_of([[3.0, 0.1]] * 3, [APART] * 3)
     assert statuses(verdict) == {"hull": "verified", "contraction": "vacuous", "agreement": "vacuous"}
-    assert hypothesis(verdict, "for ever").status == "unmet"  # the second is ahead, and they head apart
-    assert "0 windows seen, of 0 steps at most" in hypothesis(verdict, "for ever").detail
+    assert hypothesis(verdict, "at all later times").status == "unmet"  # the second is ahead, and they head apart
+    assert "0 windows seen, of 0 steps at most" in hypothesis(verdict, "at all later times").detail
 
 
 def test_what_comes_after_the_run_may_not_be_known():
     """Apart, and on the way to each other."""
     verdict = verdict_of([[0.1, 3.0]] * 3, [APART] * 3)
-    assert hypothesis(verdict, "for ever").status == "assumed"
+    assert hypothesis(verdict, "at all later times").status == "assumed"
     assert verdict.claim("agreement").status == "inconclusive"
     assert verdict.claim("agreement").witness is None
 
 
 def test_a_window_is_as_long_as_it_takes_to_meet():
     verdict = verdict_of([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [0.5, 0.5]], [APART, APART, NEAR, NEAR])
-    assert "1 windows seen, of 3 steps at most" in hypothesis(verdict, "for ever").detail
+    assert "1 windows seen, of 3 steps at most" in hypothesis(verdict, "at all later times").detail
     assert verdict.claim("contraction").status == "verified"
 
 
@@ -96,7 +96,7 @@ def test_headings_must_be_kept():
 def test_what_lasts_is_that_of_the_end():
     """Apart at first, and with headings so different that they might part again: in the end neither."""
     verdict = verdict_of([[0.0, 300.0], [150.0, 150.0], [150.0, 150.0]], [APART, NEAR, NEAR])
-    assert hypothesis(verdict, "for ever").status == "met"
+    assert hypothesis(verdict, "at all later times").status == "met"
     assert verdict.claim("agreement").witness == {"heading": 150.0}
     unsettled = verdict_of([[150.0, 150.0], [150.0, 150.0], [0.0, 300.0]])
-    assert hypothesis(unsettled, "for ever").status == "assumed"
+    assert hypothesis(unsettled, "at all later times").status == "assumed"
