@@ -119,7 +119,10 @@ def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:
     wall, solid = (float(run.metric(name).min()) for name in ("wall_distance", "obstacle_clearance_bound"))
-    text = f"the least distance from a wall is {wall:.3g}, from the obstacle {solid:.3g} (negative: beyond, inside)"
+    text = (
+        f"the least distance from a wall is {wall:.3g}, from the obstacle {solid:.3g} "
+        "(negative: beyond a wall, or inside the obstacle)"
+    )
     return finding("contained", min(wall, solid), text, computed=(wall, solid), stated="> 0, between the steps too")
 
 

@@ -21,14 +21,14 @@ _WORTH = 1e-3  # of what there is at the start: a change that counts, far above 
 def _momentum_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
     total = run.p.sum(axis=1)
     change = float(np.linalg.norm(total - total[0], axis=1).max() / np.linalg.norm(total[0]))
-    detail = f"Σ p_i changes by up to {change:.3g} of what it is at the start"
+    detail = f"momentum is not kept: Σ p_i changes by up to {change:.3g} of its size at the start"
     return finding("momentum", change - _WORTH, detail, computed=change, stated=f"> {_WORTH:g}", error=1e-9)
 
 
 def _energy_rises(run: Trajectory, tolerances: Tolerances) -> Claim:
     energy = run.metric("undirected_energy")
     rise = float((energy - np.minimum.accumulate(energy)).max() / energy[0])
-    detail = f"H of the undirected law rises by up to {rise:.3g} of what it is at the start"
+    detail = f"H of the undirected law rises by up to {rise:.3g} of its value at the start"
     return finding("energy-rises", rise - _WORTH, detail, computed=rise, stated=f"> {_WORTH:g}", error=1e-9)
 
 

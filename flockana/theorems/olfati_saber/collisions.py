@@ -161,7 +161,8 @@ def no_collision(
         if certain := passed(seen, tolerances):
             pair = max(certain, key=lambda each: certain[each])
             margin = Enclosure.of(-certain[pair])
-            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, by {certain[pair]:.4g}"
+            by = f"passing each other by at least {certain[pair]:.4g}"
+            text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
     return judged(
         name,
         margin,

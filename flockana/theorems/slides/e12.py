@@ -44,7 +44,7 @@ def _agrees(
         needs,
         computed=float(ratio.mid),
         stated=gain,
-        detail=f"{detail}: measured ratio {ratio.mid:.4f}, transfer function {gain:.4f}",
+        detail=f"{detail}: the ratio of amplitudes is {ratio.mid:.4f} in the run, {gain:.4f} by the transfer function",
     )
 
 
