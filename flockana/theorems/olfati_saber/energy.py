@@ -143,7 +143,7 @@ def never_rises(
         proof=proof,
         detail=(
             f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
-            f"{share.mid.min():.2g} of the sum of its terms' sizes{until}"
+            f"{share.mid.min():.2g} times the sum of its terms' sizes{until}"
         ),
     )
 
