@@ -109,8 +109,8 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own.mid[-1])},
             detail=(
-                f"this energy goes from {size:.4g} to {float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} "
-                "at most on the way"
+                f"the energy of the follower, relative to its leader, goes from {size:.4g} to "
+                f"{float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way"
             ),
         ),
         judged(
