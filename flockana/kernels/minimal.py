@@ -229,7 +229,7 @@ def semi_implicit_steps(
     """
     reach = float(edges.radius.max()) * _SLACK
     # where r² under- or overflows the strict search finds fewer pairs than the filter
-    square = np.minimum(edges.radius**2, np.nextafter(max(reach * reach, 5e-324), 0.0))
+    square = np.minimum(edges.radius * edges.radius, np.nextafter(max(reach * reach, 5e-324), 0.0))
     x, v = q.T.copy(), p.T.copy()
     stepped: tuple[FloatArray, FloatArray, FloatArray] = _many_steps(x, v, square, edges, dt, steps)
     return stepped
