@@ -17,22 +17,46 @@ PSI = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, argind
 
 
 def repulsion(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return the repulsion below d_1, 2k_r/rho^2 + k_delta."""
+    """Return the repulsion below d_1, 2k_r/rho^2 + k_delta.
+
+    Examples
+    --------
+    >>> repulsion()
+    k_delta + 2*k_r/rho**2
+    """
     return 2 * K_R / rho**2 + K_DELTA
 
 
 def attraction(rho: sp.Expr = RHO) -> sp.Expr:
-    """Return the attraction between d_2 and r, 2k_r/(r_d - rho)^2 + k_delta."""
+    """Return the attraction between d_2 and r, 2k_r/(r_d - rho)^2 + k_delta.
+
+    Examples
+    --------
+    >>> attraction()
+    k_delta + 2*k_r/(r_d - rho)**2
+    """
     return 2 * K_R / (R_D - rho) ** 2 + K_DELTA
 
 
 def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
-    """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector."""
+    """Return the length of n_ij, rho/sqrt(1 + eta rho^2): eq. (8), no unit vector.
+
+    Examples
+    --------
+    >>> direction(eta=sp.Integer(0))
+    rho
+    """
     return rho / sp.sqrt(1 + eta * rho**2)
 
 
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on."""
+    """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on.
+
+    Examples
+    --------
+    >>> action().subs(RHO, D_1 / 2).subs({D_1: 2, D_2: 4, R: 5, K_R: 1, K_DELTA: 0})
+    -2
+    """
     inner, outer = (sp.S.One,) * 2 if ramp == 0 else (sp.Min(1, (D_1 - rho) / ramp), sp.Min(1, (rho - D_2) / ramp))
     return sp.Piecewise(
         (sp.S.Zero, rho >= R),
@@ -43,7 +67,13 @@ def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 
 def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond."""
+    """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond.
+
+    Examples
+    --------
+    >>> force().subs({RHO: 3, D_1: 2, D_2: 4, R: 5})
+    3*k_1
+    """
     return action(rho, ramp=ramp) * direction(rho) + sp.Piecewise((K_1 * rho, rho < R), (sp.S.Zero, True))
 
 
@@ -64,7 +94,13 @@ def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp
 
 
 def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return the saturated potential of a pair without ramp, psi(min(rho, r)), for d_2 < r."""
+    """Return the saturated potential of a pair without ramp, psi(min(rho, r)), for d_2 < r.
+
+    Examples
+    --------
+    >>> potential().subs({RHO: 3, D_1: 2, D_2: 4, R: 5})
+    9*k_1/2
+    """
 
     def primitive(s: sp.Expr) -> sp.Expr:
         return attractive_primitive(s, eta=eta) - attractive_primitive(D_2, eta=eta)
@@ -82,7 +118,13 @@ def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
 
 
 def derive_potential() -> Derivation:
-    """Derive psi: the derivative identities of both primitives, for eta > 0 and eta = 0, and its growth at 0."""
+    """Derive psi: the derivative identities of both primitives, for eta > 0 and eta = 0, and its growth at 0.
+
+    Examples
+    --------
+    >>> derive_potential().holds
+    True
+    """
     s = sp.Symbol("s", positive=True)
     gap = sp.Symbol("g", positive=True)  # r_d = s + g keeps every root and logarithm real
     steps, residuals = [], []
@@ -102,7 +144,13 @@ def derive_potential() -> Derivation:
 
 
 def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
-    """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r."""
+    """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r.
+
+    Examples
+    --------
+    >>> jumps()["r"][1]
+    0
+    """
     near, far = repulsion() * direction(), attraction() * direction()
     pull = K_1 * RHO
     return {
@@ -113,10 +161,12 @@ def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
 
 
 def saturated_energy_identity(m: int = 2) -> Derivation:
-    """Derive dH/dt = -k_2 p^T L p from one generic pair: psi' = F within r, and psi constant with F = a = 0 beyond."""
-    # H is a sum over pairs of psi(min(rho, r)) and over agents of |p_i|^2/2 (of the deviations from the mean: momentum
-    # is conserved), so an identity for one pair is one for every n. It holds on either side of every switch, and psi is
-    # continuous across them.
+    """Derive dH/dt = -k_2 p^T L p from one generic pair: psi' = F within r, and psi constant with F = a = 0 beyond.
+
+    H is a sum over pairs of psi(min(rho, r)) and over agents of |p_i|^2/2 (of the deviations from the mean: momentum
+    is conserved), so an identity for one pair is one for every n. It holds on either side of every switch, and psi is
+    continuous across them.
+    """
     q_i, q_j, p_i, p_j = (vector(name, ensure_dimension(m)) for name in ("q_i", "q_j", "p_i", "p_j"))
     delta, slip = q_j - q_i, p_j - p_i
     rho = sp.sqrt(delta.dot(delta))
