@@ -3,8 +3,8 @@
 A sample of the mutants of each package (drawn by a hash: the same on every machine, a larger one holds the smaller) is
 tried in copies of the project, with the nearest tests first, until one fails. Results are kept in the output folder.
 Run the tests first: a test that fails without a change kills every mutant.
-Exit status: 0 every mutant was killed or is in equivalent_mutants.toml with its reason, 2 bad input, 3 one survived (or
-more than --allow), 130 interrupted; the next call goes on.
+Exit status: 0 every mutant was killed or is in equivalent_mutants.toml with its reason, 2 bad input, 3 one survived,
+130 interrupted; the next call goes on.
 """
 
 from __future__ import annotations
@@ -223,7 +223,6 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument("--budget", type=float, default=120.0, metavar="S", help="processor seconds each (default 120)")
     parser.add_argument("--file", metavar="PART", default="", help="only files whose path has this in it")
     parser.add_argument("--again", action="store_true", help="try survivors again, after new tests")
-    parser.add_argument("--allow", type=int, default=0, metavar="N", help="survivors that are no failure (default 0)")
     parser.add_argument("--out", type=Path, default=PROJECT / "report" / "mutation", metavar="FOLDER")
     parser.add_argument("--ask", type=Path, help=argparse.SUPPRESS)  # what cosmic-ray runs in a copy
     return parser
@@ -258,7 +257,7 @@ def main(given: Sequence[str] | None = None) -> int:
     text, survivors = report(counts, drawn, outcomes)
     (options.out / "table.md").write_text(text, "utf-8")
     sys.stdout.write(text)
-    return 3 if survivors > options.allow else 0 if complete else 130
+    return 3 if survivors else 0 if complete else 130
 
 
 if __name__ == "__main__":

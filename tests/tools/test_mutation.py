@@ -124,7 +124,6 @@ def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(
     assert ("- return a + 1" in told.out) is (code == 3)
     assert mutation.main(["laws", "--sample", "2", "--out", str(folder)]) == code  # tries nothing again
     assert "0 to try" in capsys.readouterr().err
-    assert mutation.main(["laws", "--sample", "2", "--allow", "2", "--out", str(folder)]) == 0
 
 
 def test_the_table_counts_what_was_said_and_shows_survivors():
