@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 
-_ALONE = 1e-9  # share of the squares of slopes that the other agents leave an estimate, below which one tells it alone
+_ALONE = 1e-9  # share of the squared slopes left by the other agents, below which one agent alone determines an estimate
 
 
 def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
