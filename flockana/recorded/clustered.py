@@ -6,7 +6,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray
 
-_ALONE = 1e-9  # share of the squared slopes left by the other agents, below which one agent alone determines an estimate
+_ALONE = 1e-9  # of the squared slopes: if the other agents have no more, one agent determines an estimate alone
 
 
 def covariance_over_agents(slopes: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
