@@ -73,7 +73,7 @@ def law_is(
             terms = ", ".join(type(term).__name__ for term in run.law.terms)
             return condition("a composition of terms is applied", True, detail=terms)
         law = applied(run, name, *laws, formulas=formulas or composed)
-        return common_gains(run) if one_gain and law.status == "met" and run.law.gains.per_agent else law
+        return common_gains(run) if one_gain and law.status != "unmet" and run.law.gains.per_agent else law
 
     return applied_to
 
