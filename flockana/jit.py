@@ -20,8 +20,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from functools import cache, cached_property
+from multiprocessing import parent_process
 from pathlib import Path
-from threading import RLock
+from threading import RLock, Timer
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ except ImportError:  # Windows: there every process compiles what it needs
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
 _PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
 _FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
+_SILENT = 3.0  # seconds of compiling that go without a word
 _UNUSED = 60 * 86400.0  # seconds after which a folder of compiled code is removed
 _ONE = RLock()  # one thread compiles at a time
 _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is compiled
@@ -256,7 +258,7 @@ def _mark(function: Callable[..., Any], types: Any) -> Path | None:
 @contextmanager
 def compiling(mark: Path | None = None) -> Iterator[None]:
     """Let one thread of one process compile; others wait and load the result."""
-    with _ONE, relaxed_gc():
+    with _ONE, relaxed_gc(), _announced():
         folder, until = kernels_folder(), time.monotonic() + _PATIENCE
         free = folder is None or fcntl is None or (mark is not None and mark.exists())
         with nullcontext() if free else (folder / "lock").open("w") as file:  # type: ignore[operator]
@@ -277,6 +279,26 @@ def compiling(mark: Path | None = None) -> Iterator[None]:
                 while _OPEN:
                     each = _OPEN.pop()
                     each.disable_compile(bool(each.signatures))
+
+
+@contextmanager
+def _announced() -> Iterator[None]:
+    """Say that kernels are compiled, or waited for, once that takes long."""
+    timer = Timer(_SILENT, _announce)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+@cache
+def _announce() -> None:
+    """Write one line in a process, if a person reads it: on a terminal or in a notebook, not in worker processes."""
+    if (sys.stderr.isatty() or "ipykernel" in sys.modules) and parent_process() is None:
+        text = "flockana compiles for this machine, which happens once and takes up to a minute ..."
+        logging.getLogger("flockana").warning(text)
 
 
 @cache

@@ -293,3 +293,16 @@ def test_one_process_compiles_at_a_time_and_none_waits_for_one_that_was_killed(m
     started = time.monotonic()
     with jit.compiling():
         assert time.monotonic() - started < 30.0
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_long_compiling_is_announced_once_on_a_terminal(terminal, monkeypatch, caplog):
+    monkeypatch.setattr(jit, "_SILENT", 0.01)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
+    jit._announce.cache_clear()
+    for _ in range(2):
+        with jit.compiling():
+            time.sleep(0.05)
+    lines = ["flockana compiles for this machine, which happens once and takes up to a minute ..."]
+    assert caplog.messages == lines * terminal
+    jit._announce.cache_clear()

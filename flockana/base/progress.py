@@ -4,9 +4,11 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 _EVERY = 60.0  # seconds between lines off a terminal
+_PART: ContextVar[Callable[[str], None]] = ContextVar("part", default=lambda text: None)
 _BASIS = 0.1  # share of the total from which on the remaining time is estimated
 
 
@@ -32,7 +34,16 @@ def progress_bar(
             rate = f", {done / elapsed:.3g}/s" if counted and steady and elapsed else ""
             bar.update(task, completed=done, description=text + rate)
 
-        yield advance
+        before = _PART.set(lambda text: bar.update(task, description=text))
+        try:
+            yield advance
+        finally:
+            _PART.reset(before)
+
+
+def show_part(text: str) -> None:
+    """Show which part of a task is under way, beside the bar of the tasks on a terminal."""
+    _PART.get()(text)
 
 
 def _lines(total: float) -> Callable[[float, str], None]:

@@ -19,7 +19,6 @@ from flockana.cli.animate import animate_command
 from flockana.cli.catalogue import scenarios_command, theorems_command
 from flockana.cli.check import check_command
 from flockana.cli.command import Command
-from flockana.cli.compiling import announce_compiling
 from flockana.cli.course import course_command
 from flockana.cli.ensemble import ensemble_command
 from flockana.cli.equilibrium import equilibrium_command
@@ -100,7 +99,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     prepare_output()
     prepare_home()
     try:
-        with restore_interrupts(), relaxed_gc(), announce_compiling():
+        with restore_interrupts(), relaxed_gc():
             given = list(sys.argv[1:] if arguments is None else arguments)
             code = _app(_asked(given))(args=given, prog_name=_NAME, standalone_mode=False)
             if arguments is None:

@@ -3,7 +3,7 @@ import re
 import pytest
 
 from flockana.base import progress
-from flockana.base.progress import progress_bar
+from flockana.base.progress import progress_bar, show_part
 
 
 @pytest.fixture
@@ -29,6 +29,19 @@ def test_tasks_are_counted_and_named(shown):
     assert "hexagon, E8" in text
     assert "left" not in text
     assert "/s" not in text
+
+
+def test_a_task_shows_its_part_while_a_bar_is_there(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "120")
+    show_part("before")
+    with progress_bar(1):
+        show_part("flow 3 of 20")
+    show_part("after")
+    text = capsys.readouterr().err
+    assert "flow 3 of 20" in text
+    assert "before" not in text
+    assert "after" not in text
 
 
 def test_steady_work_has_a_rate_and_time_left(shown):

@@ -7,7 +7,7 @@ from scipy.stats import beta
 from flockana import Algorithm1, Gains, Tolerances, min_distance
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import terminal_state
-from flockana.theorems.slides.e03 import _certain_strain, _is_lattice, _Limit, random_disc, rhombus_with_double_agent
+from flockana.theorems.slides.e03 import _is_lattice, _Limit, random_disc, rhombus_with_double_agent
 from tests.adversarial.published import changes
 
 
@@ -50,12 +50,12 @@ def test_e3_a_flow_that_did_not_end_or_is_not_certain_is_undecided():
     stretched = np.array([[0.0, 0.0], [7.1, 0.0]])
 
     def limit(q, converged=True):
-        return _Limit(((q, terminal_state(law, q, 0.0 * q), _certain_strain(law, q)),), converged)
+        return _Limit(((q, terminal_state(law, q, 0.0 * q)),), converged)
 
-    assert _is_lattice(limit(7.0 / 7.1 * stretched), tolerances) is True
-    assert _is_lattice(limit(stretched), tolerances) is None
-    assert _is_lattice(limit(rhombus_with_double_agent(7.0)), tolerances) is False
-    assert _is_lattice(limit(rhombus_with_double_agent(7.0), converged=False), tolerances) is None
+    assert _is_lattice(law, limit(7.0 / 7.1 * stretched), tolerances) is True
+    assert _is_lattice(law, limit(stretched), tolerances) is None
+    assert _is_lattice(law, limit(rhombus_with_double_agent(7.0)), tolerances) is False
+    assert _is_lattice(law, limit(rhombus_with_double_agent(7.0), converged=False), tolerances) is None
 
 
 def test_e3_the_strained_limit_is_rigid_at_rest_and_of_distinct_agents(e3):
