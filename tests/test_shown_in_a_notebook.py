@@ -61,3 +61,13 @@ def test_an_ensemble_is_a_table_of_shares():
     assert html.partition("</table>")[0].count("<tr>") == 1 + len(rows)
     part = runs[["margin"]]
     assert str(part) == repr(part)
+
+
+def test_a_flock_a_scenario_a_theorem_and_a_tube_print_one_line():
+    law = fl.Algorithm1()
+    assert repr(fl.Flock(law, [[0.0], [9.0]], name="two")) == "<Flock 'two': 2 agents, Algorithm1, t = 0 to 20>"
+    assert "a drawn start" in repr(fl.Flock(law, lambda seed: [[0.0], [9.0]]))
+    assert repr(fl.scenario("hexagon")).endswith("; 7 agents, m = 2, Algorithm1, t = 0 to 30>")
+    assert repr(fl.theorem("os-1")).startswith("<Theorem 'os-1': Algorithm 1")
+    tube = fl.enclose(law, [[0.0], [9.0]], [[1.0], [2.0]], (0.0, 2.0))
+    assert repr(tube) == f"<Tube of 2 agents, m = 1, Algorithm1, {len(tube.taken)} steps, t = 0 to 2, complete>"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import inf, nextafter
@@ -97,15 +97,19 @@ class Tube:
     ((0, 1), True, [2.0, 13.0])
     """
 
-    law: Any = field(repr=False)
-    q0: FloatArray = field(repr=False)
-    p0: FloatArray = field(repr=False)
-    t: tuple[float, ...] = field(repr=False)
-    sets: tuple[StateSet, ...] = field(repr=False)
-    taken: tuple[Step, ...] = field(repr=False)
+    law: Any
+    q0: FloatArray
+    p0: FloatArray
+    t: tuple[float, ...]
+    sets: tuple[StateSet, ...]
+    taken: tuple[Step, ...]
     status: str
     message: str
     stats: dict[str, Any]
+
+    def __repr__(self) -> str:
+        known = f"{self.n} agents, m = {self.m}, {type(self.law).__name__}, {len(self.taken)} steps"
+        return f"<Tube of {known}, t = {float(self.t[0]):g} to {float(self.t[-1]):g}, {self.status}>"
 
     def with_seconds(self, seconds: float) -> Tube:
         """Return the same tube with its computing time."""

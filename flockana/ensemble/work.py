@@ -53,15 +53,15 @@ class Request:
 
 def _plain(flock: Flock, *, strict: bool) -> Any:
     """Return a flock as plain data; functions as their names, which tell two versions of one apart no more."""
+    parts = flock.law, flock.q0, flock.p0, flock.t_span
     try:
-        parts = [to_data(part) for part in (flock.law, flock.q0, flock.p0, flock.t_span)]
-        return [*parts, to_data_mapping(flock.options)]
+        return [*map(to_data, parts), to_data_mapping(flock.options)]
     except ArgumentError as error:
         if strict:
             raise ArgumentError(
                 f"store: {error}; give q0 and p0 as arrays, or put a function seed -> Scenario into a module"
             ) from None
-        return repr(flock)
+        return repr((*parts, flock.options))
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,11 @@ class Flock:
         if not (self.drawn or self.p0 is None):
             ensure_state(self.q0, self.p0)
 
+    def __repr__(self) -> str:
+        begin, end = self.t_span
+        agents = "a drawn start" if self.drawn else f"{len(self.q0)} agents"
+        return f"<Flock {self.name!r}: {agents}, {type(self.law).__name__}, t = {begin:g} to {end:g}>"
+
     @property
     def drawn(self) -> bool:
         """Whether the start depends on a seed."""

@@ -100,6 +100,10 @@ class Scenario:
         if self.seed == 0:
             object.__setattr__(self, "expected", {**self.expected, **self.shipped})
 
+    def __repr__(self) -> str:
+        (n, m), law, (begin, end) = self.shape, type(self.law).__name__, self.t_span
+        return f"<Scenario {self.name!r}: {self.title}; {n} agents, m = {m}, {law}, t = {begin:g} to {end:g}>"
+
     @property
     def shape(self) -> tuple[int, int]:
         """Shape (n, m), known before the start is drawn."""

@@ -294,6 +294,9 @@ class Theorem:
     ours: tuple[str, ...] = ()
     wrapped: bool = False
 
+    def __repr__(self) -> str:
+        return f"<Theorem {self.id!r}: {self.title}; {self.source}>"
+
     @property
     def erratum(self) -> Erratum | None:
         """Erratum that the theorem checks (what is printed and what is right), or None."""
