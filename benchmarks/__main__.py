@@ -43,6 +43,8 @@ def main() -> int:
         record = json.loads(options.redraw.read_text())
     else:
         record = _measured(options.only or STUDIES, quick=options.quick)
+    if options.keep is not None:
+        record = _merged(json.loads(options.keep.read_text()), record)
     from benchmarks.page import write
 
     for path in write(record, options.out):
@@ -58,7 +60,15 @@ def _options() -> argparse.Namespace:
     parser.add_argument(
         "--redraw", type=Path, metavar="FILE", help="a performance.json to write page and pictures from"
     )
+    parser.add_argument("--keep", type=Path, metavar="FILE", help="a performance.json whose other studies are kept")
     return parser.parse_args()
+
+
+def _merged(before: dict[str, Any], now: dict[str, Any]) -> dict[str, Any]:
+    """Return the record of before, with the studies of now in place of its own."""
+    studies = {row["study"] for row in now["rows"]}
+    kept = [row for row in before["rows"] if row["study"] not in studies]
+    return {**before, "rows": kept + now["rows"], "series": before["series"] | now["series"]}
 
 
 def _measured(names: tuple[str, ...] | list[str], *, quick: bool) -> dict[str, object]:

@@ -12,7 +12,7 @@ from flockana.equilibria.potential import Potential
 
 EquilibriumKind = Literal["minimum", "saddle", "maximum", "degenerate"]
 
-DENSE_SIZE = 6000  # n m: its whole spectrum takes a minute; beyond, the few eigenvalues that decide
+DENSE_SIZE = 3000  # n m: its whole spectrum takes seconds; beyond, the few eigenvalues that decide
 MAX_SIZE = 60_000  # n m
 
 

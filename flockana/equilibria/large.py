@@ -15,6 +15,7 @@ from flockana.equilibria.curvature import Landscape
 from flockana.lattice.elimination import Elimination
 
 _FEW, _MOST = 12, 400  # eigenvalues asked for at first and at last
+_WHOLE = 6000  # n m up to which the whole spectrum is computed, in a minute, where a few eigenvalues decide nothing
 _BELOW = 1e-7  # of the largest row sum: the shift below zero about which Lanczos' method looks
 _GAP = 1e-9  # of the largest row sum: eigenvalues that differ by less cannot be separated
 
@@ -33,7 +34,7 @@ class LargeLandscape(Landscape):
 
     @cached_property
     def _extremes(self) -> tuple[FloatArray, FloatArray]:
-        few = _FEW
+        few = max(_FEW, 2 * self._count(_BELOW * self.size))
         while few <= _MOST:
             values, vectors = self._smallest(few)
             gaps = np.diff(values[few // 2 :])
@@ -44,6 +45,8 @@ class LargeLandscape(Landscape):
                 top, its = self._largest()
                 return np.append(values, top), np.column_stack([vectors, its])
             few *= 2
+        if self.q.size <= _WHOLE:
+            return super().values, super().vectors
         raise SolverError(
             f"more than {_MOST // 2} of the {self.q.size} curvatures are zero, negative, or not distinguishable from "
             "each other: too many to classify so large a flock; take its connected parts one by one"

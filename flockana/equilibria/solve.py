@@ -20,7 +20,6 @@ from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_html, facts_text
 from flockana.equilibria.classify import (
-    DENSE_SIZE,
     MAX_SIZE,
     EquilibriumKind,
     classify_spectrum,
@@ -40,6 +39,7 @@ ALL_PAIRS = 48  # up to here every pair is listed, and the program is used again
 _MARGIN = 1.0  # of d, beyond the range, for the listed pairs; agents move by half of it before the next list
 _ROUNDS = 200
 _INSIDE = 0.999  # of the box: what ends nearer to its faces goes on
+_LARGEST = 6000  # n m up to which IPOPT and hybr end within minutes
 _ESCAPES, _SMALL, _NUDGE = 3, 400, 1e-2  # from saddles: how often, up to which n m, by how much of d
 _POLISH = 8
 _REACH = 1e-3  # of d: a polish that goes farther than that has left the point it should refine
@@ -189,7 +189,7 @@ def find_equilibrium(
     ensure_flag("strict", strict)
     if method == "minimise":
         method = "ipopt" if q.size <= _SMALL else "descent"
-    ensure_small(*q.shape, most=MAX_SIZE if method == "descent" else DENSE_SIZE)
+    ensure_small(*q.shape, most=MAX_SIZE if method == "descent" else _LARGEST)
     potential = Potential(law, ensure_finite_scalar("t", t))
     margin, max_iter = ensure_positive("margin", margin) * potential.pair.length, ensure_count("max_iter", max_iter)
     law.check_start(q, np.zeros_like(q))
@@ -204,7 +204,7 @@ def find_equilibrium(
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
     """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
-    q = _polish(potential, q) if converged and q.size <= DENSE_SIZE else q  # the descent has polished what is larger
+    q = _polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
     if potential.target is not None and not _fixed_in_space(potential):  # under Algorithm 2 the target holds the centre
         q = q + (potential.target - q.mean(axis=0))
     residual = potential.residual(q)

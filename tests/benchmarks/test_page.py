@@ -2,6 +2,7 @@
 
 import json
 
+from benchmarks.__main__ import _merged
 from benchmarks.page import write
 from benchmarks.rows import Asked, Row, to_json
 
@@ -12,6 +13,10 @@ RECORD = {
     "rows": to_json(
         [
             Row("Pairs", "gas", 1000, 2.0, "ns per pair", "C", 1.2, Asked("<=", 1.5, why="It is met.")),
+            Row(
+                "Time per pair", "lattice: one evaluation", 10_000, 21.3, "ns per pair", "C, list rebuilt: 17 ns", 1.212
+            ),
+            Row("Time per pair", "lattice: one evaluation", 10_000, 21.3, "ns per pair", "C, list kept: 11 ns", 1.929),
             Row("Pairs", "lattice", 1000, 2.0, "ns per pair", "C", 1.7, Asked("<=", 1.5, why="C fuses products.")),
         ]
     ),
@@ -43,6 +48,7 @@ def test_page_json_and_pictures_are_written_and_the_page_can_be_written_again(tm
         "| processor | one that computes |",
         "<summary>Pairs</summary>",
         "- no compiler",
+        "| accelerations of 10,000 agents | 1.21 times its time | C that finds all pairs anew |",
     ):
         assert words in page
     assert "| gas | 1 000 | 2 ns per pair | C | 1.2 | <= 1.5 | yes |" in page
@@ -57,3 +63,11 @@ def test_page_json_and_pictures_are_written_and_the_page_can_be_written_again(tm
 
 def test_no_series_no_picture(tmp_path):
     assert len(write(RECORD | {"series": {}}, tmp_path)) == 2
+
+
+def test_studies_measured_anew_replace_their_own_rows_only():
+    anew = RECORD | {"rows": to_json([Row("Pairs", "gas", 10, 1.0, "s")]), "series": {"cost": []}}
+    merged = _merged(RECORD, anew)
+    assert [(row["study"], row["n"]) for row in merged["rows"]] == [("Time per pair", 10_000)] * 2 + [("Pairs", 10)]
+    assert merged["series"] == RECORD["series"] | {"cost": []}
+    assert merged["machine"] == RECORD["machine"]
