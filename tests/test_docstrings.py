@@ -22,6 +22,13 @@ EXTENSION = (
 )
 RESULTS = ("flockana.falsify.counterexample", "flockana.stability.decay", "flockana.stability.tracking")
 
+# Functions without an example: those that draw, serve or write files, and measures of a whole run.
+NO_EXAMPLE = {
+    *("animate", "explore", "check_certificate", "write_certificate", "write_tube_certificate", "replay"),
+    *("ultimate_bound", "ensure_run", "is_flock", "is_quasi_flock", "is_cohesive", "is_dynamic_flock", "nets"),
+    *("cohesion_radii", "spreads", "min_distances", "diameters", "orders", "coordinations"),
+}
+
 # Names that mean the same in every signature: a sentence is written where they mean more.
 EVIDENT = {
     *("ax", "fps", "path", "progress", "seconds", "title", "velocities"),  # of figures
@@ -114,6 +121,12 @@ def test_every_module_and_function_says_what_it_does():
         if not text
     ]
     assert silent == []
+
+
+def test_public_functions_have_an_example():
+    functions = [item for item in reachable() if inspect.isfunction(item) and not item.__name__.startswith("_")]
+    shown = [item for item in functions if item.__module__ not in EXTENSION and ".plots." not in item.__module__]
+    assert {item.__name__ for item in shown if ">>>" not in (inspect.getdoc(item) or "")} - NO_EXAMPLE == set()
 
 
 def test_the_reader_of_sections_reads_them():

@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from flockana.base.checks import FloatArray
 
 
-_SEARCH, _MODES = 5.0, 2.0  # seconds for 1000 agents: an equilibrium with its modes, or the slowest modes alone
-_SHORT, _LONGEST = 10.0, 600.0
+_SEARCH, _MODES = 3.5, 2.0  # seconds for 1000 agents: an equilibrium with its modes, or the slowest modes alone
+_SEARCHED, _GIVEN = 30_000, 150_000  # agents: beyond, minutes and more memory than many machines have
+_SHORT = 10.0  # seconds that need no word
 
 
 def read_flock(
@@ -53,21 +54,19 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
 
     Examples
     --------
-    >>> announce_time(30_000, as_given=True)
+    >>> announce_time(200_000, as_given=True)
     Traceback (most recent call last):
-    flockana.base.errors.ArgumentError: n = 30000: about 1800 s on a machine of 2024: expected at most 17320 agents
+    flockana.base.errors.ArgumentError: n = 200000: expected at most 150000 agents
     """
     from flockana.base.errors import ArgumentError
 
-    seconds = (_MODES if as_given else _SEARCH) * (n / 1000.0) ** 2
-    if seconds < _SHORT:
-        return
-    text = f"n = {n}: about {seconds:.0f} s on a machine of 2024"
-    if seconds > _LONGEST:
-        most, bare = (int(1000.0 * (_LONGEST / each) ** 0.5) for each in (_SEARCH, _MODES))
-        choice = f", or {bare} with --as-given (slowest modes at these positions)" if as_given is False else ""
-        raise ArgumentError(f"{text}: expected at most {bare if as_given else most} agents{choice}")
-    typer.echo(text, err=True)
+    most, each = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
+    if n > most:
+        choice = f", or {_GIVEN} with --as-given (slowest modes at these positions)" if as_given is False else ""
+        raise ArgumentError(f"n = {n}: expected at most {most} agents{choice}")
+    seconds = each * n / 1000.0
+    if seconds >= _SHORT:
+        typer.echo(f"n = {n}: about {seconds:.0f} s on a machine of 2024", err=True)
 
 
 def _ensure_free(name: str, **given: object) -> None:

@@ -54,6 +54,7 @@ def stability_command(
     Exit status: 0 done, 2 bad input, 3 no equilibrium found, 130 interrupted.
     """
     from flockana.base.errors import SolverError
+    from flockana.base.progress import progress_bar
     from flockana.cli.flock import announce_time, read_flock
     from flockana.cli.picture import KINDS, ensure_file, write_figure
     from flockana.equilibria import find_equilibrium
@@ -65,9 +66,12 @@ def stability_command(
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time, potential=False)
         announce_time(len(q), as_given=as_given)
-        here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
-        linear = linearise(law, here, allow_residual=as_given)
-        slow = slowest(linear, modes)
+        with progress_bar(2, enabled=q.size > DENSE) as advance:
+            advance(0, "equilibrium")
+            here = q if as_given else find_equilibrium(law, q) if law.conservative else resting_state(law, q)
+            linear = linearise(law, here, allow_residual=as_given)
+            advance(1, "slowest modes")
+            slow = slowest(linear, modes)
         facts = summary(linear, slow, source) | margins_and_norms(linear, delay=delay, norms=norms, strict=not as_given)
     except SolverError as error:
         print_error(error)

@@ -115,8 +115,8 @@ def test_a_state_as_given(call, found, tmp_path):
         (("zone-51",), "ZoneFlocking"),
         (("hexagonal-patch:1", "--law", 3), "--law"),
         (("line:3", "--delay", "--modes", 0), "--modes"),
-        (("line:20000",), "about 2000 s on a machine of 2024: expected at most 10954 agents, or 17320"),
-        (("line:20000", "--as-given"), "about 800 s on a machine of 2024: expected at most 17320 agents"),
+        (("line:200000",), "n = 200000: expected at most 30000 agents, or 150000 with --as-given"),
+        (("line:200000", "--as-given"), "n = 200000: expected at most 150000 agents"),
     ],
 )
 def test_bad_input_is_one_line(refused, arguments, said):
