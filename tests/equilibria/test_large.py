@@ -54,6 +54,8 @@ def test_more_are_asked_for_where_more_are_soft(monkeypatch):
     monkeypatch.setattr(classify, "DENSE_SIZE", 10)
     assert spectrum(potential, q)[1:] == whole[1:]
     monkeypatch.setattr(large, "_MOST", 12)
+    assert spectrum(potential, q).eigenvalues.size == whole.eigenvalues.size  # of so few agents all are computed
+    monkeypatch.setattr(large, "_WHOLE", 10)
     with pytest.raises(SolverError, match="too many to classify so large a flock"):
         spectrum(potential, q)
 
