@@ -117,7 +117,7 @@ def draw_start(q0: Any, p0: Any, seed: int) -> tuple[FloatArray, FloatArray]:
     return ensure_state(q, np.zeros(np.shape(q)) if p is None else p)
 
 
-def ensure_kind(name: str, value: Any, kind: type | str, example: str) -> None:
+def ensure_kind(name: str, value: Any, kind: type | tuple[type, ...] | str, example: str) -> None:
     """Raise unless a value is of a kind: a class, or its name where importing it would load a heavy library."""
     names = {each.__name__ for each in type(value).__mro__}
     if not (kind in names if isinstance(kind, str) else isinstance(value, kind)):

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Real
 from typing import Any, ParamSpec, TypeVar
 
+import numpy as np
+
 from flockana.base.checks import ensure_kind, real_array
 from flockana.base.errors import ArgumentError, format_value
 
@@ -38,7 +40,7 @@ _EXAMPLES = {
 }
 _ARRAYS = ("ArrayLike", "FloatArray")
 _SYMBOLIC = ("Expr", "Matrix", "IndexedBase")  # of sympy; numbers will do
-_PROTOCOLS: dict[str, type] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence}
+_PROTOCOLS: dict[str, Any] = {"Iterable": Iterable, "Mapping": Mapping, "Sequence": (Sequence, np.ndarray)}
 
 
 def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:

@@ -1,7 +1,8 @@
 """Arguments of another kind are refused by name, items of a sequence by their number."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+import numpy as np
 import pytest
 
 import flockana as fl
@@ -37,3 +38,14 @@ def test_an_argument_of_another_kind_is_refused_by_name():
     assert first({"x": 1.0}) == "x"
     with pytest.raises(ArgumentError, match="responses = None: expected a mapping, such as a dict of values by label"):
         first(None)
+
+
+@check_kinds
+def length(amplitudes: "Sequence[float]") -> int:
+    return len(amplitudes)
+
+
+def test_an_array_is_a_sequence_and_a_set_is_none():
+    assert length(np.geomspace(1e-3, 0.3, 7)) == length([1.0] * 7) == 7
+    with pytest.raises(ArgumentError, match="amplitudes = {1.0}: expected a sequence"):
+        length({1.0})
