@@ -47,5 +47,5 @@ def length(amplitudes: "Sequence[float]") -> int:
 
 def test_an_array_is_a_sequence_and_a_set_is_none():
     assert length(np.geomspace(1e-3, 0.3, 7)) == length([1.0] * 7) == 7
-    with pytest.raises(ArgumentError, match="amplitudes = {1.0}: expected a sequence"):
+    with pytest.raises(ArgumentError, match=r"amplitudes = \{1.0\}: expected a sequence"):
         length({1.0})
