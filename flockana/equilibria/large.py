@@ -60,8 +60,7 @@ class LargeLandscape(Landscape):
 
     def _off_rigid(self, x: FloatArray) -> FloatArray:
         """Project vectors off the rigid motions."""
-        rest: FloatArray = x - self.rigid @ (self.rigid.T @ x)
-        return rest
+        return x - self.rigid @ (self.rigid.T @ x)
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Return eigenvalues nearest to a shift below zero, rising, by Rayleigh quotients."""

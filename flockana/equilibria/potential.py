@@ -111,8 +111,7 @@ class Potential:
         if (pull := self.law.term(Navigation)) is None:
             return push
         p_r = np.broadcast_to(pull.target.state(self.t)[1], q.shape)  # at this velocity the γ-agent does not drag
-        still: FloatArray = push - pull.gains.drag * p_r
-        return still
+        return push - pull.gains.drag * p_r
 
     def residual(self, q: FloatArray) -> float:
         """Return the largest force on an agent over `force_scale`."""
@@ -135,8 +134,7 @@ class Potential:
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
         basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
-        independent: FloatArray = basis[:, sizes > 1e-9 * sizes.max()]
-        return independent
+        return basis[:, sizes > 1e-9 * sizes.max()]
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:

@@ -88,8 +88,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
     basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
     # a flock that is on a line but for rounding has no rotation about it
     rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
-    independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
-    return independent
+    return basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:

@@ -60,8 +60,7 @@ def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArra
     corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))
     offsets = corners @ np.asarray(cell, dtype=float)
     sites = offsets[:, None] + np.asarray(basis, dtype=float)[None]
-    points: FloatArray = ensure_positive("d", d) * sites.reshape(-1, sites.shape[-1])
-    return points
+    return ensure_positive("d", d) * sites.reshape(-1, sites.shape[-1])
 
 
 def line(n: int, d: float) -> FloatArray:

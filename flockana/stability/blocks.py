@@ -80,8 +80,7 @@ def complement(basis: FloatArray) -> FloatArray:
     """Return an orthonormal basis of the orthogonal complement."""
     if basis.shape[1] == 0:
         return np.eye(basis.shape[0])
-    rest: FloatArray = np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
-    return rest
+    return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
 
 
 @check_kinds
@@ -167,5 +166,4 @@ def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:
     if basis.shape[1] == 0:
         return basis
     _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
-    small: FloatArray = basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
-    return small
+    return basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T

@@ -104,8 +104,7 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     turn = np.exp(1j * moving.omega * times)[:, None]
     steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
     rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
-    path: FloatArray = steady + transient(gains, times - times[0], start - steady[0], speed - rate)
-    return path
+    return steady + transient(gains, times - times[0], start - steady[0], speed - rate)
 
 
 def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
@@ -119,5 +118,4 @@ def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: Float
     short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
     series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
     slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
-    motion: FloatArray = left * level + (velocity + decay * left) * slope
-    return motion
+    return left * level + (velocity + decay * left) * slope

@@ -285,8 +285,7 @@ def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
 def velocity_mismatch(p: FloatArray) -> FloatArray:
     """Return K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
-    mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
-    return mismatch
+    return 0.5 * np.sum(relative**2, axis=(1, 2))
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:

@@ -10,13 +10,7 @@ from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_count,
-    ensure_kind,
-    ensure_nonnegative,
-    ensure_positive,
-)
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
 from flockana.stability.gain_problems import ComplexArray, GainProblem

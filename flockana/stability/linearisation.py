@@ -94,8 +94,7 @@ class Linearisation:
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
         """The matrix as a dense array; refused where it would not fit in memory."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
-        dense: FloatArray = self.A_sparse.toarray()
-        return dense
+        return self.A_sparse.toarray()
 
     @property
     def stiffness(self) -> csr_array:

@@ -146,8 +146,7 @@ class MapLinearisation:
     def multipliers(self) -> ComplexArray:
         """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
         values = self._dense[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
-        ordered: ComplexArray = values[np.lexsort((values.imag, -np.abs(values)))]
-        return ordered
+        return values[np.lexsort((values.imag, -np.abs(values)))]
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:

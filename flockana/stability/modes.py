@@ -195,8 +195,7 @@ class SecondOrder:
     def eigenvalues(self) -> npt.NDArray[np.complex128]:
         """Return all 2nm eigenvalues, the largest real part first; zeros exact."""
         whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
-        ordered: npt.NDArray[np.complex128] = whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
-        return ordered
+        return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
 
     @cached_property
     def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
@@ -287,8 +286,7 @@ class SecondOrder:
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
             return np.zeros_like(motion)
-        solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
-        return solution
+        return -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
 
 
 def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
@@ -301,8 +299,7 @@ def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], Fl
     factors, scales = dgeqrf(basis)[:2]
 
     def turn(side: str, how: str, x: FloatArray) -> FloatArray:
-        turned: FloatArray = dormqr(side, how, factors, scales, x, 64 * max(x.shape))[0]
-        return turned
+        return dormqr(side, how, factors, scales, x, 64 * max(x.shape))[0]
 
     return turn
 

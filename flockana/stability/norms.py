@@ -281,5 +281,4 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
 
 
 def _relaxed(law: Any, n: int) -> FloatArray:
-    relaxed: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
-    return relaxed
+    return find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q

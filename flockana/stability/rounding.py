@@ -52,8 +52,7 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
 
     plane = np.column_stack([values.real, values.imag])
     same = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
-    bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
-    return bound
+    return np.where(same > 1, size * tight ** (1.0 / same), np.inf)
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:

@@ -80,8 +80,7 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
     slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
     since, drag = (t - start)[:, None], gains.c2_gamma
-    left: FloatArray = -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
-    return left
+    return -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
 
 
 @check_kinds

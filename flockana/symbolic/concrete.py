@@ -17,14 +17,7 @@ from flockana.symbolic import sums
 from flockana.symbolic.derivation import Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
-from flockana.symbolic.pair import (
-    ADJACENCY,
-    along_flow,
-    own_force,
-    pair_force,
-    pair_potential,
-    vector,
-)
+from flockana.symbolic.pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 LAWS = ("algorithm1", "algorithm2")

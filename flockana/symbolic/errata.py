@@ -28,8 +28,7 @@ def e1_identity(m: int = 2) -> EnergyIdentity:
     """
     printed = algorithm1_identity(m, kinetic_factor=sp.S.One)
     left = Step(
-        r"The difference, $-\dot V - c_2^\alpha\, p^T \hat L p$, is not 0, and $\dot V$ has no sign:",
-        printed.residual,
+        r"The difference, $-\dot V - c_2^\alpha\, p^T \hat L p$, is not 0, and $\dot V$ has no sign:", printed.residual
     )
     return replace(printed, name=r"E1: the printed $H = V + \sum_i \|p_i\|^2$", steps=(*printed.steps, left))
 

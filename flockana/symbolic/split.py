@@ -57,14 +57,8 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     )
     f_ij, f_ji = sp.symbols("f_ij f_ji")
     steps = (
-        Step(
-            "Forces between agents obey action = reaction, and so drop out of the mean:",
-            sp.Eq(f_ij + f_ji, 0),
-        ),
-        Step(
-            r"The centre $q_c' = p_c$ moves as one agent without neighbours, linearly: $p_c' =$",
-            translational,
-        ),
+        Step("Forces between agents obey action = reaction, and so drop out of the mean:", sp.Eq(f_ij + f_ji, 0)),
+        Step(r"The centre $q_c' = p_c$ moves as one agent without neighbours, linearly: $p_c' =$", translational),
         Step(
             r"Forces between agents depend on differences only: $f_{ij}(q, p) = f_{ij}(x, v)$.",
             sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i))),
@@ -81,8 +75,5 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
         ),
     )
     return Derivation(
-        "Algorithm 2: structural and translational dynamics",
-        steps,
-        sp.Tuple(own, translational),
-        tuple(residuals),
+        "Algorithm 2: structural and translational dynamics", steps, sp.Tuple(own, translational), tuple(residuals)
     )
