@@ -4,17 +4,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_vector
+from flockana.base.checks import ComplexArray, FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Target
 from flockana.environment.targets import RescaledVelocity
 from flockana.interactions import Gains
 from flockana.laws.olfati_saber import ensure_one_gain
 from flockana.stability.translational import CentreOfMass
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 

@@ -12,9 +12,9 @@ from math import inf, nan, pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.base.checks import (
+    ComplexArray,
     FloatArray,
     ensure_count,
     ensure_kind,
@@ -29,8 +29,6 @@ from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
 from flockana.stability.linearise import linearise
 from flockana.stability.rounding import eigen
-
-ComplexArray = npt.NDArray[np.complex128]
 
 DELAYED = ("all", "pairs", "neighbours")
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
@@ -102,11 +100,6 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
         what these terms hear of other agents.
     strict : bool
         Refuse a state that is no equilibrium.
-
-    Raises
-    ------
-    ArgumentError
-        On a bad law, state or name.
 
     Examples
     --------

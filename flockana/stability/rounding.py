@@ -12,12 +12,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 

@@ -153,11 +153,9 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         dq = solve(-p - damping @ q)
         return off(np.concatenate([dq, q + shift * dq]))
 
-    operator = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64)
+    operator, most = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
     try:
-        inverted, vectors = eigs(
-            operator, k=count, which="LM", v0=off(_start(2 * size)), ncv=min(2 * size, 5 * count // 2)
-        )
+        inverted, vectors = eigs(operator, k=count, which="LM", v0=off(_start(2 * size)), ncv=min(2 * size, most))
     except ArpackError as error:
         raise SolverError(f"ARPACK found no {count} eigenvalues nearest to zero ({error}); ask for fewer") from error
     values = shift + 1.0 / inverted
