@@ -52,10 +52,6 @@ def sample_basin(
     t_end : float
         Length of a run.
 
-    Returns
-    -------
-    SampledBasin
-
     Examples
     --------
     >>> from flockana.certified.basin import certify

@@ -1,7 +1,5 @@
 """The motion that a checker of tubes believes in is the law's: of unequal a and b, in the plane, on each piece."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from flint import arb, arb_series, ctx
@@ -141,13 +139,6 @@ def test_the_energy_of_a_box_holds_that_of_each_state(law):
             at = motion.energy(balls([q, p]))
             assert float(at) == pytest.approx(exact, rel=1e-12)
             assert wide.contains(at)
-
-
-def test_the_energy_of_pairs_alone_is_enclosed_too():
-    motion = replace(motion_of(LED), gain={**motion_of(LED).gain, "c1_gamma": arb(0)})
-    wide = motion.energy([*balls(Q, 0.125), *balls(P)])
-    for sign in (-0.125, 0.125):
-        assert wide.contains(motion.energy(balls([Q + sign * np.array([[1.0, -1.0]] + [[-1.0, 1.0]] * 4), P])))
 
 
 def test_a_length_that_bounds_is_an_upper_end():
