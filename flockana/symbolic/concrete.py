@@ -14,7 +14,7 @@ import sympy as sp
 from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.base.errors import ArgumentError
 from flockana.symbolic import sums
-from flockana.symbolic.derivation import Step, latex_steps
+from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
 from flockana.symbolic.pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
@@ -24,7 +24,7 @@ LAWS = ("algorithm1", "algorithm2")
 
 
 @dataclass(frozen=True)
-class ConcreteFlock:
+class ConcreteFlock(Printed):
     """Small flock under a law, every expression explicit in the symbols q and p.
 
     Parameters
@@ -33,11 +33,6 @@ class ConcreteFlock:
         ``"algorithm1"`` or ``"algorithm2"``.
     kinetic_factor : sympy.Expr
         Of sum |p_i|^2 (sum |v_i|^2) in the energy: 1/2; the printed H of erratum E1 has 1.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is unknown, n < 1 or m is not 1, 2 or 3.
 
     Examples
     --------
@@ -171,7 +166,3 @@ class ConcreteFlock:
             Step("What is left between the two:", self.residual),
         )
         return latex_steps(f"{self.law.capitalize()}, n = {self.n}, m = {self.m}", steps)
-
-    def _repr_latex_(self) -> str:
-        """Return the LaTeX that a notebook shows."""
-        return f"$${self.latex()}$$"
