@@ -105,11 +105,6 @@ def test_an_open_face_is_seen_however_the_agents_are_numbered():
             assert not defects(placed, number[spokes + rim[:k] + rim[k + 1 :]]).interior.any()
 
 
-def test_squares_are_no_triangles():
-    q = square(5, 5, D)
-    assert not defects(q, links(q, R)).interior.any()
-
-
 def test_defects_without_links_and_in_space():
     assert not defects([[0.0, 0.0]], []).interior.any()
     with pytest.raises(ArgumentError, match="q has 3 columns: expected 2"):
