@@ -11,16 +11,12 @@ from flint import arb, fmpq
 
 def at_least(x: arb, places: int = 6) -> str:
     """Return the largest decimal of `places` places certainly not above x."""
-    if not x.is_finite():
-        return "-∞"
-    return _shifted(floor(_end(x.lower()) * 10**places), places)
+    return _shifted(floor(_end(x.lower()) * 10**places), places) if x.is_finite() else "-∞"
 
 
 def at_most(x: arb, places: int = 6) -> str:
     """Return the smallest decimal of `places` places certainly not below x."""
-    if not x.is_finite():
-        return "∞"
-    return _shifted(ceil(_end(x.upper()) * 10**places), places)
+    return _shifted(ceil(_end(x.upper()) * 10**places), places) if x.is_finite() else "∞"
 
 
 def interval(x: arb, places: int = 6) -> str:

@@ -98,11 +98,8 @@ class Structure:
 
     def hessian(self, x: Balls) -> arb_mat:
         """Return ∇²U: the block T 1 + (F'' − T) uuᵀ of each pair, and c1γ."""
-        blocks = []
-        for i, j, gap, s in self.near(x):
-            pull = self.tension(s)
-            blocks.append((i, j, outer(gap, pull, (self.stiffness(s) - pull) / s)))
-        return self.assembled(blocks)
+        near = ((i, j, gap, s, self.tension(s)) for i, j, gap, s in self.near(x))
+        return self.assembled([(i, j, outer(gap, t, (self.stiffness(s) - t) / s)) for i, j, gap, s, t in near])
 
     def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
         """Return the matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""

@@ -123,9 +123,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     """Return a proved lower bound of V over all configurations of n agents."""
     shortest, longest = bound_range(alpha)
     clique = largest_clique((1.0 + _ABOVE) * longest / shortest if shortest else inf, m)
-    if clique is None:
-        return 0.0
-    return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
+    return 0.0 if clique is None else alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
 
 
 def least_infeasible_size(alpha: AlphaInteraction, m: int = 2) -> int | None:

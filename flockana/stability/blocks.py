@@ -1,5 +1,7 @@
 """Linear flock x'' = −K x − D x' + w about a state, and its quotient by rigid motions."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

@@ -18,9 +18,7 @@ _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
     """Return the γ-agent's path and the factor of its p_r, unwrapped."""
-    if isinstance(target, RescaledVelocity):
-        return target.target, target.factor
-    return target, 1.0
+    return (target.target, target.factor) if isinstance(target, RescaledVelocity) else (target, 1.0)
 
 
 @dataclass(frozen=True)

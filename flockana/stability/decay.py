@@ -1,5 +1,7 @@
 """Comparison of predicted decay rates and paths with nonlinear runs."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import ceil, inf, log, pi

@@ -73,9 +73,7 @@ def h2_norm(system: StateSpace) -> float:
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     if system.nstates == 0 or system.noutputs == 0:
         return 0.0
-    if not _stable(system.A):
-        return inf
-    return sqrt(max(0.0, float(np.trace(_covariance(system)))))
+    return sqrt(max(0.0, float(np.trace(_covariance(system))))) if _stable(system.A) else inf
 
 
 def _covariance(system: StateSpace) -> FloatArray:

@@ -223,9 +223,7 @@ def _symmetric(flow: Linearisation, k: FloatArray, d: FloatArray, factor: float)
         return inf, flips
     turn = _least_damped(k, d) / (1.0 - factor)
     least = min(turn, flip)
-    if flip <= turn:
-        return least, flips
-    return least, [*_searched(flow, factor, least, flip), *flips]
+    return least, flips if flip <= turn else [*_searched(flow, factor, least, flip), *flips]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:

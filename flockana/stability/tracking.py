@@ -1,5 +1,7 @@
 """Tracking of a γ-agent by the centre of mass in a run, against the closed form of `centre_path`."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import inf, pi
 

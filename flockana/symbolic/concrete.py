@@ -149,9 +149,7 @@ class ConcreteFlock(Printed):
 
         def entry(indexed: sp.Indexed) -> sp.Expr:
             i, k = (int(index) - 1 for index in indexed.indices)
-            if indexed.base == sums.Z:
-                return sigma_norm(self.q[k] - self.q[i])
-            return rows[indexed.base][i][k]
+            return sigma_norm(self.q[k] - self.q[i]) if indexed.base == sums.Z else rows[indexed.base][i][k]
 
         written = sums.write_out(generic, self.n, self.m)
         return written.xreplace({indexed: entry(indexed) for indexed in written.atoms(sp.Indexed)})

@@ -87,7 +87,8 @@ class Enclosed:
                 given = [values[each] for each in arguments]
                 value = operation(x, *(each for each, _ in given))
                 if centre is not None and (node.is_Add or node.is_Mul):
-                    value = _tightened(value, centre[k][0], x - middle)
+                    mean = centre[k][0][0] + value[1] * (x - middle)  # by the mean value form
+                    value = _with_value(value, value[0].intersection(mean))
                 if not all(map(arb.is_finite, value.coeffs())):
                     return None
                 values.append((value, _sign(node, value, [sign for _, sign in given])))
@@ -96,11 +97,6 @@ class Enclosed:
         except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
             return None
         return values
-
-
-def _tightened(series: Any, centre: Any, off: arb) -> Any:
-    """Return a series with its value improved by the mean value form."""
-    return _with_value(series, series[0].intersection(centre[0] + series[1] * off))
 
 
 def _coefficients(series: arb_series) -> list[arb]:

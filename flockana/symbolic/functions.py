@@ -5,6 +5,8 @@ and numbers where given, so that one formula serves a proof, a picture in LaTeX 
 enclosures are generated from it too (`tools.formulas`).
 """
 
+from __future__ import annotations
+
 import sympy as sp
 
 from flockana.base.kinds import check_kinds

@@ -1,5 +1,7 @@
 """The sigma-norm, its gradient and sigma_1 as sympy expressions."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import sympy as sp

@@ -4,6 +4,8 @@ The potential psi_alpha, its derivative phi_alpha and the weight a_ij are undefi
 distance here: what is derived from them holds for every interaction with psi' = phi.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import sympy as sp

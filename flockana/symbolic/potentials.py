@@ -5,6 +5,8 @@ integral on its taper, constant beyond its cut-off. Which constant the closed pi
 side of the taper's start the potential's zero lies.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """The energies of n agents in m dimensions as sums over pairs and agents, for generic n and m."""
 
+from __future__ import annotations
+
 import sympy as sp
 
 from flockana.base.kinds import check_kinds

@@ -6,22 +6,13 @@ import numpy as np
 import pytest
 from flint import arb, fmpq
 
-from flockana import (
-    Algorithm1,
-    Algorithm2,
-    AlphaInteraction,
-    DeadZoneFlocking,
-    Gains,
-    StaticTarget,
-    certify,
-    find_equilibrium,
-    lattice,
-    simulate,
-)
+from flockana import DeadZoneFlocking, Gains, StaticTarget, certify, find_equilibrium, lattice, simulate
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.certified.alignment import unique_projection
 from flockana.certified.shells import SHELLS
 from flockana.certified.structure import Structure
+from flockana.interactions import AlphaInteraction
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from tests.certified.conftest import ALL, STARTS, TETRAHEDRON, basin_of, displaced
 
 

@@ -4,19 +4,11 @@ import numpy as np
 import pytest
 from flint import arb, arb_series, ctx
 
-from flockana import (
-    Algorithm2,
-    Algorithm3,
-    AlphaInteraction,
-    BetaInteraction,
-    Gains,
-    LinearTarget,
-    Sphere,
-    StaticTarget,
-)
+from flockana import Algorithm2, Algorithm3, AlphaInteraction, BetaInteraction, Gains, Sphere
 from flockana.certified.balls import AlphaParameters, BetaParameters, series_length
 from flockana.certified.check_motion import Motion
 from flockana.certified.check_sphere import Sphere as Rested
+from flockana.environment.targets import LinearTarget, StaticTarget
 
 ALPHA = AlphaInteraction(a=1.0, b=3.0)
 GAINS = Gains(c1_alpha=4.0, c2_alpha=0.75, c1_gamma=1.5, c2_gamma=0.5, c1_beta=20.0, c2_beta=6.0)

@@ -5,19 +5,9 @@ import numpy as np
 import pytest
 from flint import arb, ctx
 
-from flockana import (
-    Algorithm1,
-    Algorithm2,
-    Algorithm3,
-    CircleTarget,
-    Gains,
-    LinearTarget,
-    StaticTarget,
-    Wall,
-    enclose,
-    simulate,
-)
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Wall, enclose, simulate
 from flockana.base.errors import ArgumentError
+from flockana.environment.targets import CircleTarget, LinearTarget, StaticTarget
 from tests.certified.conftest import ALONE, oscillator
 
 TOLD = Algorithm2(target=StaticTarget((0.0, 0.0)))

@@ -4,21 +4,12 @@ import numpy as np
 import pytest
 from flint import arb, arb_series, ctx
 
-from flockana import (
-    Algorithm1,
-    Algorithm2,
-    Algorithm3,
-    AlphaInteraction,
-    BetaInteraction,
-    Gains,
-    LinearTarget,
-    Sphere,
-    StaticTarget,
-)
+from flockana import Algorithm3, AlphaInteraction, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget
 from flockana.certified.balls import series_length
 from flockana.certified.laws import flow_of
 from flockana.certified.series import PairNumbers, Piece
 from flockana.kernels import alpha as kernel
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAWS = [AlphaInteraction(), AlphaInteraction(d=3.0, r=4.5, eps=0.2, h=0.4, a=2.0, b=7.0, unit=1.5)]
 LENGTHS = {Piece.CORE: 0.4, Piece.TAPER: 0.8, Piece.OUT: 1.1}  # of r

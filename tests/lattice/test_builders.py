@@ -6,22 +6,8 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.lattice import (
-    bcc,
-    fcc,
-    harborth,
-    hcp,
-    hexagonal_patch,
-    hexagonal_spiral,
-    honeycomb,
-    is_alpha_lattice,
-    line,
-    links,
-    max_ratio,
-    simple_cubic,
-    square,
-    triangular,
-)
+from flockana.lattice import bcc, fcc, harborth, hcp, is_alpha_lattice, links, max_ratio, simple_cubic
+from flockana.lattice.builders import hexagonal_patch, hexagonal_spiral, honeycomb, line, square, triangular
 from flockana.measures import nets
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import link_lengths

@@ -6,21 +6,8 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.lattice import (
-    classify,
-    coordination,
-    crossings,
-    defects,
-    edge_length_error,
-    hexagonal_patch,
-    is_alpha_lattice,
-    is_planar,
-    links,
-    rigidity,
-    square,
-    strain,
-    triangular,
-)
+from flockana.lattice import coordination, crossings, defects, hexagonal_patch, is_planar, rigidity, square, triangular
+from flockana.lattice.measure import classify, edge_length_error, is_alpha_lattice, links, strain
 
 D, R = 7.0, 8.4
 

@@ -9,16 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, Algorithm2, Gains, scenario, simulate
+from flockana import Algorithm1, Algorithm2, CircleTarget, Gains, SineTarget, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
+from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity
 from flockana.laws.msn import MSNDiscretisation
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.tracking import response_ratio, tracking

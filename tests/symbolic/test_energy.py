@@ -6,24 +6,11 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import (
-    GAINS,
-    ConcreteFlock,
-    GainSymbols,
-    algorithm1_identity,
-    derive_psi_alpha,
-    derive_psi_beta,
-    derive_split,
-    e1_counterexample,
-    e1_identity,
-    energy,
-    hamiltonian,
-    norms,
-    pair,
-    structural_hamiltonian,
-    structural_identity,
-    sums,
-)
+from flockana.symbolic import GAINS, ConcreteFlock, GainSymbols, derive_split, energy, norms, pair, sums
+from flockana.symbolic.energy import algorithm1_identity, structural_identity
+from flockana.symbolic.errata import e1_counterexample, e1_identity
+from flockana.symbolic.potentials import derive_psi_alpha, derive_psi_beta
+from flockana.symbolic.sums import hamiltonian, structural_hamiltonian
 
 DIMENSIONS = pytest.mark.parametrize("m", [1, 2, 3])
 

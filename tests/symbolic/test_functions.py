@@ -6,19 +6,8 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import (
-    ALPHA,
-    AlphaSymbols,
-    BetaSymbols,
-    GainSymbols,
-    adjacency,
-    bump,
-    phi,
-    phi_alpha,
-    phi_beta,
-    sigma_norm,
-    sigma_norm_gradient,
-)
+from flockana.symbolic import ALPHA, AlphaSymbols, BetaSymbols, GainSymbols, sigma_norm, sigma_norm_gradient
+from flockana.symbolic.functions import adjacency, bump, phi, phi_alpha, phi_beta
 
 H = ALPHA.h
 PAPER = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)

@@ -5,19 +5,8 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import (
-    AlphaSymbols,
-    BetaSymbols,
-    alpha_antiderivative,
-    derive_psi_alpha,
-    derive_psi_beta,
-    phi,
-    phi_alpha,
-    phi_beta,
-    potentials,
-    psi_alpha,
-    psi_beta,
-)
+from flockana.symbolic import AlphaSymbols, BetaSymbols, phi, phi_alpha, phi_beta, potentials
+from flockana.symbolic.potentials import alpha_antiderivative, derive_psi_alpha, derive_psi_beta, psi_alpha, psi_beta
 
 Z = potentials.Z
 TABLE = [
