@@ -11,6 +11,7 @@ import numpy.typing as npt
 from flockana.base.errors import DIGITS, ArgumentError, UnknownNameError, format_value
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 
 def ensure_finite_scalar(name: str, value: Any) -> float:

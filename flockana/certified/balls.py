@@ -5,8 +5,6 @@ contains the function's values on all of it. Comparisons of balls are true only 
 choice, ``with flint.ctx.workdps(40): ...``. Squares of balls around 0 by `square`: ``x**2`` gives nan there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass

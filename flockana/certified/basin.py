@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_points
+from flockana.base.checks import FloatArray, ensure_points
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.seals import ensure_sealed, sealed
 from flockana.base.tables import facts_text
@@ -37,7 +37,7 @@ from flockana.certified.alignment import centred, rotated_to, unique_projection
 from flockana.certified.at_rest import enclose_rest, half_width
 from flockana.certified.balls import ball, square
 from flockana.certified.damping import damping
-from flockana.certified.decimals import round_down
+from flockana.certified.decimals import fraction, round_down
 from flockana.certified.lyapunov import Bounds, Decay, decay
 from flockana.certified.shells import ROOT_TWO, BondTable, Shells, prove
 from flockana.certified.structure import Structure
@@ -47,6 +47,7 @@ from flockana.measures.nets import components, links
 DIGITS = 40
 _STATED = 4
 _BISECTIONS = 10
+_LEAST = 0.05  # of the curvature at rest: a smaller one buys radius at the price of the rate
 _WIDEST = 0.5  # of d
 _SMALLEST = 1e-4  # of d: a basin that is smaller is not sought
 _RETREAT, _RETRIES = 0.97, 8
@@ -167,7 +168,7 @@ class Proved:
     decay: Decay
 
 
-def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
+def certify(equilibrium: Any, *, law: Any = None) -> Basin:
     """Return a certified basin of an equilibrium of Algorithm 1 or 2, as large as the proof allows.
 
     Parameters
@@ -176,12 +177,6 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
         A strict minimum, of `find_equilibrium`; or positions next to one.
     law : Algorithm1 or Algorithm2, optional
         The law, if not the equilibrium's own.
-    least : float
-        λ over the curvature at rest, in (0, 1): a smaller one buys radius at the price of the rate.
-
-    Returns
-    -------
-    Basin
 
     Raises
     ------
@@ -205,15 +200,12 @@ def certify(equilibrium: Any, *, law: Any = None, least: float = 0.05) -> Basin:
     if law is None:
         raise ArgumentError("law = None: expected the law that these positions are an equilibrium of")
     q = ensure_points("equilibrium", equilibrium.q if known else equilibrium)
-    share = ensure_finite_scalar("least", least)
-    if not 0.0 < share < 1.0:
-        raise ArgumentError(f"least = {share:g}: expected a share of the curvature at rest, between 0 and 1")
     u = Structure.of(law, *q.shape)
     _ensure_flock(law, q)
     with ctx.workdps(DIGITS):
         computed, rest = enclose_rest(u, q)
         around = BondTable(law, u, rest)
-        radius = _largest(around, share)
+        radius = _largest(around)
         for _ in range(_RETRIES):
             shells = prove(around, around.proposed(radius))
             found = shells and _assemble_basin(around, law, computed, shells)
@@ -238,7 +230,7 @@ def _ensure_flock(law: Any, q: FloatArray) -> None:
         raise ArgumentError("the net is disconnected and nothing else holds it together: expected one component")
 
 
-def _largest(around: BondTable, share: float) -> float:
+def _largest(around: BondTable) -> float:
     """Return the largest radius for which floating point proposes enough curvature, by bisection."""
     d = float(around.law.alpha.d)
     shortest = min(float(length) for _, length in around.gaps.values())
@@ -251,7 +243,7 @@ def _largest(around: BondTable, share: float) -> float:
     low, high = _SMALLEST * d, min(_WIDEST * d, 0.99 * shortest * float(ROOT_TWO.q) / float(ROOT_TWO.p))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if around.proposed(middle).mean > share * at_rest else (low, middle)
+        low, high = (middle, high) if around.proposed(middle).mean > _LEAST * at_rest else (low, middle)
     return low
 
 
@@ -273,18 +265,14 @@ def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: 
     basin = Basin(
         law=law,
         rest=np.array(computed).reshape(u.n, u.m),
-        radius=_fraction(shells.radius),
-        level=_fraction(round_down(shells.level, _STATED)),
-        curvature=_fraction(curvature),
-        damping=_fraction(least),
-        rate=_fraction(found.rate),
-        overshoot=_fraction(found.overshoot),
-        distance=_fraction(round_down(apart, _STATED)),
+        radius=fraction(shells.radius),
+        level=fraction(round_down(shells.level, _STATED)),
+        curvature=fraction(curvature),
+        damping=fraction(least),
+        rate=fraction(found.rate),
+        overshoot=fraction(found.overshoot),
+        distance=fraction(round_down(apart, _STATED)),
         connected=second > 0,
         proof=Proved(u, tuple(around.rest), half_width(u), shells, second, degree, bounds, found),
     )
     return sealed(basin)
-
-
-def _fraction(x: fmpq) -> Fraction:
-    return Fraction(int(x.p), int(x.q))

@@ -15,7 +15,7 @@ from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
 from flockana.certified.decimals import decimal, format_decimal
-from flockana.certified.statements import BASIN, BASIN_PROSE, FORMAT
+from flockana.certified.statements import FORMAT, STATEMENTS
 
 
 def basin_certificate(basin: Basin) -> dict[str, Any]:
@@ -36,10 +36,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         for k, bond in enumerate(shells.bonds)
     ]
     data: dict[str, Any] = {
-        "format": FORMAT,
-        "kind": "basin",
-        "statement": BASIN,
-        "prose": list(BASIN_PROSE),
+        **head("basin"),
         "law": {"algorithm": type(basin.law).__name__, **parameters, **gains},
         "positions": [[float(x).hex() for x in row] for row in basin.rest],
         "box": format_decimal(proof.box),
@@ -50,9 +47,15 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
         "surplus": format_decimal(bounds.surplus),
         "lyapunov": {name: format_decimal(getattr(found, name)) for name in ("eps", "theta", "kappa", "tau")},
         **{name: decimal(getattr(basin, name)) for name in STATED},
-        "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
     return with_digest(data)
+
+
+def head(kind: str) -> dict[str, Any]:
+    """Return what every certificate of a kind begins with."""
+    statement, prose = STATEMENTS[kind]
+    made_with = {"flockana": __version__, "python-flint": version("python-flint")}
+    return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": made_with}
 
 
 STATED = ("radius", "level", "curvature", "rate", "overshoot", "distance")

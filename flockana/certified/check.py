@@ -40,10 +40,6 @@ class Checked:
 def check_certificate(path: str | Path) -> Checked:
     """Verify a certificate's file.
 
-    Returns
-    -------
-    Checked
-
     Raises
     ------
     FileError

@@ -58,11 +58,9 @@ def check(data: Mapping[str, Any]) -> Iterator[str]:
             ensure(
                 len(bond["along"]) == len(bond["across"]) == shells, "a bond has other than one bound for each shell"
             )
-            for k, (along, across) in enumerate(zip(bond["along"], bond["across"], strict=True)):
-                eta = reach * (k + 1) / shells
-                ensure(
-                    net.floor_holds(rest, eta, Fraction(along), Fraction(across)), f"pairs {pairs}, shell {k}: no bound"
-                )
+            for k, floor in enumerate(zip(bond["along"], bond["across"], strict=True)):
+                holds = net.floor_holds(rest, reach * (k + 1) / shells, *map(Fraction, floor))
+                ensure(holds, f"pairs {pairs}, shell {k}: no bound")
         yield f"the curvatures along and across of {len(bonds)} kinds of pairs are bounds in each of {shells} shells"
         curvatures = [Fraction(k) for k in data["curvatures"]]
         for k, stated in enumerate(curvatures):

@@ -13,7 +13,7 @@ from typing import Any
 from flint import arb, arb_mat, arb_series
 
 from flockana.certified.balls import AlphaParameters, ball, square
-from flockana.certified.check_sphere import Sphere
+from flockana.certified.check_sphere import Sphere, piece_of, taper
 from flockana.certified.intervals import (
     adjacency,
     bump_slope,
@@ -66,20 +66,18 @@ class Motion:
 
     def pieces(self, q: Vector) -> list[int | None]:
         """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if it may be on two."""
-        found: list[int | None] = []
-        for _, _, gap in self.gaps(q):
-            z, cutoff = sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps), r_alpha(self.par)
-            knee = ball(self.par.h) * cutoff
-            found.append(0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None)
+        norms = (sigma_of_square(sum(map(square, gap), arb(0)), self.par.eps) for _, _, gap in self.gaps(q))
+        found = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
         return found + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
 
     def force(self, t: arb, x: Sequence[arb_series], pieces: Sequence[int | None]) -> list[Any]:
         """Return u along series of q and p about a time."""
         size, m = self.n * self.m, self.m
         q, p, g = self.agents(x[:size]), self.agents(x[size:]), self.gain
-        away = [
-            x[k] - arb_series([self.start[k % m] + self.velocity[k % m] * t, self.velocity[k % m]]) for k in range(size)
+        leader = [
+            arb_series([start + speed * t, speed]) for start, speed in zip(self.start, self.velocity, strict=True)
         ]
+        away = [x[k] - leader[k % m] for k in range(size)]
         if self.bounded:
             away = [a / (1 + sum((b * b for b in own), 0 * a)).sqrt() for own in self.agents(away) for a in own]
         u = [-g["c1_gamma"] * a - g["c2_gamma"] * (x[size + k] - self.declared[k % m]) for k, a in enumerate(away)]
@@ -105,10 +103,8 @@ class Motion:
         """Return the derivative c1γ ∂σ₁(x − q_r)/∂x of the pull to a γ-agent at rest, on a box."""
         away = [a - b for a, b in zip(x, self.start, strict=True)]
         slant = (1 + sum(map(square, away), arb(0))).rsqrt()
-        cube, gain = slant * slant * slant, self.gain["c1_gamma"]
-        return [
-            [gain * ((slant if k == c else 0) - cube * a * b) for c, b in enumerate(away)] for k, a in enumerate(away)
-        ]
+        cube, gain, rows = slant * slant * slant, self.gain["c1_gamma"], list(enumerate(away))
+        return [[gain * ((slant if k == c else 0) - cube * a * b) for c, b in rows] for k, a in rows]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
         """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as numbers at the begin."""
@@ -118,7 +114,7 @@ class Motion:
             return phi_alpha(z, par) / (1 + ball(par.eps) * s2[0]).sqrt(), adjacency(z, par)
         root = (1 + ball(par.eps) * s2).sqrt()
         z, h = (root - 1) / ball(par.eps), ball(par.h)
-        rho = arb_series([1]) if piece == 0 else (1 + ((z / r_alpha(par) - h) / (1 - h)).cos_pi()) / 2
+        rho = taper(z / r_alpha(par), h, piece)
         s = z + (shift(par.a, par.b) - d_alpha(par))
         a, b = ball(par.a), ball(par.b)
         return rho * ((a + b) * s / (1 + s * s).sqrt() + (a - b)) / 2 / root, rho

@@ -49,10 +49,8 @@ class Sphere:
         return self.push * psi_beta(self.height(x), self.par)
 
     def piece(self, x: Sequence[arb]) -> int | None:
-        """Return an agent's piece: 0 up to h d_β, 1 up to d_β, 2 beyond, None if it may be on two."""
-        z, cutoff = self.height(x), d_beta(self.par)
-        knee = ball(self.par.h) * cutoff
-        return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
+        """Return an agent's piece (`piece_of`)."""
+        return piece_of(self.height(x), d_beta(self.par), self.par.h)
 
     def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
         """Return the force along series of position and velocity; on an unknown piece as numbers at the begin."""
@@ -65,7 +63,7 @@ class Sphere:
             action, rho = phi_beta(z, self.par), bump(z / d_beta(self.par), self.par.h)
         else:
             z, h = ((1 + eps * (c * c)).sqrt() - 1) / eps, ball(self.par.h)
-            rho = arb_series([1]) if piece == 0 else (1 + ((z / d_beta(self.par) - h) / (1 - h)).cos_pi()) / 2
+            rho = taper(z / d_beta(self.par), h, piece)
             s = z - d_beta(self.par)
             action = rho * (s / (1 + s * s).sqrt() - 1)
         size, along = self.push * action * c / (1 + eps * (c * c)).sqrt(), dot(e, v)
@@ -99,3 +97,14 @@ class Sphere:
         squares = [square(a) if isinstance(a, arb) else a * a for a in away]
         distance = sum(squares[1:], squares[0]).sqrt()
         return [a / distance for a in away], distance
+
+
+def piece_of(z: arb, cutoff: arb, h: Any) -> int | None:
+    """Return the piece of ρ_h on which a σ-norm is: 0 up to h·cutoff, 1 up to the cutoff, 2 beyond, None if on two."""
+    knee = ball(h) * cutoff
+    return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
+
+
+def taper(z: Any, h: arb, piece: int) -> Any:
+    """Return ρ_h(z) of a series on piece 0 or 1."""
+    return arb_series([1]) if piece == 0 else (1 + ((z - h) / (1 - h)).cos_pi()) / 2

@@ -29,10 +29,21 @@ from flockana.certified.check import check_data, ensure, positive
 from flockana.certified.check_motion import Motion, Vector, number
 from flockana.certified.check_sphere import Sphere
 from flockana.certified.decimals import at_least, at_most
-from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH
+from flockana.certified.forms import ANY, BINARY, NUMBER, PAIR_LAW, TRUTH, RejectedError
 from flockana.certified.intervals import c_star
 
 BITS = 128
+CLAIMS = (  # what a certificate states of all of a run, the fault if it is another, and the step that is verified
+    ("distance", "the least distance is not the one stated", "no two agents come nearer than {}"),
+    (
+        "cohesion_radius",
+        "the largest radius is not the one stated",
+        "no agent is farther than {} from the centre of mass",
+    ),
+    ("clearance", "the least clearance is not the one stated", "no agent comes nearer than {} to a sphere"),
+    ("below_c_star", "H(0) < c*", ""),
+    ("energy", "the energy at the start is not the one stated", "the energy at the start is {}, rounded down"),
+)
 
 
 def form(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -96,7 +107,7 @@ class Run(Motion):
         ensure(len(times) == len(data["paths"]) + 1 == len(data["errors"]) + 1 and len(x0) == 2 * size, "its length")
         ensure(all(a < b for a, b in pairwise(times)), "its times do not rise")
         state, error = [ball(x) for x in x0], arb(0)
-        least, widest, clear = [], [], []
+        boxes = []
         for t, end, coefficients, stated in zip(times[:-1], times[1:], data["paths"], data["errors"], strict=True):
             h, path = ball(end - t), [[ball(exact(c)) for c in row] for row in coefficients]
             ensure(
@@ -110,25 +121,29 @@ class Run(Motion):
                 bool(bound < 2 * found + arb(2) ** -90), f"t = {float(t):.6g}: the error stated is not the one proved"
             )
             state, error = self.at(path, h), found
-            least.append(min(length.lower() for length in self.lengths(box)))
-            widest.append(max(radius.upper() for radius in self.radii(box)))
-            clear += [sphere.clearance(x).lower() for sphere in self.spheres for x in self.agents(box[:size])]
+            boxes.append(box)
         yield f"the run is within the errors stated of the path, through {len(times) - 1} steps"
-        ensure(same(data["distance"], min(least), down=True), "the least distance is not the one stated")
-        yield f"no two agents come nearer than {data['distance']}"
-        ensure(same(data["cohesion_radius"], max(widest), down=False), "the largest radius is not the one stated")
-        yield f"no agent is farther than {data['cohesion_radius']} from the centre of mass"
-        if self.spheres:
-            ensure(same(data["clearance"], min(clear), down=True), "the least clearance is not the one stated")
-            yield f"no agent comes nearer than {data['clearance']} to a sphere"
-        level = self.energy([ball(x) for x in x0])
-        ensure(same(data["energy"], level.lower(), down=True), "the energy at the start is not the one stated")
-        ensure(data["below_c_star"] is bool(level < self.gain["c1_alpha"] * c_star(self.par)), "H(0) < c*")
-        yield f"the energy at the start is {data['energy']}, rounded down"
+        stated = self.stated(boxes, [ball(x) for x in x0])
+        for key, fault, step in CLAIMS:
+            ensure(data[key] == stated[key], fault)
+            if step and stated[key] is not None:
+                yield step.format(data[key])
         ensure(data["basin"] is not None or data["turn"] == "0", "a turn of no basin")
         if data["basin"] is not None:
             ensure(not self.bounded, "a basin of Algorithm 3")
             yield from self.ends_in(data["basin"], data["law"], number(data["turn"]), state, error)
+
+    def stated(self, boxes: Sequence[Vector], start: Vector) -> dict[str, Any]:
+        """Return what a certificate states of all boxes of a run, and of the energy at its start."""
+        size, level = self.n * self.m, self.energy(start)
+        places = [(sphere, x) for box in boxes for sphere in self.spheres for x in self.agents(box[:size])]
+        return {
+            "distance": at_least(min(length.lower() for box in boxes for length in self.lengths(box))),
+            "cohesion_radius": at_most(max(radius.upper() for box in boxes for radius in self.radii(box))),
+            "clearance": at_least(min(sphere.clearance(x).lower() for sphere, x in places)) if places else None,
+            "energy": at_least(level.lower()),
+            "below_c_star": bool(level < self.gain["c1_alpha"] * c_star(self.par)),
+        }
 
     def ends_in(
         self, basin: Mapping[str, Any], own: Mapping[str, str], turn: arb, state: Vector, error: arb
@@ -205,18 +220,12 @@ class Run(Motion):
             bound = arb(guess + more * (1 + abs(guess)))
             if positive([[(bound if r == c else 0) - x for c, x in enumerate(row)] for r, row in enumerate(rows)]):
                 return bound
-        ensure(False, "no bound of the growth of errors")
-        raise AssertionError
+        raise RejectedError("no bound of the growth of errors")
 
     def norm(self, x: Vector) -> arb:
         """Return √(w²|q|² + |p|²)."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
-
-
-def same(stated: str, value: arb, *, down: bool) -> bool:
-    """Return whether a stated decimal is the rounded bound of a number."""
-    return stated == (at_least(value) if down else at_most(value))
 
 
 def exact(text: str) -> Fraction:

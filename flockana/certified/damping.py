@@ -33,8 +33,6 @@ def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | 
     """Return a positive lower bound of the Laplacian's second eigenvalue; None if none is certain."""
     rows = [[arb(1)] * n for _ in range(n)]  # 11ᵀ, whose eigenvalue n is above the second one, as all weights are <= 1
     for (i, j), weight in weights.items():
-        rows[i][i] += weight
-        rows[j][j] += weight
-        rows[i][j] -= weight
-        rows[j][i] -= weight
+        for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+            rows[p][q] += sign * weight
     return least_eigenvalue(arb_mat(rows))

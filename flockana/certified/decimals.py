@@ -11,16 +11,12 @@ from flint import arb, fmpq
 
 def at_least(x: arb, places: int = 6) -> str:
     """Return the largest decimal of `places` places certainly not above x."""
-    if not x.is_finite():
-        return "-∞"
-    return _shifted(floor(_end(x.lower()) * 10**places), places)
+    return _shifted(floor(_end(x.lower()) * 10**places), places) if x.is_finite() else "-∞"
 
 
 def at_most(x: arb, places: int = 6) -> str:
     """Return the smallest decimal of `places` places certainly not below x."""
-    if not x.is_finite():
-        return "∞"
-    return _shifted(ceil(_end(x.upper()) * 10**places), places)
+    return _shifted(ceil(_end(x.upper()) * 10**places), places) if x.is_finite() else "∞"
 
 
 def interval(x: arb, places: int = 6) -> str:
@@ -30,11 +26,8 @@ def interval(x: arb, places: int = 6) -> str:
 
 def small(x: arb, digits: int = 2) -> str:
     """Return an upper bound of a positive number in scientific notation, rounded up."""
-    top, exponent = _end(x.upper()), 0
-    while top >= Fraction(10) ** (exponent + 1):
-        exponent += 1
-    while top < Fraction(10) ** exponent:
-        exponent -= 1
+    top = _end(x.upper())
+    exponent = _exponent(top)
     mantissa = ceil(top * Fraction(10) ** (digits - 1 - exponent))
     if mantissa == 10**digits:  # 9.99 became 10.0
         mantissa, exponent = mantissa // 10, exponent + 1
@@ -43,9 +36,10 @@ def small(x: arb, digits: int = 2) -> str:
 
 def round_down(x: arb | fmpq, digits: int) -> fmpq:
     """Return the largest decimal of `digits` significant digits certainly not above x."""
-    low = Fraction(int(x.p), int(x.q)) if isinstance(x, fmpq) else _end(x.lower())
-    unit = _unit(abs(low), digits)
-    return _rational(floor(low / unit) * unit)
+    low = fraction(x) if isinstance(x, fmpq) else _end(x.lower())
+    unit = Fraction(10) ** (_exponent(abs(low)) + 1 - digits)
+    rounded = floor(low / unit) * unit
+    return fmpq(rounded.numerator, rounded.denominator)
 
 
 def round_up(x: arb | fmpq, digits: int) -> fmpq:
@@ -53,23 +47,24 @@ def round_up(x: arb | fmpq, digits: int) -> fmpq:
     return -round_down(-x, digits)
 
 
+def fraction(x: fmpq) -> Fraction:
+    """Return a rational of Arb as one of Python."""
+    return Fraction(int(x.p), int(x.q))
+
+
 def format_decimal(x: fmpq) -> str:
     """Return a rational as its exact decimal."""
-    return decimal(Fraction(int(x.p), int(x.q)))
+    return decimal(fraction(x))
 
 
-def _unit(size: Fraction, digits: int) -> Fraction:
-    """Return one unit in the last of the significant digits."""
+def _exponent(size: Fraction) -> int:
+    """Return the exponent of 10 in scientific notation; 0 of 0."""
     exponent = 0
-    while size and size >= Fraction(10) ** (exponent + 1):
+    while size >= Fraction(10) ** (exponent + 1):
         exponent += 1
     while size and size < Fraction(10) ** exponent:
         exponent -= 1
-    return Fraction(10) ** (exponent + 1 - digits)
-
-
-def _rational(x: Fraction) -> fmpq:
-    return fmpq(x.numerator, x.denominator)
+    return exponent
 
 
 def first_digits(x: arb, places: int) -> str | None:

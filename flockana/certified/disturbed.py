@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from flockana.base.checks import ensure_nonnegative
 from flockana.base.errors import ArgumentError
 from flockana.certified.balls import ball
 from flockana.certified.basin import DIGITS, Basin
-from flockana.certified.decimals import round_down, round_up
+from flockana.certified.decimals import fraction, round_down, round_up
 
 _STATED = 4
 
@@ -104,14 +104,10 @@ def ultimate_bound(basin: Basin, disturbance: Any) -> UltimateBound:
         largest = ((1 - share) * ball(basin.level)).sqrt() / gain
         excess = (ball(size) * gain) ** 2 / (1 - share)
         distance, speed = (2 * excess / ball(basin.curvature)).sqrt(), (2 * excess).sqrt()
-        up = (_fraction(round_up(x, _STATED)) if x > 0 else Fraction(0) for x in (excess, distance, speed))
-        return UltimateBound(basin, size, _fraction(round_down(largest, _STATED)), *up)
+        up = (fraction(round_up(x, _STATED)) if x > 0 else Fraction(0) for x in (excess, distance, speed))
+        return UltimateBound(basin, size, fraction(round_down(largest, _STATED)), *up)
 
 
 def _share(basin: Basin) -> arb:
     """Weight e = ε/√λ of the Lyapunov function's cross term."""
     return ball(basin.proof.decay.eps) / ball(basin.proof.bounds.curvature).sqrt()
-
-
-def _fraction(x: fmpq) -> Fraction:
-    return Fraction(int(x.p), int(x.q))

@@ -88,11 +88,6 @@ def enclose(
     Tube
         With status "complete", "broken" or "interrupted"; what it holds is proved in any case.
 
-    Raises
-    ------
-    ArgumentError
-        On a law that is not known in balls, or bad knobs.
-
     Examples
     --------
     >>> from flockana.laws.olfati_saber import Algorithm1

@@ -7,7 +7,7 @@ only C¹) and for a series (`arb_series`: on one piece of each pair's law).
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
@@ -47,71 +47,61 @@ class Flow:
         """Return u(t, q, p), coordinate by coordinate."""
         (q, p), m = self.split(state), self.m
         u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
-        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
-            if piece is Piece.OUT:
-                continue
-            apart, relative = [b - a for a, b in zip(q[i], q[j], strict=True)], _minus(p[j], p[i])
+        for i, j, piece in self._pairs(pieces):
+            apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
             stress, adjacency = self.pair.pair(norm2(apart), piece)
             stress, adjacency = self.stiffness * stress, self.damping * adjacency
             for k in range(m):
                 force = stress * apart[k] + adjacency * relative[k]
                 u[i][k], u[j][k] = u[i][k] + force, u[j][k] - force
-        for term, own in self._agents(pieces):
-            for i in range(self.n):
-                if own[i] is not Piece.OUT:
-                    u[i] = [a + b for a, b in zip(u[i], term.force(t, q[i], p[i], own[i]), strict=True)]
+        for k, i, piece in self._agents(pieces):
+            u[i] = [a + b for a, b in zip(u[i], self.terms[k].force(t, q[i], p[i], piece), strict=True)]
         return [x for agent in u for x in agent]
 
     def powers(self, state: Sequence[Any], pieces: Pieces) -> list[Any]:
         """Return the parts of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² of all pairs, then the power of each term."""
         q, p = self.split(state)
-        zero = 0 * q[0][0]
-        heat = zero
-        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
-            if piece is not Piece.OUT:
-                adjacency = self.pair.pair(norm2(_minus(q[j], q[i])), piece)[1]
-                if isinstance(adjacency, arb):
-                    adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
-                heat = heat + adjacency * norm2(_minus(p[j], p[i]))
-        terms = [
-            sum((term.power(q[i], p[i], own[i]) for i in range(self.n) if own[i] is not Piece.OUT), zero)
-            for term, own in self._agents(pieces)
-        ]
-        return [-self.damping * heat, *terms]
+        heat, powers = 0 * q[0][0], [0 * q[0][0] for _ in self.terms]
+        for i, j, piece in self._pairs(pieces):
+            adjacency = self.pair.pair(norm2(_minus(q[j], q[i])), piece)[1]
+            if isinstance(adjacency, arb):
+                adjacency = adjacency.nonnegative_part()  # ρ_h >= 0, whatever its ball says
+            heat = heat + adjacency * norm2(_minus(p[j], p[i]))
+        for k, i, piece in self._agents(pieces):
+            powers[k] = powers[k] + self.terms[k].power(q[i], p[i], piece)
+        return [-self.damping * heat, *powers]
 
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
         """Return (∂u/∂q, ∂u/∂p), square tables with the number 0 where nothing depends."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
-        by_q, by_p = _table(size), _table(size)
-        for (i, j), piece in zip(combinations(range(self.n), 2), pieces, strict=False):
-            if piece is Piece.OUT:
-                continue
+        by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
+        for i, j, piece in self._pairs(pieces):
             apart, relative = _minus(q[j], q[i]), _minus(p[j], p[i])
             s2 = norm2(apart)
             (stress, adjacency), (bend, fade) = self.pair.pair(s2, piece), self.pair.slopes(s2, piece)
             stress, drag = self.stiffness * stress, self.damping * adjacency
-            way = [
-                2 * (self.stiffness * bend * x + self.damping * fade * w) for x, w in zip(apart, relative, strict=True)
-            ]
+            bend, fade = self.stiffness * bend, self.damping * fade
+            way = [2 * (bend * x + fade * w) for x, w in zip(apart, relative, strict=True)]
             for k in range(m):
                 _couple(by_p, m, i, j, k, k, drag)
                 for h in range(m):
                     _couple(by_q, m, i, j, k, h, way[k] * apart[h] + (stress if k == h else 0))
-        for term, own in self._agents(pieces):
-            for i in range(self.n):
-                if own[i] is not Piece.OUT:
-                    for table, block in zip((by_q, by_p), term.slopes(t, q[i], p[i], own[i]), strict=True):
-                        for k in range(m):
-                            for h in range(m):
-                                table[i * m + k][i * m + h] += block[k][h]
+        for number, i, piece in self._agents(pieces):
+            blocks = self.terms[number].slopes(t, q[i], p[i], piece)
+            for table, block in zip((by_q, by_p), blocks, strict=True):
+                for k, h in product(range(m), repeat=2):
+                    table[i * m + k][i * m + h] += block[k][h]
         return by_q, by_p
 
-    def _agents(self, pieces: Pieces) -> Iterator[tuple[AgentTerm, Pieces]]:
-        """Yield each term with the pieces of its agents."""
-        first = self.n * (self.n - 1) // 2
-        for term in self.terms:
-            yield term, pieces[first : first + self.n]
-            first += self.n
+    def _pairs(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
+        """Return the pairs in range with their pieces."""
+        pairs = zip(combinations(range(self.n), 2), pieces, strict=False)
+        return ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
+
+    def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
+        """Return the number of a term, an agent and its piece, for all agents on which terms act."""
+        own = enumerate(pieces[self.n * (self.n - 1) // 2 :])
+        return ((*divmod(k, self.n), piece) for k, piece in own if piece is not Piece.OUT)
 
     def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
         """Return Taylor coefficients 0 to `order` of the solutions from a box, at a ball of times."""
@@ -158,9 +148,8 @@ class Flow:
         """Return x'' = ∂x'/∂x x' + ∂x'/∂t on a box that may lie on several pieces."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
         half, q = self.n * self.m, self.split(state)[0]
-        by_time = [
-            sum(parts, arb(0)) for x in q for parts in zip(*(term.drift(t, x) for term in self.terms), strict=True)
-        ]
+        drifts = (zip(*(term.drift(t, x) for term in self.terms), strict=True) for x in q)
+        by_time = [sum(parts, arb(0)) for drift in drifts for parts in drift]
         return [*along[:half], *(a + b for a, b in zip(along[half:], by_time or [arb(0)] * half, strict=True))]
 
 
@@ -173,10 +162,6 @@ def _minus(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
     return [x - y for x, y in zip(a, b, strict=True)]
 
 
-def _table(size: int) -> list[list[Any]]:
-    return [[0] * size for _ in range(size)]
-
-
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
     """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction."""
     for row, other, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
@@ -185,9 +170,7 @@ def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, valu
 
 def _coefficient(table: list[list[Any]], k: int) -> arb_mat:
     """Return the k-th coefficients of a table of series."""
-    return arb_mat(
-        [[entry[k] if isinstance(entry, arb_series) else (entry if k == 0 else 0) for entry in row] for row in table]
-    )
+    return arb_mat([[x[k] if isinstance(x, arb_series) else (x if k == 0 else 0) for x in row] for row in table])
 
 
 def _block(half: int, which: int) -> arb_mat:

@@ -51,11 +51,6 @@ def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
     spread : float
         Share by which each gain may be smaller or larger, 0 <= spread < 1.
 
-    Raises
-    ------
-    ArgumentError
-        On another law, too many agents, or a spread out of range.
-
     Examples
     --------
     >>> from flockana.environment.targets import StaticTarget

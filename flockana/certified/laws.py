@@ -52,10 +52,8 @@ def flow_of(law: Any, n: int, m: int) -> Flow:
     if isinstance(law, Algorithm3) and law.obstacles:
         terms = (*terms, *sphere_terms(law))
         rates += [gains.c2_beta, sqrt(gains.c1_beta)]
-    pace = max(rates) or 1.0
-    return Flow(
-        n, m, PairNumbers.of_alpha(law.alpha), arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha)), pace, terms
-    )
+    stiffness, damping = arb(exact(gains.c1_alpha)), arb(exact(gains.c2_alpha))
+    return Flow(n, m, PairNumbers.of_alpha(law.alpha), stiffness, damping, max(rates) or 1.0, terms)
 
 
 def sphere_terms(law: Algorithm3) -> tuple[SphereTerm, ...]:

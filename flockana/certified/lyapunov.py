@@ -97,5 +97,4 @@ def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
     _, kappa, tau = _others(bounds, eps, alpha)
     least, sound = float(bounds.least), tau > 0.0
     cost = 1.0 + 0.5 * least / np.where(sound, kappa, 1.0) + 0.5 * alpha / np.where(sound, tau, 1.0)
-    left: FloatArray = np.where(sound, least - 0.5 * alpha - eps * cost, -1.0)
-    return left
+    return np.where(sound, least - 0.5 * alpha - eps * cost, -1.0)

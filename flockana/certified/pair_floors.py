@@ -91,5 +91,4 @@ def points(reach: float) -> FloatArray:
     """Return displacements at which floating point evaluates: the shells' ends, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
     ends = np.arange(-SHELLS, SHELLS + 1) / SHELLS
-    found: FloatArray = reach * np.unique(np.concatenate([inner, ends]))
-    return found
+    return reach * np.unique(np.concatenate([inner, ends]))

@@ -26,8 +26,7 @@ class SampledBasin:
     @property
     def shares(self) -> FloatArray:
         """Share of the starts that returned."""
-        found: FloatArray = self.returned / self.runs
-        return found
+        return self.returned / self.runs
 
     def interval(self, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
         """Return the exact confidence interval of each share."""
@@ -52,10 +51,6 @@ def sample_basin(
         Starts at each.
     t_end : float
         Length of a run.
-
-    Returns
-    -------
-    SampledBasin
 
     Examples
     --------

@@ -64,11 +64,11 @@ class PairNumbers:
 
     def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
-        return formulas.pair(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
+        return formulas.pair(_nonnegative(s2), self, piece)
 
     def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
         """Return the derivatives of `pair` by s², which are continuous: a ball holds both sides of a switch."""
-        return formulas.slopes(_nonnegative(s2), self, piece)  # type: ignore[no-any-return]
+        return formulas.slopes(_nonnegative(s2), self, piece)
 
     def stiffness(self, s2: arb) -> arb:
         """Return F''(ℓ) of the potential F = ψ(‖·‖_σ), by s² = ℓ²."""

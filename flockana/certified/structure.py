@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq
@@ -59,15 +59,8 @@ class Structure:
             raise ArgumentError(
                 f"c1_alpha = {gains.c1_alpha:g}: expected more than 0, or no force holds the agents together"
             )
-        return cls(
-            AlphaParameters.of(law.alpha),
-            c1_alpha=exact(gains.c1_alpha),
-            c2_alpha=exact(gains.c2_alpha),
-            c1_gamma=exact(gains.c1_gamma if led else 0),
-            c2_gamma=exact(gains.c2_gamma if led else 0),
-            n=n,
-            m=m,
-        )
+        pull = (exact(gains.c1_gamma), exact(gains.c2_gamma)) if led else (exact(0), exact(0))
+        return cls(AlphaParameters.of(law.alpha), exact(gains.c1_alpha), exact(gains.c2_alpha), *pull, n, m)
 
     def pairs(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
         """Return (i, j, x_j − x_i, squared distance) of every pair."""
@@ -105,23 +98,17 @@ class Structure:
 
     def hessian(self, x: Balls) -> arb_mat:
         """Return ∇²U: the block T 1 + (F'' − T) uuᵀ of each pair, and c1γ."""
-        blocks = []
-        for i, j, gap, s in self.near(x):
-            pull = self.tension(s)
-            blocks.append((i, j, outer(gap, pull, (self.stiffness(s) - pull) / s)))
-        return self.assembled(blocks)
+        near = ((i, j, gap, s, self.tension(s)) for i, j, gap, s in self.near(x))
+        return self.assembled([(i, j, outer(gap, t, (self.stiffness(s) - t) / s)) for i, j, gap, s, t in near])
 
     def assembled(self, blocks: Sequence[tuple[int, int, list[list[arb]]]]) -> arb_mat:
         """Return the matrix of c1γ‖w‖² + Σ ⟨δ, B δ⟩, δ = w_j − w_i, over pairs with their blocks B."""
         m, size, own = self.m, self.n * self.m, ball(self.c1_gamma)
         total = [[own if i == j else arb(0) for j in range(size)] for i in range(size)]
         for i, j, block in blocks:
-            for a in range(m):
-                for b in range(m):
-                    total[m * i + a][m * i + b] += block[a][b]
-                    total[m * j + a][m * j + b] += block[a][b]
-                    total[m * i + a][m * j + b] -= block[a][b]
-                    total[m * j + a][m * i + b] -= block[a][b]
+            for a, b in product(range(m), repeat=2):
+                for p, q, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
+                    total[m * p + a][m * q + b] += sign * block[a][b]
         return arb_mat(total)
 
     def energy(self, x: Balls) -> arb:
@@ -134,14 +121,12 @@ class Structure:
 
     def rotation_tangents(self, x: Balls) -> list[list[arb]]:
         """Return tangents Ωx of the orbit of x under rotations, for a basis of the skew Ω: 0, 1 or 3 of them."""
-        m, found = self.m, []
-        for a in range(m):
-            for b in range(a):
-                turn = [arb(0)] * len(x)
-                for i in range(0, len(x), m):
-                    turn[i + a], turn[i + b] = x[i + b], -x[i + a]
-                found.append(turn)
-        return found
+        m, places = self.m, range(len(x))
+        return [
+            [x[k - a + b] if k % m == a else -x[k - b + a] if k % m == b else arb(0) for k in places]
+            for a, b in product(range(m), repeat=2)
+            if b < a
+        ]
 
     def translations(self) -> list[list[arb]]:
         """Return the translations along the axes."""

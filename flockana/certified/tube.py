@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import inf, nextafter
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from flint import arb, ctx
@@ -20,31 +20,12 @@ from flockana.certified.structural_energy import BITS, energy_of, structural_ene
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 if TYPE_CHECKING:
+    from flockana.certified.basin import Basin
     from flockana.certified.lohner import StateSet, Step
 
+    BasinLike = Basin
+
 Pair = tuple[int, int]
-
-
-class BasinLike(Protocol):
-    """Interface of a basin that a tube may end in (`flockana.certified.basin.Basin`)."""
-
-    @property
-    def law(self) -> Any:
-        """The law."""
-
-    @property
-    def rest(self) -> FloatArray:
-        """Equilibrium to which all starts converge, up to a rotation."""
-
-    @property
-    def proof(self) -> Any:
-        """Balls that hold the equilibrium, and its structure."""
-
-    def ensure_unedited(self) -> None:
-        """Raise unless the basin is unchanged since it was proved."""
-
-    def holds(self, q: Any, p: Any) -> bool:
-        """Return whether every state in a box certainly lies in the basin."""
 
 
 class Approach(NamedTuple):
@@ -260,7 +241,7 @@ class Tube:
         with ctx.workprec(BITS):
             return energy_of(self.law, [norm2(gap) for gap in step.relative], step.deviations, p)
 
-    def ends_in(self, basin: BasinLike) -> bool:
+    def ends_in(self, basin: Basin) -> bool:
         """Return whether every state at the end lies in a certified basin of the same law.
 
         Parameters

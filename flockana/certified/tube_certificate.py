@@ -5,27 +5,23 @@ The certificate holds a path of polynomials beside the run, of a higher order th
 
 import json
 from fractions import Fraction
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from flint import arb, ctx
 
-from flockana._version import __version__
 from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.base.seals import with_digest
 from flockana.certified.basin import Basin
-from flockana.certified.certificate import basin_certificate
+from flockana.certified.certificate import basin_certificate, head
 from flockana.certified.check_motion import number
 from flockana.certified.check_tube import BITS, Run, exact
-from flockana.certified.decimals import at_least, at_most, decimal, small
+from flockana.certified.decimals import decimal, small
 from flockana.certified.flow import Flow
-from flockana.certified.intervals import c_star
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
-from flockana.certified.statements import FORMAT, TUBE, TUBE_PROSE
 from flockana.certified.tube import Tube
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
@@ -89,16 +85,11 @@ def _start(tube: Tube, weight: float) -> dict[str, Any]:
     numbers |= {name: _decimal(getattr(gains, name)) for name in ("c1_alpha", "c2_alpha")}
     numbers |= {name: _decimal(getattr(gains, name)) if led else "0" for name in ("c1_gamma", "c2_gamma")}
     target = {name: [_decimal(x) for x in row] if led else zero for name, row in path.items()}
-    return {
-        "format": FORMAT,
-        "kind": "tube",
-        "statement": TUBE,
-        "prose": list(TUBE_PROSE),
+    return head("tube") | {
         "law": {"algorithm": type(law).__name__, **numbers, **target, **_spheres(law)},
         "q0": [[_hexadecimal(arb(x)) for x in row] for row in tube.q0.tolist()],
         "p0": [[_hexadecimal(arb(x)) for x in row] for row in tube.p0.tolist()],
         "weight": _decimal(weight),
-        "made_with": {"flockana": __version__, "python-flint": version("python-flint")},
     }
 
 
@@ -138,9 +129,8 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
     """Return errors that the steps justify, with bounds of distances, radii and energy."""
-    state, error = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())], arb(0)
-    level = run.energy(state)
-    errors, least, widest, clear = list[str](), list[arb](), list[arb](), list[arb]()
+    start = state = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())]
+    error, errors, boxes = arb(0), [], []
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):
         h, path = arb(end) - arb(t), [[arb_of(c) for c in row] for row in text]
         error = run.jumped(state, path, error)
@@ -153,18 +143,9 @@ def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, A
         else:
             raise ArgumentError(f"no error bound is verified at t = {t:g}: expected another weight or tube")
         errors.append(stated)
+        boxes.append(box)
         state, error = run.at(path, h), found
-        least.append(min(length.lower() for length in run.lengths(box)))
-        widest.append(max(radius.upper() for radius in run.radii(box)))
-        clear += [one.clearance(x).lower() for one in run.spheres for x in run.agents(box[: tube.n * tube.m])]
-    return {
-        "errors": errors,
-        "distance": at_least(arb(min(least))),
-        "cohesion_radius": at_most(arb(max(widest))),
-        "clearance": at_least(arb(min(clear))) if clear else None,
-        "energy": at_least(level.lower()),
-        "below_c_star": bool(level < run.gain["c1_alpha"] * c_star(run.par)),
-    }
+    return {"errors": errors} | run.stated(boxes, start)
 
 
 def _ending(tube: Tube, basin: Basin | None) -> dict[str, Any]:

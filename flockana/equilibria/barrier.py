@@ -19,10 +19,7 @@ from flockana.laws.olfati_saber import Algorithm1
 
 # Least ratio of the longest to the shortest distance among so many points, by dimension: in the plane 4 are at best a
 # square, 5 a regular pentagon (Bateman and Erdős 1951, who go up to 7); in space 5 are a bipyramid (Seidel 1969).
-_LEAST_RATIO = {
-    2: {4: sqrt(2.0), 5: 0.5 * (1.0 + sqrt(5.0)), 6: 2.0 * sin(0.4 * pi), 7: 2.0},
-    3: {5: sqrt(12.0 / 7.0)},
-}
+_LEAST_RATIO = {2: {4: sqrt(2.0), 5: 0.5 * (1.0 + sqrt(5.0)), 6: 2.0 * sin(0.4 * pi), 7: 2.0}, 3: {5: sqrt(12.0 / 7.0)}}
 _ABOVE = 1e-9  # relative: an upper bound also where the shortest length came out a few ulps too long
 _LARGEST = 2_000  # agents up to which the counts are followed
 
@@ -126,9 +123,7 @@ def energy_floor(alpha: AlphaInteraction, n: int, m: int = 2) -> float:
     """Return a proved lower bound of V over all configurations of n agents."""
     shortest, longest = bound_range(alpha)
     clique = largest_clique((1.0 + _ABOVE) * longest / shortest if shortest else inf, m)
-    if clique is None:
-        return 0.0
-    return alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
+    return 0.0 if clique is None else alpha.far_potential * (n * (n - 1) // 2 - turan_pairs(n, clique))
 
 
 def least_infeasible_size(alpha: AlphaInteraction, m: int = 2) -> int | None:

@@ -37,14 +37,8 @@ def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
 def landscape(potential: Potential, q: FloatArray) -> Landscape:
     """Return the potential's second-order model about a configuration, with its residual force."""
     kind = Landscape if q.size <= DENSE_SIZE else LargeLandscape
-    return kind(
-        potential.stiffness,
-        q,
-        potential.symmetries(q),
-        force=float(np.linalg.norm(potential.force(q))),
-        length=potential.pair.length,
-        unit=potential.force_scale,
-    )
+    force, length, unit = float(np.linalg.norm(potential.force(q))), potential.pair.length, potential.force_scale
+    return kind(potential.stiffness, q, potential.symmetries(q), force=force, length=length, unit=unit)
 
 
 def spectrum(potential: Potential, q: FloatArray) -> Spectrum:

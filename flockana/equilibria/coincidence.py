@@ -14,8 +14,7 @@ def hessian_trace(alpha: AlphaInteraction, lengths: FloatArray, m: int) -> Float
     """Return the trace of the Hessian block of a pair in R^m at each length."""
     z, root = alpha.sigma_norm(lengths), np.sqrt(1.0 + alpha.eps * lengths**2)
     phi, slope = alpha.phi_alpha(z), alpha.phi_alpha_slope(z)
-    trace: FloatArray = slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root
-    return trace
+    return slope * (lengths / root) ** 2 + phi / root**3 + (m - 1) * phi / root
 
 
 def least_with_coincidence(alpha: AlphaInteraction, m: int = 2) -> int:

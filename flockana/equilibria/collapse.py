@@ -45,8 +45,7 @@ def pulled_law(alpha: AlphaInteraction, ratio: float, m: int = 2) -> Algorithm2:
 
 def perturbed(q: FloatArray, d: float) -> FloatArray:
     """Return a configuration with a fixed perturbation of 1e-4 d, to leave symmetric saddles."""
-    disturbed: FloatArray = q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
-    return disturbed
+    return q + _NUDGE * d * np.random.default_rng(0).standard_normal(q.shape)
 
 
 def relaxed(alpha: AlphaInteraction, n: int, ratio: float) -> Equilibrium:

@@ -75,8 +75,7 @@ class Landscape:
     @cached_property
     def vectors(self) -> FloatArray:
         """Eigenvectors of `values`, as columns."""
-        vectors: FloatArray = np.linalg.eigh(self._matrix)[1][:, : self.values.size]
-        return vectors
+        return np.linalg.eigh(self._matrix)[1][:, : self.values.size]
 
     def curvatures(self) -> Curvatures:
         """Return eigenvalues with their signs; 0 where the residual force or rounding leaves the sign open."""

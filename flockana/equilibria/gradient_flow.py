@@ -15,6 +15,7 @@ _NEWTON_FROM = 1e-7  # relative force at which Newton's method takes over: a wea
 _NEWTON_AGAIN = 0.1  # of the force at which it led astray
 _NOT_YET = 10.0  # times the force that is waited for: where it was asked for last, a correction beside a step's end
 _NEWTON_STEPS = 20
+_TOL = 1e-11  # relative force at which it ends
 _NEWTON_REACH = 1e-3  # of d: a step farther than that is no polishing, and might end where a bond lets go at r
 _MOST_STEPS = 100_000  # 200 agents take some thousands; far from all numbers of use steps shrink without end
 _ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one process may not step in turns
@@ -35,7 +36,7 @@ def structural_force(law: Algorithm1 | Algorithm2, q: FloatArray) -> FloatArray:
     return moving_frame(law.flow(0.0, q, np.zeros_like(q))[0])
 
 
-def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, horizon: float = 1e4) -> GradientLimit:
+def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, horizon: float = 1e4) -> GradientLimit:
     """Follow q' = −∇U from q0 until the force vanishes; the last digits by Newton's method."""
     from scipy.integrate import LSODA  # BDF with the Jacobian, in compiled code; Adams' formulas where nothing is stiff
 
@@ -43,7 +44,7 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
     if law.target is not None:
         ensure_one_gain(law.gains)
     shape, scale = q.shape, law.scales.force
-    tol, horizon = ensure_positive("tol", tol), ensure_positive("horizon", horizon)
+    horizon = ensure_positive("horizon", horizon)
     pace = law.alpha.length / scale
     nearby = np.inf  # largest component of the force where it was asked for last, beside the end of a step
 
@@ -56,16 +57,11 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
             raise SolverError(f"the force is not finite, with coordinates up to {far:.3g}: start nearer to the origin")
         return pace * force
 
+    def slope(t: float, y: FloatArray) -> FloatArray:
+        return -pace * law.stiffness(y.reshape(shape)).toarray()
+
     with _ONE_AT_A_TIME, np.errstate(over="ignore", invalid="ignore"):  # what overflows raises, in words
-        solver = LSODA(
-            rate,
-            0.0,
-            q.ravel(),
-            horizon,
-            rtol=1e-6,
-            atol=1e-8 * law.alpha.length,
-            jac=lambda t, y: -pace * law.stiffness(y.reshape(shape)).toarray(),
-        )
+        solver = LSODA(rate, 0.0, q.ravel(), horizon, rtol=1e-6, atol=1e-8 * law.alpha.length, jac=slope)
         level = _NEWTON_FROM
         for _ in range(_MOST_STEPS):
             if solver.status != "running":
@@ -76,20 +72,20 @@ def gradient_flow(law: Algorithm1 | Algorithm2, q0: Any, *, tol: float = 1e-11, 
             here = solver.y.reshape(shape)
             force = _largest(structural_force(law, here)) / scale
             if force <= level:
-                polished, least = _polished(law, here, tol)
-                if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= tol:
+                polished, least = _polished(law, here)
+                if _largest(polished - here) <= _NEWTON_REACH * law.alpha.length and least <= _TOL:
                     return GradientLimit(polished, least, float(solver.t), True)
                 level = _NEWTON_AGAIN * force  # that was another equilibrium: flow on towards this one
         here = solver.y.reshape(shape)
         return GradientLimit(here, _largest(structural_force(law, here)) / scale, float(solver.t), False)
 
 
-def _polished(law: Algorithm1 | Algorithm2, q: FloatArray, tol: float) -> tuple[FloatArray, float]:
+def _polished(law: Algorithm1 | Algorithm2, q: FloatArray) -> tuple[FloatArray, float]:
     """Return the result of Newton's method from q, and the relative force there."""
     scale = law.scales.force
     for _ in range(_NEWTON_STEPS):
         residual = structural_force(law, q)
-        if _largest(residual) <= tol * scale:
+        if _largest(residual) <= _TOL * scale:
             break
         # least squares leaves the rigid motions alone, in which the stiffness is singular
         q = q + np.linalg.lstsq(law.stiffness(q).toarray(), residual.ravel(), rcond=1e-10)[0].reshape(q.shape)

@@ -42,7 +42,7 @@ class LargeLandscape(Landscape):
             between = 0.5 * float(values[last] + values[last + 1])
             clear = gaps.max() > _GAP * self.size and between > self.rounding
             if clear and self._count(between) == last + 1 and self._keeps_all(float(values[last])):
-                top, its = self._largest()
+                top, its = self._lanczos(lambda x: self._off_rigid(self.here @ self._off_rigid(x)), 1, "LA")
                 return np.append(values, top), np.column_stack([vectors, its])
             few *= 2
         if self.q.size <= _WHOLE:
@@ -63,17 +63,13 @@ class LargeLandscape(Landscape):
 
     def _off_rigid(self, x: FloatArray) -> FloatArray:
         """Project vectors off the rigid motions."""
-        rest: FloatArray = x - self.rigid @ (self.rigid.T @ x)
-        return rest
+        return x - self.rigid @ (self.rigid.T @ x)
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Return eigenvalues nearest to a shift below zero, rising, by Rayleigh quotients."""
         shift = _BELOW * self.size
         solve = Elimination(self._shifted(shift), self.q).solve
         return self._lanczos(lambda x: self._off_rigid(solve(self._off_rigid(x))), count, "LM")
-
-    def _largest(self) -> tuple[FloatArray, FloatArray]:
-        return self._lanczos(lambda x: self._off_rigid(self.here @ self._off_rigid(x)), 1, "LA")
 
     def _lanczos(self, act: Any, count: int, which: Any) -> tuple[FloatArray, FloatArray]:
         from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh

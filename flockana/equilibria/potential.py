@@ -10,7 +10,7 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import ensure_consistent
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
-from flockana.equilibria.terminal import rigid_motions
+from flockana.equilibria.terminal import generators, rigid_motions
 from flockana.interactions.pair import PairInteraction
 from flockana.laws.law import Law
 from flockana.laws.sum_of_terms import SumOfTerms
@@ -111,8 +111,7 @@ class Potential:
         if (pull := self.law.term(Navigation)) is None:
             return push
         p_r = np.broadcast_to(pull.target.state(self.t)[1], q.shape)  # at this velocity the γ-agent does not drag
-        still: FloatArray = push - pull.gains.drag * p_r
-        return still
+        return push - pull.gains.drag * p_r
 
     def residual(self, q: FloatArray) -> float:
         """Return the largest force on an agent over `force_scale`."""
@@ -135,8 +134,7 @@ class Potential:
         if not turns or not np.any(turns):
             return np.zeros((q.size, 0))
         basis, sizes, _ = np.linalg.svd(np.array(turns).T, full_matrices=False)
-        independent: FloatArray = basis[:, sizes > 1e-9 * sizes.max()]
-        return independent
+        return basis[:, sizes > 1e-9 * sizes.max()]
 
 
 def inside_obstacle(law: Law, q: FloatArray) -> bool:
@@ -148,14 +146,9 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: f
     """Return the skew matrices that leave every obstacle in place."""
     # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
     m = centre.size
-    generators = []
-    for a in range(m):
-        for b in range(a):
-            skew = np.zeros((m, m))
-            skew[a, b], skew[b, a] = 1.0, -1.0
-            generators.append(skew)
-    if not generators or not obstacles:
-        return generators
+    skew = generators(m)
+    if not skew or not obstacles:
+        return skew
     axes = []
     for obstacle in obstacles:
         if isinstance(obstacle, Sphere):
@@ -166,7 +159,7 @@ def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: f
             axes.append(np.asarray(obstacle.par[m:]))
         else:
             return []
-    moved = np.array([[generator @ axis for axis in axes] for generator in generators]).reshape(len(generators), -1)
+    moved = np.array([[generator @ axis for axis in axes] for generator in skew]).reshape(len(skew), -1)
     _, sizes, rows = np.linalg.svd(moved.T, full_matrices=True)
-    kept = [k for k in range(len(generators)) if k >= sizes.size or sizes[k] <= _CONCENTRIC]  # of unit axes
-    return [np.tensordot(rows[k], generators, axes=1) for k in kept]
+    kept = [k for k in range(len(skew)) if k >= sizes.size or sizes[k] <= _CONCENTRIC]  # of unit axes
+    return [np.tensordot(rows[k], skew, axes=1) for k in kept]

@@ -20,48 +20,46 @@ from flockana.equilibria.potential import Potential, inside_obstacle
 from flockana.measures.nets import LinkArray
 
 # the box is there to keep steps short, and is seldom active at the end: a barrier of almost nothing
-_BOX = {"ipopt.mu_init": 1e-6, "ipopt.bound_push": 1e-8, "ipopt.bound_frac": 1e-8, "ipopt.bound_relax_factor": 0.0}
+_BOX = {
+    "ipopt.nlp_scaling_method": "none",
+    "ipopt.mu_init": 1e-6,
+    "ipopt.bound_push": 1e-8,
+    "ipopt.bound_frac": 1e-8,
+    "ipopt.bound_relax_factor": 0.0,
+}
 _QUIET = {"print_time": False, "no_nlp_grad": True, "calc_lam_p": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
+_TOL = 1e-10
 
 
-class _Value(ca.Callback):
-    """Potential energy in the program's units, from the kernels."""
+class _Callback(ca.Callback):
+    """Function of the program's unknown, from the kernels."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, name: str, program: Program) -> None:
         ca.Callback.__init__(self)
         self._program = program
-        self.construct("value", {})
-
-    def get_n_in(self) -> int:
-        return 1
-
-    def get_n_out(self) -> int:
-        return 1
+        self.construct(name, {})
 
     def get_sparsity_in(self, _: int) -> Any:
         return ca.Sparsity.dense(self._program.size, 1)
+
+
+class _Value(_Callback):
+    """Potential energy in the program's units."""
 
     def eval(self, arguments: Any) -> list[float]:
         return [self._program.value(np.asarray(arguments[0]).ravel())]
 
 
-class _Derivatives(ca.Callback):
-    """Gradient and upper triangle of the Hessian in the program's units, from the kernels."""
+class _Derivatives(_Callback):
+    """Gradient and upper triangle of the Hessian in the program's units."""
 
     def __init__(self, program: Program) -> None:
-        ca.Callback.__init__(self)
-        self._program, self._at = program, _upper_triangle(program.shape, program.pairs)
+        self._at = _upper_triangle(program.shape, program.pairs)
         self._pattern = ca.Sparsity.triplet(program.size, program.size, *(each.tolist() for each in self._at))
-        self.construct("derivatives", {})
-
-    def get_n_in(self) -> int:
-        return 1
+        super().__init__("derivatives", program)
 
     def get_n_out(self) -> int:
         return 2
-
-    def get_sparsity_in(self, _: int) -> Any:
-        return ca.Sparsity.dense(self._program.size, 1)
 
     def get_sparsity_out(self, index: int) -> Any:
         return self._pattern if index else ca.Sparsity.dense(self._program.size, 1)
@@ -86,9 +84,6 @@ class _Watch(ca.Callback):
     def get_n_in(self) -> int:
         return int(ca.nlpsol_n_out())
 
-    def get_n_out(self) -> int:
-        return 1
-
     def get_sparsity_in(self, index: int) -> Any:
         return ca.Sparsity.dense(self._rows[ca.nlpsol_out(index)], 1)
 
@@ -111,7 +106,10 @@ class Program:
         self.d = potential.pair.length
         self.unit = potential.force_scale * self.d
         x, c = ca.MX.sym("x", self.size), ca.MX.sym("c", self.size * gauge)
-        self._value, self.derivatives = _Value(self), _Derivatives(self)  # kept alive: CasADi holds no reference
+        self._value, self.derivatives = (
+            _Value("value", self),
+            _Derivatives(self),
+        )  # kept alive: CasADi holds no reference
         self._watch, (slope, hessian) = _Watch(self.size, gauge), self.derivatives(x)
         value, multiplier, ignored = self._value(x), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", gauge)
         held = ca.reshape(c, self.size, gauge).T @ x
@@ -120,7 +118,7 @@ class Program:
             "grad_f": ca.Function("grad_f", [x, c], [value, slope]),
             "hess_lag": ca.Function("hess_lag", [x, c, multiplier, ignored], [multiplier * hessian]),
         }
-        self._solvers: dict[tuple[float, int], Any] = {}
+        self._solvers: dict[int, Any] = {}
 
     def value(self, x: FloatArray) -> float:
         """Return the objective at x; NaN inside an obstacle, which makes IPOPT shorten its step."""
@@ -130,13 +128,7 @@ class Program:
         return self.potential.listed_energy(q, self.pairs) / self.unit
 
     def solve(
-        self,
-        q0: FloatArray,
-        *,
-        basis: FloatArray | None = None,
-        reach: float = np.inf,
-        tol: float = 1e-10,
-        max_iter: int = 3000,
+        self, q0: FloatArray, *, basis: FloatArray | None = None, reach: float = np.inf, max_iter: int = 3000
     ) -> tuple[FloatArray, bool, str]:
         """Minimise from q0 and return (positions, whether IPOPT succeeded, IPOPT's status)."""
         start = q0.ravel() / self.d
@@ -144,24 +136,18 @@ class Program:
         held = basis.T @ start
         box = {"lbx": start - reach / self.d, "ubx": start + reach / self.d}
         with defer_sigint() as self._watch.came:
-            solver = self._solver(tol, max_iter)
+            solver = self._solver(max_iter)
             solution = solver(x0=start, p=basis.T.ravel(), lbg=held, ubg=held, **box)
             stats, x = solver.stats(), np.array(solution["x"])
         return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
 
-    def _solver(self, tol: float, max_iter: int) -> Any:
-        """Return IPOPT with these options (cached)."""
-        if (tol, max_iter) not in self._solvers:
-            options: Any = {
-                **_QUIET,
-                **_BOX,
-                "ipopt.tol": tol,
-                "ipopt.max_iter": max_iter,
-                "ipopt.nlp_scaling_method": "none",
-                "iteration_callback": self._watch,
-            }
-            self._solvers[tol, max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options | self._exact)
-        return self._solvers[tol, max_iter]
+    def _solver(self, max_iter: int) -> Any:
+        """Return IPOPT with a limit of iterations (cached)."""
+        if max_iter not in self._solvers:
+            limits: Any = {"ipopt.tol": _TOL, "ipopt.max_iter": max_iter, "iteration_callback": self._watch}
+            options = _QUIET | _BOX | limits | self._exact
+            self._solvers[max_iter] = ca.nlpsol("equilibrium", "ipopt", self._program, options)
+        return self._solvers[max_iter]
 
 
 def _upper_triangle(shape: tuple[int, int], pairs: LinkArray) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

@@ -40,25 +40,22 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
     # Of three random free places the one with the most neighbours is taken: compact patches, but not the same each
     # time.
     rng = np.random.default_rng([n, m, seed, 1])
-    basis = {
-        1: np.eye(1),
-        2: np.array([[1.0, 0.0], [0.5, sqrt(0.75)]]),
-        3: np.array([[1.0, 1, 0], [1, 0, 1], [0, 1, 1]]) / sqrt(2),
-    }[m]
+    face_centred = np.array([[1.0, 1, 0], [1, 0, 1], [0, 1, 1]]) / sqrt(2)
+    basis = {1: np.eye(1), 2: np.array([[1.0, 0.0], [0.5, sqrt(0.75)]]), 3: face_centred}[m]
     cube = np.stack(np.meshgrid(*[np.arange(-1, 2)] * m, indexing="ij"), -1).reshape(-1, m)
     steps = [tuple(step) for step in cube.tolist() if abs(np.linalg.norm(np.array(step) @ basis) - 1.0) < 1e-9]
+
+    def beside(site: tuple[int, ...]) -> list[tuple[int, ...]]:
+        """Return the sites next to one."""
+        return [tuple(a + b for a, b in zip(site, step, strict=True)) for step in steps]
+
     starts = []
     for _ in range(count):
-        taken = {(0,) * m}
+        taken: set[tuple[int, ...]] = {(0,) * m}
         while len(taken) < n:
-            free = sorted(
-                {tuple(a + b for a, b in zip(site, step, strict=True)) for site in taken for step in steps} - taken
-            )
+            free = sorted({place for site in taken for place in beside(site)} - taken)
             tried = [free[k] for k in rng.integers(len(free), size=3)]
-            degree = [
-                sum(tuple(a + b for a, b in zip(site, step, strict=True)) in taken for step in steps) for site in tried
-            ]
-            taken.add(tried[int(np.argmax(degree))])
+            taken.add(max(tried, key=lambda site: sum(place in taken for place in beside(site))))
         sites = np.array(sorted(taken), dtype=float) @ basis
         starts.append(d * (sites + noise * rng.standard_normal((n, m))))
     return starts
@@ -91,16 +88,6 @@ class Search:
             )
         return self.found[0].equilibrium
 
-    def strained(self, *, lattice: float = 1e-6, distinct: bool = True) -> tuple[Equilibrium, ...]:
-        """Return strict minima that are no α-lattice."""
-        return tuple(
-            item.equilibrium
-            for item in self.found
-            if item.equilibrium.kind == "minimum"
-            and item.equilibrium.strain() > lattice
-            and not (distinct and item.coincident)
-        )
-
 
 def _attempt(law: Any, method: str, start: FloatArray) -> Equilibrium | str:
     try:
@@ -116,11 +103,8 @@ def search(law: Any, starts: Iterable[Any], *, method: str = "minimise", executo
     if not points or any(point.shape != points[0].shape for point in points):
         raise ArgumentError(f"starts: expected at least one, all of one shape, got {sorted({p.shape for p in points})}")
     outcomes = list((executor.map if executor else map)(partial(_attempt, law, method), points))
-    return Search(
-        distinct([outcome for outcome in outcomes if isinstance(outcome, Equilibrium)]),
-        len(points),
-        tuple(outcome for outcome in outcomes if isinstance(outcome, str)),
-    )
+    failures = tuple(outcome for outcome in outcomes if isinstance(outcome, str))
+    return Search(distinct([each for each in outcomes if isinstance(each, Equilibrium)]), len(points), failures)
 
 
 def distinct(equilibria: Sequence[Equilibrium]) -> tuple[Distinct, ...]:

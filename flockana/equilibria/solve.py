@@ -14,7 +14,6 @@ from flockana.base.checks import (
     ensure_flag,
     ensure_known,
     ensure_points,
-    ensure_positive,
 )
 from flockana.base.errors import SolverError
 from flockana.base.seals import ensure_sealed, sealed
@@ -135,14 +134,7 @@ class Equilibrium:
 
 
 def find_equilibrium(
-    law: Any,
-    q0: Any,
-    *,
-    method: str = "minimise",
-    t: float = 0.0,
-    margin: float = _MARGIN,
-    max_iter: int = 3000,
-    strict: bool = True,
+    law: Any, q0: Any, *, method: str = "minimise", t: float = 0.0, max_iter: int = 3000, strict: bool = True
 ) -> Equilibrium:
     """Find an equilibrium from q0: a minimum of the law's potential, or with ``method="root"`` any critical point.
 
@@ -162,8 +154,6 @@ def find_equilibrium(
         descent, a hundred times as fast at n = 1000 and ending in lower minima.
     t : float
         When, for a γ-agent that moves.
-    margin : float
-        For IPOPT pairs are listed up to r + margin d; agents move by at most margin d/2 before they are listed anew.
     max_iter : int
         Most iterations of a solve.
     strict : bool
@@ -171,8 +161,6 @@ def find_equilibrium(
 
     Raises
     ------
-    ArgumentError
-        On bad arguments.
     SolverError
         If no equilibrium was found, with the solver's status.
 
@@ -191,12 +179,10 @@ def find_equilibrium(
         method = "ipopt" if q.size <= _SMALL else "descent"
     ensure_small(*q.shape, most=MAX_SIZE if method == "descent" else _LARGEST)
     potential = Potential(law, ensure_finite_scalar("t", t))
-    margin, max_iter = ensure_positive("margin", margin) * potential.pair.length, ensure_count("max_iter", max_iter)
+    max_iter = ensure_count("max_iter", max_iter)
     law.check_start(q, np.zeros_like(q))
-    if method == "descent":
-        last, converged, message = descend(potential, q, max_iter)
-    else:
-        last, converged, message = (_minimise if method == "ipopt" else _root)(potential, q, margin, max_iter)
+    solve = {"descent": descend, "ipopt": _minimise, "root": _root}[method]
+    last, converged, message = solve(potential, q, max_iter)
     if shared := pairs_at_one_place(q):  # no force parts them: where they end says little of other starts
         message += f"; {shared} pair{'s' * (shared > 1)} of agents began at one place"
     return finish(potential, last, converged, message, strict=strict)
@@ -257,13 +243,13 @@ def all_pairs(n: int) -> LinkArray:
     return np.array(list(combinations(range(n), 2)), dtype=np.int32).reshape(-1, 2)
 
 
-def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
+def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArray, bool, str]:
     """Minimise in a box about the start, then about each solution, until the box is not active."""
     # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.program import Program
 
-    (n, m), escapes = q.shape, 0
+    (n, m), escapes, margin = q.shape, 0, _MARGIN * potential.pair.length
     program: Program | None = None
     for _ in range(_ROUNDS):
         basis = potential.symmetries(q)
@@ -286,7 +272,7 @@ def _minimise(potential: Potential, q: FloatArray, margin: float, max_iter: int)
     return q, False, f"still on the way after {_ROUNDS} boxes of {margin / sqrt(m):.3g}"
 
 
-def _root(potential: Potential, q: FloatArray, margin: float, max_iter: int) -> tuple[FloatArray, bool, str]:
+def _root(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArray, bool, str]:
     """Find a zero of the gradient by Levenberg-Marquardt, with the gauge as extra equations."""
     from scipy.optimize import least_squares
 

@@ -74,22 +74,23 @@ def _forces(law: Any, q: FloatArray, p: FloatArray) -> FloatArray:
     return moving_frame(law.flow(0.0, q, still)[0])
 
 
+def generators(m: int) -> list[FloatArray]:
+    """Return the skew matrices of rotations in each coordinate plane."""
+    one = np.eye(m)
+    return [np.outer(one[a], one[b]) - np.outer(one[b], one[a]) for a in range(m) for b in range(a)]
+
+
 def rigid_motions(q: FloatArray) -> FloatArray:
     """Return an orthonormal basis of infinitesimal translations and rotations, shape (n m, k)."""
     n, m = q.shape
     x = moving_frame(q)
     size = float(np.linalg.norm(x))
     motions = [np.broadcast_to(axis, (n, m)).ravel() / np.sqrt(n) for axis in np.eye(m)]
-    for a in range(m):
-        for b in range(a):
-            turn = np.zeros((n, m))
-            turn[:, a], turn[:, b] = x[:, b], -x[:, a]
-            motions.append(turn.ravel() / (size or 1.0))
+    motions += [(x @ generator.T).ravel() / (size or 1.0) for generator in generators(m)]
     basis, sizes, _ = np.linalg.svd(np.array(motions).T, full_matrices=False)
     # a flock that is on a line but for rounding has no rotation about it
     rounding = EPS * np.sqrt(n) * float(np.abs(q).max()) / size if size > 0.0 else 0.0
-    independent: FloatArray = basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
-    return independent
+    return basis[:, sizes > max(_ON_A_LINE, _ROUNDINGS * rounding)]
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:

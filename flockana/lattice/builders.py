@@ -8,9 +8,8 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_count, ensure_fits, ensure_known, ensure_positive
 from flockana.base.errors import format_value
 
-_STEPS = np.array(
-    [(1.0, 0.0), (0.5, 0.75**0.5), (-0.5, 0.75**0.5), (-1.0, 0.0), (-0.5, -(0.75**0.5)), (0.5, -(0.75**0.5))]
-)
+_RISE = 0.75**0.5
+_STEPS = np.array([(1.0, 0.0), (0.5, _RISE), (-0.5, _RISE), (-1.0, 0.0), (-0.5, -_RISE), (0.5, -_RISE)])
 _WORK = 4  # arrays of the lattice's size that are there at once while it is made
 _MAX_RATIO = {
     "line": 2.0,
@@ -48,9 +47,8 @@ def max_ratio(name: str) -> float:
 
 def _ensure_fits(n: int, m: int) -> None:
     """Raise before a lattice is built that does not fit into memory."""
-    ensure_fits(
-        f"a lattice of {format_value(n)} agents, with what its making takes,", (_WORK, n, m), "ask for fewer agents"
-    )
+    what = f"a lattice of {format_value(n)} agents, with what its making takes,"
+    ensure_fits(what, (_WORK, n, m), "ask for fewer agents")
 
 
 def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArray:
@@ -60,8 +58,7 @@ def _sites(basis: Any, cell: Any, counts: dict[str, int], d: float) -> FloatArra
     corners = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), axis=-1).reshape(-1, len(sizes))
     offsets = corners @ np.asarray(cell, dtype=float)
     sites = offsets[:, None] + np.asarray(basis, dtype=float)[None]
-    points: FloatArray = ensure_positive("d", d) * sites.reshape(-1, sites.shape[-1])
-    return points
+    return ensure_positive("d", d) * sites.reshape(-1, sites.shape[-1])
 
 
 def line(n: int, d: float) -> FloatArray:

@@ -28,8 +28,7 @@ def coordination(n: int, links: Any) -> IntArray:
     [1, 2, 1]
     """
     n = ensure_count("n", n)
-    count: IntArray = np.bincount(ensure_links(links, n).ravel(), minlength=n).astype(np.int64)
-    return count
+    return np.bincount(ensure_links(links, n).ravel(), minlength=n).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,5 +96,4 @@ def _surrounded(q: FloatArray, links: LinkArray, count: IntArray) -> npt.NDArray
     place = np.minimum(np.searchsorted(codes, sought), max(len(codes) - 1, 0))
     closed = codes[place] == sought
     closed[closed] = turns_left(q, centre[closed], other[closed], other[following][closed])
-    interior: npt.NDArray[np.bool_] = (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)
-    return interior
+    return (np.bincount(centre[closed], minlength=n) == count) & (count >= 3)

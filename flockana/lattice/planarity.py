@@ -153,8 +153,7 @@ def _ends_of_paths(links: LinkArray, corner: int, corners: set[int]) -> set[int]
 
 
 def _distinct(n: int, links: Any) -> LinkArray:
-    pairs: LinkArray = np.unique(np.sort(ensure_links(links, n), axis=1), axis=0)
-    return pairs
+    return np.unique(np.sort(ensure_links(links, n), axis=1), axis=0)
 
 
 def _planar(n: int, links: LinkArray) -> bool:
@@ -168,8 +167,7 @@ def _planar(n: int, links: LinkArray) -> bool:
 
     graph = networkx.Graph()
     graph.add_edges_from(links.tolist())
-    planar: bool = networkx.check_planarity(graph)[0]
-    return planar
+    return networkx.check_planarity(graph)[0]
 
 
 def ensure_plane(m: int) -> None:

@@ -13,8 +13,7 @@ FOLLOWS = 1e-2  # of the law's own speed: an agent this near to the leader's vel
 def following(run: Any) -> FloatArray:
     """Return which agents match their leader's velocity at the end, within 1/100 of the law's speed, shape (n,)."""
     rate = run.law.target.rate(float(run.t[-1]))
-    same: FloatArray = np.linalg.norm(run.p[-1] - rate, axis=1) <= FOLLOWS * run.scales.speed
-    return same
+    return np.linalg.norm(run.p[-1] - rate, axis=1) <= FOLLOWS * run.scales.speed
 
 
 MEASURES = (

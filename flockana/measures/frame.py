@@ -7,5 +7,4 @@ from flockana.base.checks import FloatArray
 
 def moving_frame(x: FloatArray) -> FloatArray:
     """Return the deviations from the mean over agents, x_i − x_c."""
-    deviations: FloatArray = x - np.add.reduce(x, axis=0) / len(x)  # x.mean, without its checks
-    return deviations
+    return x - np.add.reduce(x, axis=0) / len(x)  # x.mean, without its checks

@@ -215,8 +215,7 @@ def nets(q: FloatArray, d: float, r: float) -> FloatArray:
 def cohesion_radii(q: FloatArray) -> FloatArray:
     """Return `cohesion_radius` over time, unchecked."""
     q, _, unit = scaled_near_one(q)
-    radii: FloatArray = lengths(_centred(q)).max(axis=1) * unit
-    return radii
+    return lengths(_centred(q)).max(axis=1) * unit
 
 
 @check_kinds
@@ -228,8 +227,7 @@ def spreads(x: FloatArray) -> FloatArray:
     x : ndarray, shape (T, n, m)
         Positions or velocities.
     """
-    spread: FloatArray = 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
-    return spread
+    return 0.5 * np.sum(_centred(x) ** 2, axis=(1, 2))
 
 
 @check_kinds
@@ -237,8 +235,7 @@ def min_distances(q: FloatArray) -> FloatArray:
     """Return `min_distance` over time, unchecked."""
     q, _, unit = scaled_near_one(q)
     if q.shape[1] < _TREE:
-        distances: FloatArray = least_distances(q) * unit
-        return distances
+        return least_distances(q) * unit
     from scipy.spatial import KDTree
 
     return unit * np.array([np.asarray(KDTree(x).query(x, k=2)[0])[:, 1].min() for x in q])
@@ -254,8 +251,7 @@ def diameters(x: FloatArray) -> FloatArray:
         Positions or velocities.
     """
     x, _, unit = scaled_near_one(x)
-    distances: FloatArray = greatest_distances(np.ascontiguousarray(x)) * unit
-    return distances
+    return greatest_distances(np.ascontiguousarray(x)) * unit
 
 
 @check_kinds
@@ -270,13 +266,11 @@ def coordinations(p: FloatArray) -> FloatArray:
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     twice = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
-    cosines: FloatArray = np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
-    return cosines
+    return np.divide(twice, k * (k - 1), out=np.full(len(p), np.nan), where=k > 1)
 
 
 def _centred(x: FloatArray) -> FloatArray:
-    centred: FloatArray = x - centres(x)[:, None]
-    return centred
+    return x - centres(x)[:, None]
 
 
 def _headings(p: FloatArray) -> FloatArray:
@@ -290,5 +284,4 @@ def _headings(p: FloatArray) -> FloatArray:
         p[far] = np.ldexp(p[far], -powers[:, None])
         speed[far] = lengths(p[far][None])[0]
     speed = speed[..., None]
-    headings: FloatArray = np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)
-    return headings
+    return np.divide(p, speed, out=np.zeros_like(p), where=speed > 0.0)

@@ -65,8 +65,7 @@ def components(n: int, pairs: LinkArray) -> npt.NDArray[np.int32]:
     n = ensure_count("n", n)
     pairs, known = ensure_links(pairs, n), np.arange(n)
     unite(known, pairs[:, 0], pairs[:, 1])
-    labels: npt.NDArray[np.int32] = labelled(known)
-    return labels
+    return labelled(known)
 
 
 def laplacian(n: int, pairs: LinkArray, weights: FloatArray | None = None) -> csr_array:

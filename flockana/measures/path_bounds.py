@@ -100,8 +100,7 @@ def cohesion_bound(
     floors, noises = np.maximum(radii[:-1], radii[1:]), ROUNDING * np.maximum(extents[:-1], extents[1:])
     slack = np.zeros((len(floors), q.shape[1])) if slack is None else slack
     states = tuple(np.ascontiguousarray(x) for x in (q, p, u))
-    bounds: FloatArray = farthest_in_turn(t, states, slack, floors, np.maximum(RELATIVE_TOL * floors, noises))
-    return bounds
+    return farthest_in_turn(t, states, slack, floors, np.maximum(RELATIVE_TOL * floors, noises))
 
 
 @dataclass(frozen=True)

@@ -65,15 +65,13 @@ def incidence(n: int, edges: Edges) -> FloatArray:
 
 def receivers(n: int, edges: Edges) -> FloatArray:
     """Return D_in, shape (n, M): D with the entries of receivers only. The loop holds D_in Dᵀ, not D Dᵀ."""
-    heads: FloatArray = np.maximum(incidence(n, edges), 0.0)
-    return heads
+    return np.maximum(incidence(n, edges), 0.0)
 
 
 def edge_vectors(q: FloatArray, edges: Edges) -> FloatArray:
     """Return x_e = q_j − q_i of each edge (j, i), shape (..., M, m)."""
     sender, receiver = _columns(edges)
-    x: FloatArray = q[..., sender, :] - q[..., receiver, :]
-    return x
+    return q[..., sender, :] - q[..., receiver, :]
 
 
 def _columns(edges: Edges) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

@@ -12,8 +12,7 @@ from flockana.measures.nets import components, link_lengths, links
 
 def _mismatch(flock: Flock) -> FloatArray:
     """Return K̃ = K/n."""
-    mismatch: FloatArray = metrics.spreads(flock.p) / flock.p.shape[1]
-    return mismatch
+    return metrics.spreads(flock.p) / flock.p.shape[1]
 
 
 def _strain(run: Any) -> float:

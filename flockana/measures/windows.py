@@ -25,11 +25,6 @@ def joint_windows(n: int, nets: Iterable[LinkArray]) -> tuple[tuple[int, int], .
     tuple of (int, int)
         First instant of each window and the first after it.
 
-    Raises
-    ------
-    ArgumentError
-        If n is no whole number >= 1 or too large, or nets are no sequence of links among agents 0 … n − 1.
-
     Examples
     --------
     >>> one, other, none = [[0, 1]], [[1, 2]], []

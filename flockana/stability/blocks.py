@@ -80,8 +80,7 @@ def complement(basis: FloatArray) -> FloatArray:
     """Return an orthonormal basis of the orthogonal complement."""
     if basis.shape[1] == 0:
         return np.eye(basis.shape[0])
-    rest: FloatArray = np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
-    return rest
+    return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]
 
 
 @check_kinds
@@ -107,8 +106,7 @@ def blocks(stiffness: FloatArray, damping: FloatArray, q: FloatArray) -> Blocks:
 def is_pairs_and_pull(law: Any) -> bool:
     """Return whether a law consists of a pair term and, at most, a linear pull to a γ-agent, as Algorithms 1 and 2."""
     terms = getattr(law, "terms", ())
-    linear = (isinstance(term, PairTerm) or (isinstance(term, Navigation) and term.unit is None) for term in terms)
-    return bool(terms) and all(linear)
+    return bool(terms) and all(isinstance(x, PairTerm) or (isinstance(x, Navigation) and not x.unit) for x in terms)
 
 
 def ensure_pairs_and_pull(law: Any) -> None:
@@ -117,7 +115,7 @@ def ensure_pairs_and_pull(law: Any) -> None:
         raise ArgumentError(f"law = {law!r}: expected Algorithm1 or Algorithm2")
 
 
-def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Blocks:
+def law_blocks(law: Any, q: Any, *, strict: bool = True) -> Blocks:
     """K and D of Algorithm 1 or 2 at an equilibrium, with the rigid motions sorted by what holds them.
 
     K = c1α ∇²V + c1γ and D = c2α L̂ + c2γ, the gains of the γ-agent one for all or one per agent. Under Algorithm 2
@@ -127,15 +125,8 @@ def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bloc
     Parameters
     ----------
     q : array_like, shape (n, m)
-    t : float
-        When: with per-agent gains the place of the γ-agent matters.
     strict : bool
         Refuse a state that is no equilibrium.
-
-    Raises
-    ------
-    ArgumentError
-        On another law, too many agents for a dense matrix, or a state that is no equilibrium.
 
     Examples
     --------
@@ -153,12 +144,12 @@ def law_blocks(law: Any, q: Any, *, t: float = 0.0, strict: bool = True) -> Bloc
         raise ArgumentError(
             f"n m = {q.size}: expected at most {MOST} for a dense spectrum; linearise has sparse matrices"
         )
-    if strict and (residual := Potential(law, t).residual(q)) > RESIDUAL:
+    if strict and (residual := Potential(law).residual(q)) > RESIDUAL:
         raise ArgumentError(
             f"q is no equilibrium: residual force {residual:.2g} of the law's force scale, more than {RESIDUAL:g}; "
             "find_equilibrium finds one, and strict=False studies this state all the same"
         )
-    linearised = linearise(law, q, t=t, allow_residual=True)
+    linearised = linearise(law, q, allow_residual=True)
     return blocks(linearised.stiffness.toarray(), linearised.damping.toarray(), q)
 
 
@@ -167,5 +158,4 @@ def _kernel(matrix: FloatArray, basis: FloatArray) -> FloatArray:
     if basis.shape[1] == 0:
         return basis
     _, sizes, rows = np.linalg.svd(matrix @ basis, full_matrices=False)
-    small: FloatArray = basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T
-    return small
+    return basis @ rows[sizes <= NEUTRAL * float(np.abs(matrix).max())].T

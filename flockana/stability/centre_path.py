@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_vector
+from flockana.base.checks import ComplexArray, FloatArray, ensure_vector
 from flockana.base.errors import ArgumentError
 from flockana.environment.target import Target
 from flockana.environment.targets import RescaledVelocity
@@ -14,16 +13,12 @@ from flockana.interactions import Gains
 from flockana.laws.olfati_saber import ensure_one_gain
 from flockana.stability.translational import CentreOfMass
 
-ComplexArray = npt.NDArray[np.complex128]
-
 _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
     """Return the γ-agent's path and the factor of its p_r, unwrapped."""
-    if isinstance(target, RescaledVelocity):
-        return target.target, target.factor
-    return target, 1.0
+    return (target.target, target.factor) if isinstance(target, RescaledVelocity) else (target, 1.0)
 
 
 @dataclass(frozen=True)
@@ -104,8 +99,7 @@ def centre_path(gains: Gains, target: Target, t: Any, q_c: Any, p_c: Any) -> Flo
     turn = np.exp(1j * moving.omega * times)[:, None]
     steady = moving.start + moving.velocity * times[:, None] - lag + (swing * turn).real
     rate = moving.velocity + (1j * moving.omega * swing * turn[0]).real
-    path: FloatArray = steady + transient(gains, times - times[0], start - steady[0], speed - rate)
-    return path
+    return steady + transient(gains, times - times[0], start - steady[0], speed - rate)
 
 
 def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
@@ -119,5 +113,4 @@ def transient(gains: Gains, since: FloatArray, left: FloatArray, velocity: Float
     short = np.abs(square) * since**2 < _SHORT  # where rise and fall cancel: sinh x/x by its series
     series = since * np.exp(-decay * since) * (1.0 + square * since**2 / 6.0)
     slope = np.where(short, series, ((rise - fall) / (2.0 * (root or 1.0))).real)
-    motion: FloatArray = left * level + (velocity + decay * left) * slope
-    return motion
+    return left * level + (velocity + decay * left) * slope

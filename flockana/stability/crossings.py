@@ -11,17 +11,15 @@ short against the eigenvalues' distances from the real axis. So no band is narro
 """
 
 from collections.abc import Callable
-from math import inf, pi, sqrt, tan
+from math import inf, nan, pi, sqrt, tan
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
 from flockana.stability.rounding import eigen
 
-ComplexArray = npt.NDArray[np.complex128]
 Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 CLOSE = 1e-6  # relative distance of the certified lower bound from the margin
@@ -47,37 +45,24 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
     # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
     # Stiffness up to `neutral` is 0.
-    values = _common_modes(four)
-    if values is None:
-        return _triangular_crossing(four)
-    best = Crossing(inf, float("nan"), inf)
-    for k0, d0, k1, d1 in values.T.tolist():
+    found = _common_diagonals(four)
+    if found is None:
+        return None
+    best = Crossing(inf, nan, inf)
+    for k0, d0, k1, d1 in found.values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
             continue
-        whole = k0 + k1 if abs(k0 + k1) > neutral else 0.0
-        for omega in _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, whole * (k0 - k1), 2.0 * abs(k0) + d1 * d1 + d0 * d0):
-            delay = phase(-complex(k1, omega * d1) * complex(k0 - omega * omega, -omega * d0)) / omega
-            if delay < best.delay:
-                best = Crossing(delay, omega, delay)
-    return best
-
-
-def _triangular_crossing(four: Four) -> Crossing | None:
-    """The least crossing of matrices that a unitary matrix makes triangular together, as those that commute."""
-    values = _common_diagonals(four)
-    if values is None:
-        return None
-    best = Crossing(inf, float("nan"), inf)
-    for k0, d0, k1, d1 in values.T.tolist():
-        prompt, late = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
-        if not late.any():
-            continue
-        size = max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1)))
-        for omega in _moduli_meet(prompt, late, size):
-            powers = omega ** np.arange(3.0)
-            delay = phase(-complex(late @ powers) * complex(prompt @ powers).conjugate()) / omega
-            if delay < best.delay:
-                best = Crossing(delay, omega, (1.0 - CLOSE) * delay)
+        if found.real:
+            whole = k0 + k1 if abs(k0 + k1) > neutral else 0.0
+            size = 2.0 * abs(k0) + d1 * d1 + d0 * d0
+            frequencies = _frequencies(2.0 * k0 + d1 * d1 - d0 * d0, whole * (k0 - k1), size)
+        else:
+            prompt, late = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
+            frequencies = _moduli_meet(prompt, late, max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1))))
+        for omega in frequencies:
+            late_part, prompt_part = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
+            delay = phase(-late_part * prompt_part.conjugate()) / omega
+            best = min(best, Crossing(delay, omega, delay if found.real else (1.0 - CLOSE) * delay))
     return best
 
 
@@ -91,39 +76,33 @@ def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
     return found
 
 
-def _common_diagonals(four: Four) -> ComplexArray | None:
-    """Return the diagonals of four matrices triangularised together, shape (4, N); None if that is impossible."""
+class _Diagonals(NamedTuple):
+    """Diagonals of four matrices, shape (4, N), and whether these are symmetric, with real modes in common."""
+
+    values: Any
+    real: bool
+
+
+def _common_diagonals(four: Four) -> _Diagonals | None:
+    """Return the diagonals of four matrices diagonalised or triangularised together; None if that is impossible."""
     from scipy.linalg import schur
 
     sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
     used = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
+    symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used)
     mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used)), np.zeros_like(four[0]))
-    if eigen(mixed)[2].max(initial=0.0) > CLOSE:
+    if not symmetric and eigen(mixed)[2].max(initial=0.0) > CLOSE:
         return None
-    turn: Any = schur(mixed, output="complex")[1]
-    values = np.zeros((4, len(mixed)), np.complex128)
-    for k, (x, size) in enumerate(zip(four, sizes, strict=True)):
+    turn: Any = np.linalg.eigh(mixed)[1] if symmetric else schur(mixed, output="complex")[1]
+    values = []
+    for x, size in zip(four, sizes, strict=True):
         there = turn.conj().T @ x @ turn
-        if np.abs(np.tril(there, -1)).max(initial=0.0) > rounding * size:
+        own = np.diag(there)
+        off = there - np.diag(own) if symmetric else np.tril(there, -1)
+        if np.abs(off).max(initial=0.0) > rounding * size:
             return None
-        values[k] = np.where(np.abs(np.diag(there)) > rounding * size, np.diag(there), 0.0)
-    return values
-
-
-def _common_modes(four: Four) -> FloatArray | None:
-    """Eigenvalues of four matrices in their common eigenvectors, shape (4, N); None if they have none."""
-    sizes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
-    used = [(x, size) for x, size in zip(four, sizes, strict=True) if size > 0.0]
-    if any(np.abs(x - x.T).max() > rounding * size for x, size in used):
-        return None
-    mixed = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used)), np.zeros_like(four[0]))
-    modes, values = np.linalg.eigh(mixed)[1], np.zeros((4, len(mixed)))
-    for k, (x, size) in enumerate(zip(four, sizes, strict=True)):
-        there = modes.T @ x @ modes
-        values[k] = np.where(np.abs(np.diag(there)) > rounding * size, np.diag(there), 0.0)
-        if np.abs(there - np.diag(np.diag(there))).max() > rounding * size:
-            return None
-    return values
+        values.append(np.where(np.abs(own) > rounding * size, own, 0.0))
+    return _Diagonals(np.array(values), symmetric)
 
 
 def _frequencies(total: float, product: float, size: float) -> list[float]:
@@ -209,7 +188,7 @@ def least_crossing(
     """The least crossing at a frequency from `low` to `high`, bracketed; at low = 0 stiffness must be regular."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
     # needed. `advance` is called with the share of the frequencies that is done.
-    best, todo, left = Crossing(inf, float("nan"), inf), [(low, high)], MOST
+    best, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
     while todo:
         a, b = todo.pop()
         if b > _WIDE * a > 0.0:
@@ -236,7 +215,7 @@ def least_crossing(
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
     """A crossing by Newton's method on Im μ(ω) = 0, and how many spectra it took; an infinite one if it finds none."""
-    nothing = Crossing(inf, float("nan"), inf)
+    nothing = Crossing(inf, nan, inf)
     for tried in range(_STEPS):
         value, slope = complex(at.values[index]), complex(at.slopes[index])
         move = -value.imag / slope.imag if slope.imag else inf

@@ -89,12 +89,12 @@ def slowest_seen(flock: Linearisation) -> Mode:
 
 
 @check_kinds
-def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE, seed: int = 0) -> Decay:
+def decay(flock: Linearisation, *, name: str = "", seed: int = 0) -> Decay:
     """Run the nonlinear flock from a small perturbation along its slowest mode, and from a random one."""
     # K̃ falls as exp(−2 σ t), times a function of the mode's half period. The slope is therefore that of sums over half
     # periods, and exact for a pure mode.
     mode = slowest_seen(flock)
-    size = ensure_positive("amplitude", amplitude) * _length(flock)
+    size = AMPLITUDE * _length(flock)
     half = pi / mode.frequency if mode.frequency else 1.0 / mode.decay_rate
     count = max(_FEWEST, ceil(log(_FALL) / (2.0 * mode.decay_rate * half)))
     if count > _MOST:
@@ -115,24 +115,18 @@ def decay(flock: Linearisation, *, name: str = "", amplitude: float = AMPLITUDE,
         for p in (linear_motion(flock, dq, 0.0 * dq, t)[1], _run(flock, dq, 0.0 * dq, t)[1])
     )
     measured, error = -0.5 * float(slopes.mean()), 0.5 * float(slopes.std())
-    law, (n, m) = type(flock.law).__name__, flock.q.shape
-    return Decay(
-        name or law, law, n, m, mode, mode.decay_rate, measured, error, late_linear, late_measured, t, mismatch
-    )
+    law, rate, (n, m) = type(flock.law).__name__, mode.decay_rate, flock.q.shape
+    return Decay(name or law, law, n, m, mode, rate, measured, error, late_linear, late_measured, t, mismatch)
 
 
 @check_kinds
-def decay_table(
-    flocks: Mapping[str, Linearisation], *, amplitude: float = AMPLITUDE, seed: int = 0
-) -> tuple[Decay, ...]:
+def decay_table(flocks: Mapping[str, Linearisation]) -> tuple[Decay, ...]:
     """Return predicted and measured decay rates of several flocks as a table (`decay`).
 
     Parameters
     ----------
     flocks : mapping of str to Linearisation
         By name.
-    amplitude, seed : float, int
-        As for `decay`.
 
     Examples
     --------
@@ -141,7 +135,7 @@ def decay_table(
     >>> [row.name for row in decay_table({"pair": linearise(Algorithm1(), [[0.0], [7.0]])})]
     ['pair']
     """
-    return tuple(decay(one, name=name, amplitude=amplitude, seed=seed) for name, one in flocks.items())
+    return tuple(decay(one, name=name) for name, one in flocks.items())
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,12 +236,13 @@ def linear_range(
     for size in (levels * _length(flock)).tolist():
         line = mode_motion(flock, mode, amplitude=size, periods=1.0 + 3.0 * bool(mode.frequency), samples=97)
         q, _ = _run(flock, line.q[0] - flock.q, line.p[0], line.t)
-        drift = _off_centre(flock, q - line.q)
+        drift = q - line.q
+        if flock.law.centre_decouples and flock.second_order.split.exact:  # the centre of mass moves by itself
+            drift = drift - drift.mean(axis=1, keepdims=True)
         deviations.append(float(lengths(drift).max()) / size)
         changes.append(len({links(x, reach).tobytes() for x in q}) > 1 if np.isfinite(reach) else False)
-    return LinearRange(
-        name or type(flock.law).__name__, levels, np.array(deviations), np.array(changes), _margin(flock, mode, reach)
-    )
+    name = name or type(flock.law).__name__
+    return LinearRange(name, levels, np.array(deviations), np.array(changes), _margin(flock, mode, reach))
 
 
 def _length(flock: Linearisation) -> float:
@@ -276,17 +271,10 @@ def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: Float
     return split[:, 0], split[:, 1]
 
 
-def _off_centre(flock: Linearisation, x: FloatArray) -> FloatArray:
-    """Remove the motion of the centre of mass."""
-    free = flock.law.centre_decouples and flock.second_order.split.exact
-    return x - x.mean(axis=1, keepdims=True) if free else x
-
-
 def velocity_mismatch(p: FloatArray) -> FloatArray:
     """Return K̃ at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
-    mismatch: FloatArray = 0.5 * np.sum(relative**2, axis=(1, 2))
-    return mismatch
+    return 0.5 * np.sum(relative**2, axis=(1, 2))
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:

@@ -12,9 +12,9 @@ from math import inf, nan, pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from flockana.base.checks import (
+    ComplexArray,
     FloatArray,
     ensure_count,
     ensure_kind,
@@ -29,8 +29,6 @@ from flockana.stability.blocks import NEUTRAL, is_pairs_and_pull, law_blocks
 from flockana.stability.crossings import CLOSE, least_crossing, modal_crossing
 from flockana.stability.linearise import linearise
 from flockana.stability.rounding import eigen
-
-ComplexArray = npt.NDArray[np.complex128]
 
 DELAYED = ("all", "pairs", "neighbours")
 _ROUNDINGS = 16.0  # of eps times the terms of the characteristic matrix
@@ -54,14 +52,12 @@ class DelaySystem:
     def characteristic(self, s: complex, delay: float) -> ComplexArray:
         """s² + K₀ + s D₀ + (K₁ + s D₁) e^(−sτ), singular at the roots."""
         (k0, d0), (k1, d1) = self.prompt, self.late
-        matrix: ComplexArray = s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
-        return matrix
+        return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 
     def slope(self, s: complex, delay: float) -> ComplexArray:
         """Return the derivative of `characteristic` by s."""
         (_, d0), (k1, d1) = self.prompt, self.late
-        matrix: ComplexArray = 2.0 * s * np.eye(len(d0)) + d0 + (d1 - delay * (k1 + s * d1)) * np.exp(-s * delay)
-        return matrix
+        return 2.0 * s * np.eye(len(d0)) + d0 + (d1 - delay * (k1 + s * d1)) * np.exp(-s * delay)
 
 
 @dataclass(frozen=True)
@@ -104,11 +100,6 @@ def delay_system(law: Law, q: Any, *, delayed: str = "all", strict: bool = True)
         what these terms hear of other agents.
     strict : bool
         Refuse a state that is no equilibrium.
-
-    Raises
-    ------
-    ArgumentError
-        On a bad law, state or name.
 
     Examples
     --------
@@ -314,8 +305,7 @@ def _chebyshev(nodes: int) -> FloatArray:
     x = np.cos(pi * k / nodes)
     weight = np.where((k == 0) | (k == nodes), 2.0, 1.0) * (-1.0) ** k
     matrix = np.outer(weight, 1.0 / weight) / (x[:, None] - x[None, :] + np.eye(nodes + 1))
-    difference: FloatArray = matrix - np.diag(matrix.sum(axis=1))
-    return difference
+    return matrix - np.diag(matrix.sum(axis=1))
 
 
 def _refine(system: DelaySystem, s: complex, delay: float) -> complex:

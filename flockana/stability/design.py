@@ -4,13 +4,14 @@ What was found for thirty agents is in docs/gain-design.md.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
 from flockana.base.checks import (
+    ComplexArray,
     FloatArray,
     ensure_count,
     ensure_kind,
@@ -19,7 +20,7 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.interactions import Gains
-from flockana.stability.gain_problems import ComplexArray, GainProblem
+from flockana.stability.gain_problems import GainProblem
 from flockana.stability.specifications import Specifications, SpecifiedGains, evaluated
 
 _ROUNDS = 200
@@ -76,13 +77,9 @@ class GainDesign:
         heterogeneous : bool
             One per agent, or one for all.
         """
-        from dataclasses import replace
-
-        chosen = self.heterogeneous if heterogeneous else self.homogeneous
-        pull, drag = chosen.reshape(2, -1)
-        if heterogeneous:
-            return replace(base, c1_gamma=pull, c2_gamma=drag)
-        return replace(base, c1_gamma=float(pull[0]), c2_gamma=float(drag[0]))
+        pull, drag = (self.heterogeneous if heterogeneous else self.homogeneous).reshape(2, -1)
+        pair = (pull, drag) if heterogeneous else (float(pull[0]), float(drag[0]))
+        return replace(base, c1_gamma=pair[0], c2_gamma=pair[1])
 
 
 class _Search(TypedDict, total=False):
@@ -90,7 +87,6 @@ class _Search(TypedDict, total=False):
 
     bounds: tuple[float, float] | None
     starts: int
-    polish: int
     seed: int
 
 
@@ -104,7 +100,6 @@ def design_gains(
     *,
     bounds: tuple[float, float] | None = None,
     starts: int = 6,
-    polish: int = 0,
     seed: int = 0,
 ) -> GainDesign | SpecifiedGains:
     """Choose c1γ and c2γ within bounds: for the fastest decay, or to meet specifications.
@@ -112,7 +107,7 @@ def design_gains(
     Without specifications the spectral abscissa is minimised, alike for all agents and one per agent. Alike, the two
     gains are searched on a grid and by Nelder and Mead's method. Per agent, sequential linear programs minimise the
     largest of the linearised real parts within a trust region, from the homogeneous optimum, near it and from random
-    starts; the abscissa is not smooth where eigenvalues coalesce, which `polish` generations of CMA-ES may get over.
+    starts; the abscissa is not smooth where eigenvalues coalesce.
 
     With specifications the gains are alike for all agents, and the specification with the least room gets the most: it
     is the one that binds. The equilibrium is found anew for each choice. The grid is geometric.
@@ -129,19 +124,12 @@ def design_gains(
         Least and greatest gain, for c1γ and c2γ alike; (0, 5) by default, with specifications (0.1, 20).
     starts : int
         Random starts of gains per agent, half of them near the homogeneous optimum.
-    polish : int
-        Generations of CMA-ES, of gains per agent.
     seed : int
-        Of the starts and of CMA-ES.
+        Of the starts.
 
     Returns
     -------
     GainDesign, or with specifications SpecifiedGains
-
-    Raises
-    ------
-    ArgumentError
-        On bounds that are no interval of gains >= 0 (with specifications > 0), or a problem without its law.
 
     Examples
     --------
@@ -172,8 +160,6 @@ def design_gains(
         trials.append(np.clip(near, low, high) if k % 2 == 0 else rng.uniform(low, high, 2 * n))
     designs = [_descend(problem, start, low, high) for start in trials]
     best = min([alike, *designs], key=problem.abscissa)
-    if polish:
-        best = min([best, _evolve(problem, best, low, high, polish, seed)], key=problem.abscissa)
     spectra = problem.eigenvalues(alike), problem.eigenvalues(best)
     rates = [-float(values[0].real) for values in spectra]
     return GainDesign(problem, alike, best, rates[0], rates[1], spectra[0], spectra[1], starts)
@@ -259,22 +245,3 @@ def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -
         if radius < _SMALLEST * (high - low):
             break
     return gains
-
-
-def _evolve(
-    problem: GainProblem, gains: FloatArray, low: float, high: float, generations: int, seed: int
-) -> FloatArray:
-    """Search by CMA-ES about a point where slopes mislead."""
-    from cmaes import SepCMA
-
-    box = np.tile([low, high], (gains.size, 1))
-    search = SepCMA(mean=gains.copy(), sigma=0.02 * (high - low), bounds=box, seed=seed)
-    best, least = gains, problem.abscissa(gains)
-    for _ in range(generations):
-        tried = [search.ask() for _ in range(search.population_size)]
-        rated = [(x, problem.abscissa(x)) for x in tried]
-        search.tell(rated)
-        x, value = min(rated, key=lambda pair: pair[1])
-        if value < least:
-            best, least = x, value
-    return best

@@ -18,17 +18,14 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_known, ensure_points
+from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_points
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.terminal import rigid_motions
 from flockana.interactions import Gains
 from flockana.interactions.alpha import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.blocks import complement, reduced
-
-ComplexArray = npt.NDArray[np.complex128]
 
 FORMS = ("full", "simplified")
 ROTATIONS = ("apart", "neutral", "counted")
@@ -98,11 +95,6 @@ def gain_problem(
     rotation : {"apart", "neutral", "counted"}
         Whether the rotation about the centre is projected out, angle and speed; or its angle alone, as where it is
         neutral; or neither. No matter in the simplified form.
-
-    Raises
-    ------
-    UnknownNameError
-        On another form or rotation.
 
     Examples
     --------

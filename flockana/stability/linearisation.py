@@ -7,9 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_state
+from flockana.base.checks import ComplexArray, FloatArray, ensure_fits, ensure_state
 from flockana.base.errors import ArgumentError
 from flockana.base.tables import facts_html, facts_text
 from flockana.laws.law import Law
@@ -94,8 +93,7 @@ class Linearisation:
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
         """The matrix as a dense array; refused where it would not fit in memory."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse and slowest_modes(...)")
-        dense: FloatArray = self.A_sparse.toarray()
-        return dense
+        return self.A_sparse.toarray()
 
     @property
     def stiffness(self) -> csr_array:
@@ -125,7 +123,7 @@ class Linearisation:
         return self.second_order
 
     @property
-    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+    def eigenvalues(self) -> ComplexArray:
         """All 2nm eigenvalues of A, the largest real part first; zero modes come out as exact zeros."""
         return self._dense.eigenvalues
 

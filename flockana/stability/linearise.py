@@ -21,7 +21,6 @@ from flockana.equilibria.solve import Equilibrium, ensure_unedited_equilibrium
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.laws.law import Law
 from flockana.measures.frame import moving_frame
-from flockana.measures.nets import LinkArray
 from flockana.measures.nets import links as links_within
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.maps import MapLinearisation, linearise_headings, linearise_map, linearise_steps
@@ -135,20 +134,19 @@ def linearise(
         )
     if not allow_residual:
         _ensure_steady(law, t, q, p, matrix)
-    if links is None:
-        links = getattr(equilibrium, "links", None)
-    between = _default_links(law, q) if links is None else ensure_links(links, len(q))
+    if links is None:  # pairs within the law's interaction range, if it has one
+        links = links_within(q, law.pair.range) if law.pair else ()
+        links = getattr(equilibrium, "links", links)
+    between = ensure_links(links, len(q))
     q, p = q.copy(), p.copy()
-    for array in (q, p):
-        array.setflags(write=False)
+    q.flags.writeable = p.flags.writeable = False
     return Linearisation(law, q, p, t, residual, between, matrix, zero)
 
 
 def _linearised_map(law: DiscreteLaw, equilibrium: Any, p: Any, how: dict[str, Any]) -> MapLinearisation:
     """Linearise a map: by the law that it steps, or by the mean that headings turn to."""
     if law.continuous is not None and law.position_factor is not None:
-        flow = linearise(law.continuous, equilibrium, p, **how)
-        return linearise_map(law, flow)
+        return linearise_map(law, linearise(law.continuous, equilibrium, p, **how))
     q = ensure_points("equilibrium", getattr(equilibrium, "q", equilibrium))
     law.check_dimension(q.shape[1])
     q, p = ensure_state(q, np.zeros_like(q) if p is None else p)
@@ -195,17 +193,13 @@ def _residual(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_arra
     length = _length(q) if law.scales is None else law.scales.length
     scale = float(abs(matrix[q.size :, : q.size]).max()) * length if law.scales is None else law.scales.force
     strongest, fastest = (float(np.linalg.norm(x, axis=1).max()) for x in (force, moving_frame(p)))
-    return max(_ratio(strongest, scale), _ratio(fastest, sqrt(scale * length)))
+    with np.errstate(divide="ignore", invalid="ignore"):  # without a scale, infinite unless nothing is left
+        return float(np.nan_to_num(np.divide((strongest, fastest), (scale, sqrt(scale * length))), posinf=inf).max())
 
 
 def _length(q: FloatArray) -> float:
     """Return the size of a flock; for one agent its distance from the origin."""
     return float(np.linalg.norm(moving_frame(q), axis=1).max()) or float(np.abs(q).max()) or 1.0
-
-
-def _ratio(value: float, scale: float) -> float:
-    """Return value/scale; for scale 0, infinite unless the value is 0."""
-    return value / scale if scale > 0.0 else (inf if value > 0.0 else 0.0)
 
 
 def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr_array) -> None:
@@ -225,11 +219,3 @@ def _ensure_steady(law: Law, t: float, q: FloatArray, p: FloatArray, matrix: csr
                 "time units): expected a γ-agent that rests or moves steadily, no obstacles where it moves; "
                 "allow_residual=True linearises at the instant"
             )
-
-
-def _default_links(law: Law, q: FloatArray) -> LinkArray:
-    """Return the pairs within the law's interaction range, if it has one."""
-    pair = law.pair
-    if pair is None:
-        return np.zeros((0, 2), dtype=np.int32)
-    return links_within(q, pair.range)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_fits
+from flockana.base.checks import ComplexArray, FloatArray, ensure_fits
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.laws.discrete import DiscreteLaw
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     import control
 
     from flockana.stability.linearisation import Linearisation
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _PARALLEL = 1e-9  # radians, or units of the law: headings that differ by no more are one, states that move less rest
 _WIDTH, _KINK = 1e-6, 1e-4  # of a difference, in units of the law; of two slopes, of the size of A
@@ -146,8 +144,7 @@ class MapLinearisation:
     def multipliers(self) -> ComplexArray:
         """All eigenvalues of A, the largest first; those of neutral motions are exactly 1."""
         values = self._dense[0] if self.second_order is None else 1.0 + self.dt * self.second_order.eigenvalues
-        ordered: ComplexArray = values[np.lexsort((values.imag, -np.abs(values)))]
-        return ordered
+        return values[np.lexsort((values.imag, -np.abs(values)))]
 
     @property
     def zero_modes(self) -> tuple[Mode, ...]:
@@ -157,24 +154,19 @@ class MapLinearisation:
     @cached_property
     def modes(self) -> tuple[MapMode, ...]:
         """Modes other than the neutral motions, slowest first; one for each real multiplier or conjugate pair."""
+        found: list[tuple[complex, Any, str, float]]
         if self.second_order is None:
             values, vectors, errors = self._dense
             kept = np.flatnonzero((values != 1.0) & (values.imag >= 0.0))
-            found = [MapMode(complex(values[k]), vectors[:, k], "", self.dt, float(errors[k])) for k in kept]
+            found = [(complex(values[k]), vectors[:, k], "", float(errors[k])) for k in kept]
         else:
-            found = [
-                MapMode(
-                    1.0 + self.dt * mode.eigenvalue,
-                    mode.shape,
-                    "" if mode.name.isdigit() else mode.name,
-                    self.dt,
-                    self.dt * mode.error,
-                )
-                for mode in self.second_order.modes
-            ]
-        found.sort(key=lambda mode: mode.decay_per_step)
-        numbered = [(mode, mode.name or str(k)) for k, mode in enumerate(found, start=1)]
-        return tuple(MapMode(mode.multiplier, mode.shape, name, self.dt, mode.error) for mode, name in numbered)
+            h, modes = self.dt, self.second_order.modes
+            names = ("" if mode.name.isdigit() else mode.name for mode in modes)
+            rows = zip(modes, names, strict=True)
+            found = [(1.0 + h * mode.eigenvalue, mode.shape, name, h * mode.error) for mode, name in rows]
+        found.sort(key=lambda one: 1.0 - abs(one[0]))
+        numbered = enumerate(found, start=1)
+        return tuple(MapMode(z, shape, name or str(k), self.dt, error) for k, (z, shape, name, error) in numbered)
 
     @property
     def spectral_radius(self) -> float:
@@ -202,17 +194,8 @@ class MapLinearisation:
             own = np.vstack([unit.T / np.sqrt(n), np.eye(n * m) - unit @ unit.T])
             read = np.hstack([own, np.zeros_like(own)])
             outputs = axes_of("qc", m) + labels("x", n, m)
-        return control.ss(
-            self.A,
-            self.B,
-            read,
-            np.zeros((len(read), self.B.shape[1])),
-            self.dt,
-            states=list(self.states),
-            inputs=list(self.inputs),
-            outputs=outputs,
-            name="map",
-        )
+        names = {"states": list(self.states), "inputs": list(self.inputs), "outputs": outputs, "name": "map"}
+        return control.ss(self.A, self.B, read, np.zeros((len(read), self.B.shape[1])), self.dt, **names)
 
 
 def stepped_equation(
@@ -246,17 +229,13 @@ def linearise_map(law: DiscreteLaw, flow: Linearisation) -> MapLinearisation:
     stiffness, damping = flow.stiffness, flow.damping
     one, zero, known = np.eye(size), np.zeros((size, size)), flow.A[size:]
     move, push = np.block([[one, h * one], [zero, one]]), np.vstack([f * h * h * one, h * one])
+    a, b = move + push @ known, push
     if law.in_place:  # agents see those before them where these have moved to: both sides hold the next state
         moved = -np.hstack([_moved_before(part, m).toarray() for part in (stiffness, damping)])
-        own = np.eye(2 * size) - push @ moved
-        a, b = (np.linalg.solve(own, part) for part in (move + push @ (known - moved), push))
-    else:
-        a, b = move + push @ known, push
-    equation = stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place)
+        a, b = (np.linalg.solve(np.eye(2 * size) - push @ moved, part) for part in (a - push @ moved, push))
+    equation = SecondOrder(q, *stepped_equation(stiffness, damping, h, f, m, in_place=law.in_place), zero=flow.zero)
     names = (*labels("q", n, m), *labels("p", n, m)), tuple(labels("f", n, m))
-    return MapLinearisation(
-        law, q, flow.p, flow.t, flow.residual, a, b, *names, SecondOrder(q, *equation, zero=flow.zero)
-    )
+    return MapLinearisation(law, q, flow.p, flow.t, flow.residual, a, b, *names, equation)
 
 
 def linearise_headings(law: Any, q: FloatArray, p: FloatArray, t: float) -> MapLinearisation:
@@ -279,8 +258,8 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
     shapes = {"q": q.shape, "p": p.shape} | {key: value.shape for key, value in memory.items()}
     own, length = law.scales, float(np.abs(q - q[0]).max()) or 1.0
     unit, time = (length, law.dt) if own is None else (own.length, own.time)
-    powers = {"q": (1, 0), "p": (1, -1)} | dict(law.extra_units)
-    sizes = {key: unit ** powers.get(key, (0, 0))[0] * time ** powers.get(key, (0, 0))[1] for key in shapes}
+    powers = dict.fromkeys(shapes, (0, 0)) | {"q": (1, 0), "p": (1, -1)} | dict(law.extra_units)
+    sizes = {key: unit ** powers[key][0] * time ** powers[key][1] for key in shapes}
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes.values())])
 
     def packed(parts: Mapping[str, FloatArray]) -> FloatArray:
@@ -288,12 +267,9 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
 
     def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
         """Next state in the frame of the motion, after `steps` steps."""
-        values = {
-            key: (state[a:b] * sizes[key]).reshape(shape)
-            for (key, shape), a, b in zip(shapes.items(), ends, ends[1:], strict=False)
-        }
-        gone = steps * law.dt * p
-        inner = {key: values[key] for key in memory}
+        parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
+        values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
+        gone, inner = steps * law.dt * p, {key: values[key] for key in memory}
         after = law.step(t + steps * law.dt, values["q"] + gone, values["p"], inner)
         return packed({"q": after[0] - gone - law.dt * p, "p": after[1]} | dict(after[3]))
 
@@ -307,10 +283,8 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
             f"expected at most {_PARALLEL:g}; start from positions and velocities that the map keeps"
         )
     matrix, kink = _differences(stepped, start, _WIDTH)
-    wide, later = (
-        _differences(stepped, start, 2.0 * _WIDTH)[0],
-        _differences(lambda x: stepped(x, 97), start, _WIDTH)[0],
-    )
+    wide = _differences(stepped, start, 2.0 * _WIDTH)[0]
+    later = _differences(lambda x: stepped(x, 97), start, _WIDTH)[0]
     size, kink = float(np.linalg.norm(matrix)), max(kink, float(np.abs(wide - matrix).max()))
     if kink > _KINK * size:
         raise ArgumentError(

@@ -12,8 +12,7 @@ _NAMED = 1e-6  # how far a rigid motion may be from the kernel that it is found 
 
 def translations(n: int, m: int) -> FloatArray:
     """Return unit translations along the axes, one per column, shape (n m, m)."""
-    unit: FloatArray = np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
-    return unit
+    return np.tile(np.eye(m), (n, 1)) / np.sqrt(n)
 
 
 def normalised(vector: Any, *, real: bool) -> Any:
@@ -73,5 +72,4 @@ def _complement(kernel: FloatArray, named: FloatArray) -> FloatArray:
     if kernel.shape[1] == 0:
         return kernel
     basis, sizes, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)
-    rest: FloatArray = basis[:, sizes > 0.5]
-    return rest
+    return basis[:, sizes > 0.5]

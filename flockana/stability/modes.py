@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.curvature import EPS
 from flockana.equilibria.terminal import rigid_motions
@@ -123,7 +123,7 @@ class Invariant(NamedTuple):
 
     zero: tuple[Mode, ...]
     translational: tuple[Mode, ...]
-    eigenvalues: npt.NDArray[np.complex128]
+    eigenvalues: ComplexArray
     right: FloatArray
     left: FloatArray
     kernel: FloatArray
@@ -192,14 +192,13 @@ class SecondOrder:
         return self.named(values[kept], vectors[:, kept], errors[kept], self.invariant.translational)
 
     @cached_property
-    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+    def eigenvalues(self) -> ComplexArray:
         """Return all 2nm eigenvalues, the largest real part first; zeros exact."""
         whole = np.concatenate([self.invariant.eigenvalues, self._others[0]])
-        ordered: npt.NDArray[np.complex128] = whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
-        return ordered
+        return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
 
     @cached_property
-    def _others(self) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128], FloatArray]:
+    def _others(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
         """Return eigenvalues, displacements and rounding errors of the remaining modes."""
         # Displacements are counted in units of velocity over `pace`, so that A has one unit and no entry is large for
         # the user's choice of a time unit.
@@ -256,11 +255,8 @@ class SecondOrder:
             ):
                 roots = _roots(stiff, drag_, errors)
                 values += roots
-                translational += [
-                    Mode(root, shape, name, root_error(root, stiff, drag_, errors))
-                    for root in roots
-                    if root != 0.0 and root.imag >= 0.0
-                ]
+                own = (root for root in roots if root != 0.0 and root.imag >= 0.0)
+                translational += [Mode(root, shape, name, root_error(root, stiff, drag_, errors)) for root in own]
             alone = free & (slow == 0.0)
             chains += int(alone.sum())
             drifting += [name for name, one in zip(labels, alone, strict=True) if one]
@@ -269,17 +265,8 @@ class SecondOrder:
             blank = np.zeros_like(unit)
             both = [np.vstack([unit, blank]), np.vstack([blank, unit])]
             right, left = [*right, *both], [*left, *both]
-        return Invariant(
-            tuple(zero),
-            tuple(translational),
-            np.array(values, dtype=np.complex128),
-            np.hstack(right),
-            np.hstack(left),
-            kernel,
-            cokernel,
-            chains,
-            tuple(sorted(drifting)),
-        )
+        spaces = np.hstack(right), np.hstack(left), kernel, cokernel, chains, tuple(sorted(drifting))
+        return Invariant(tuple(zero), tuple(translational), np.array(values, dtype=np.complex128), *spaces)
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
         """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 where D motion is 0."""
@@ -287,8 +274,7 @@ class SecondOrder:
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * self.damping_scale:
             return np.zeros_like(motion)
-        solution: FloatArray = -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
-        return solution
+        return -np.linalg.lstsq(matrix.toarray(), push, rcond=self.zero)[0]
 
 
 def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
@@ -301,8 +287,7 @@ def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], Fl
     factors, scales = dgeqrf(basis)[:2]
 
     def turn(side: str, how: str, x: FloatArray) -> FloatArray:
-        turned: FloatArray = dormqr(side, how, factors, scales, x, 64 * max(x.shape))[0]
-        return turned
+        return dormqr(side, how, factors, scales, x, 64 * max(x.shape))[0]
 
     return turn
 

@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockana.base.checks import (
-    FloatArray,
-    ensure_count,
-    ensure_kind,
-    ensure_known,
-    ensure_nonnegative,
-    ensure_positive,
-)
+from flockana.base.checks import FloatArray, ensure_count, ensure_kind, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError, SolverError
 from flockana.base.kinds import check_kinds
 from flockana.equilibria.curvature import EPS
@@ -29,58 +22,34 @@ from flockana.stability.rounding import eigen
 if TYPE_CHECKING:
     from control import StateSpace
 
-OUTPUTS = ("shape", "deviations")
 _ROUNDS = 30
 _ROUNDINGS = 64.0  # of eps N cond(K): of the solves for K⁺ and for the Gramian
 _IMAGINARY = 1e-9  # of the largest eigenvalue: real parts below that are zero
 
 
-def disturbance_system(flock: Blocks, *, output: str = "shape") -> StateSpace | None:
-    """Return a `control.StateSpace` from a force on each agent to the flock's deviations; None if unbounded.
+def disturbance_system(flock: Blocks) -> StateSpace:
+    """Return a `control.StateSpace` from a force on each agent to the deviation of the flock's shape.
 
-    "shape" is the deviation from the nearest displaced and turned copy of the equilibrium, all rigid motions taken
-    out; "deviations" is x_i − x_c, which still holds the turning. Nothing brings the orientation of a free flock back,
-    so a disturbance turns it without bound: the system is integrating, and has no norm.
+    That is the deviation from the nearest displaced and turned copy of the equilibrium, all rigid motions taken out.
 
     Parameters
     ----------
     flock : Blocks
         The linearised flock.
-    output : {"shape", "deviations"}
-        What is put out.
 
     Examples
     --------
-    >>> flock = law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]])
-    >>> system = disturbance_system(flock)
+    >>> system = disturbance_system(law_blocks(Algorithm1(), [[0.0, 0.0], [7.0, 0.0]]))
     >>> system.nstates, system.ninputs, system.noutputs
     (3, 4, 1)
-    >>> disturbance_system(flock, output="deviations") is None
-    True
     """
     ensure_kind("flock", flock, "Blocks", "what blocks(...) gives")
     import control
 
-    ensure_known("output", output, OUTPUTS)
     a, b, positions, _ = flock.quotient()
     seen = complement(flock.rigid)
-    if output == "deviations":
-        n_m, m = len(flock.stiffness), _dimension(flock)
-        seen = complement(np.tile(np.eye(m), (n_m // m, 1)) / sqrt(n_m // m))
-        if np.abs(seen.T @ flock.neutral).max(initial=0.0) > 1e-9:
-            return None
     c = np.hstack([seen.T @ positions, np.zeros((seen.shape[1], a.shape[0] - positions.shape[1]))])
     return control.StateSpace(a, b, c, np.zeros((c.shape[0], b.shape[1])), remove_useless_states=False)
-
-
-def _dimension(flock: Blocks) -> int:
-    """Return m, from the translations among the rigid motions."""
-    for m in (3, 2, 1):
-        n, rest = divmod(len(flock.stiffness), m)
-        moves = np.tile(np.eye(m), (n, 1))
-        if rest == 0 and np.abs(moves - flock.rigid @ (flock.rigid.T @ moves)).max() < 1e-9:
-            return m
-    raise AssertionError("translations are rigid motions")
 
 
 def h2_norm(system: StateSpace) -> float:
@@ -104,9 +73,7 @@ def h2_norm(system: StateSpace) -> float:
     ensure_kind("system", system, "StateSpace", "a control.StateSpace, as disturbance_system(...) gives it")
     if system.nstates == 0 or system.noutputs == 0:
         return 0.0
-    if not _stable(system.A):
-        return inf
-    return sqrt(max(0.0, float(np.trace(_covariance(system)))))
+    return sqrt(max(0.0, float(np.trace(_covariance(system))))) if _stable(system.A) else inf
 
 
 def _covariance(system: StateSpace) -> FloatArray:
@@ -173,8 +140,6 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
 
     Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
     between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
-    slycot's `ab13dd`, the same method, is used where slycot is installed; python-control's own fallback takes square
-    systems only and bisects.
 
     Parameters
     ----------
@@ -203,11 +168,6 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
     tol, a, b, c = ensure_positive("tol", tol), system.A, system.B, system.C
     if not _stable(a):
         return inf, float("nan")
-    if _slycot():
-        import control
-
-        norm, peak = control.linfnorm(system, tol)
-        return float(norm), float(peak)
     poles = np.linalg.eigvals(a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
     best = max((_gain(a, b, c, w), w) for w in trials.tolist()[:: max(1, trials.size // 24)])
@@ -222,12 +182,6 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
             return max(best, peak)
         best = peak
     raise SolverError(f"the H∞ norm did not settle in {_ROUNDS} rounds; the last lower bound is {best[0]:.6g}")
-
-
-def _slycot() -> bool:
-    from importlib.util import find_spec
-
-    return find_spec("slycot") is not None
 
 
 def _gain(a: FloatArray, b: FloatArray, c: FloatArray, omega: float) -> float:
@@ -270,16 +224,11 @@ def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Sequence[int]) -> No
     """
     ensure_pairs_and_pull(law)
     counts = tuple(ensure_count("sizes", n) for n in sizes)
+    alpha: Any = law.alpha
     rows = []
     for n in counts:
-        flock = law_blocks(law, _relaxed(law, n))
+        flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(n, alpha.d)).q)
         system = disturbance_system(flock)
-        assert system is not None  # shapes are always bounded
         rows.append((h2_norm(system), *hinf_norm(system), *h2_bounds(flock)))
     table = np.array(rows).reshape(-1, 5)
     return NormTable(counts, table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
-
-
-def _relaxed(law: Any, n: int) -> FloatArray:
-    relaxed: FloatArray = find_equilibrium(law, hexagonal_spiral(n, law.alpha.d)).q
-    return relaxed

@@ -12,12 +12,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _ROUNDINGS = 16.0  # of eps ‖A‖, in the entries of A and in LAPACK
 
@@ -52,8 +49,7 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
 
     plane = np.column_stack([values.real, values.imag])
     same = np.asarray(cKDTree(plane).query_ball_point(plane, 2.0 * tight * size, return_length=True))
-    bound: FloatArray = np.where(same > 1, size * tight ** (1.0 / same), np.inf)
-    return bound
+    return np.where(same > 1, size * tight ** (1.0 / same), np.inf)
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:

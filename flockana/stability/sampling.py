@@ -12,15 +12,14 @@ singular, so that for f >= 1 the margin is the least h with a singular M. Explic
 its margin is the least −2 Re λ/|λ|². Else the margin lies between the bound and the first growth that a search meets.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_fits, ensure_known, ensure_nonnegative, ensure_positive
+from flockana.base.checks import FloatArray, ensure_fits, ensure_nonnegative, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.equilibria.curvature import EPS
 from flockana.laws.discrete import DiscreteLaw
@@ -28,7 +27,6 @@ from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.stability.maps import stepped_equation
 
-SCHEMES = {"hold": 0.5, "euler": 0.0, "semi-implicit": 1.0, "taylor": 0.5, "msn": 1.5, "msn-in-place": 1.5}
 CLOSE = 1e-6  # relative distance of the certified bound from the margin
 _COMMUTE = 1e-10  # relative: of K D − D K that counts as 0
 _TRIALS = 24  # steps at which a search looks
@@ -153,48 +151,33 @@ def _flip(k: float, d: float, factor: float) -> float:
     return 4.0 / (d + sqrt(square)) if a != 0.0 or d > 0.0 else inf
 
 
-def sampling_margin(
-    law: Any, equilibrium: Any, p: Any = None, *, scheme: str | None = None, t: float = 0.0
-) -> SamplingMargin:
-    """Return the largest sampling period, or step of a scheme, for which a flock is stable near its equilibrium.
+def sampling_margin(law: Any, equilibrium: Any) -> SamplingMargin:
+    """Return the largest sampling period, or step of a map, for which a flock is stable near its equilibrium.
 
     Parameters
     ----------
     law : Law or DiscreteLaw
-        A continuous law; of a map, the law that it steps, and its own scheme.
-    equilibrium, p, t
-        As in `linearise`.
-    scheme : {"hold", "euler", "semi-implicit", "taylor", "msn", "msn-in-place"}
-        Zero-order hold (the default) or a scheme; a hold and the Taylor step are the same map.
-
-    Raises
-    ------
-    ArgumentError
-        On a map that steps no law, an unknown scheme, or what `linearise` refuses.
+        A continuous law, under a zero-order hold; or a map that steps one, whatever its own step.
+    equilibrium : Equilibrium or array_like, shape (n, m)
+        As for `linearise`.
 
     Examples
     --------
     One agent at its γ-agent, c1γ = 4 and c2γ = 1, is held stable for periods below 2 c2γ/c1γ:
 
-    >>> from flockana.environment.targets import StaticTarget
-    >>> from flockana.interactions import Gains
+    >>> from flockana import ExplicitEuler, Gains, StaticTarget
     >>> from flockana.laws.olfati_saber import Algorithm2
     >>> one = Algorithm2(gains=Gains(c1_gamma=4.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
-    >>> sampling_margin(one, [[0.0]]).period, sampling_margin(one, [[0.0]], scheme="euler").period
+    >>> sampling_margin(one, [[0.0]]).period, sampling_margin(ExplicitEuler(one, 0.1), [[0.0]]).period
     (0.5, 0.25)
     """
+    name, factor, in_place = "hold", 0.5, False
     if isinstance(law, DiscreteLaw):
         if law.continuous is None or law.position_factor is None:
             raise ArgumentError(f"law = {law!r}: expected a continuous law, or a map that steps one")
-        if scheme is not None:
-            raise ArgumentError(f"scheme = {scheme!r}: {type(law).__name__} brings its own; expected none, or its law")
         name, factor, in_place = type(law).__name__, law.position_factor, law.in_place
         law = law.continuous
-    else:
-        name = "hold" if scheme is None else scheme
-        ensure_known("scheme", name, tuple(SCHEMES))
-        factor, in_place = SCHEMES[name], name == "msn-in-place"
-    flow = linearise(law, equilibrium, p, t=t)
+    flow = linearise(law, equilibrium)
     ensure_fits("A", flow.A_sparse.shape, "ask of fewer agents")
     return _margin(name, flow, factor, in_place=in_place)
 
@@ -207,8 +190,9 @@ def _margin(name: str, flow: Linearisation, factor: float, *, in_place: bool) ->
     elif symmetric and not in_place:
         found = _symmetric(flow, 0.5 * (k + k.T), 0.5 * (d + d.T), factor)
     else:
-        guess = _guess(k, d, factor)
-        found = 0.0, [*_searched(flow, factor, guess * _NEAR, guess * _FAR, in_place=in_place)]
+        flip = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), max(factor, 1.0))
+        guess = flip if flip < inf else 1.0
+        found = 0.0, _searched(flow, factor, guess * _NEAR, guess * _FAR, in_place=in_place)
     least, modes = found
     modes = sorted(modes, key=lambda mode: mode.period)
     period = modes[0].period if modes else inf
@@ -239,9 +223,7 @@ def _symmetric(flow: Linearisation, k: FloatArray, d: FloatArray, factor: float)
         return inf, flips
     turn = _least_damped(k, d) / (1.0 - factor)
     least = min(turn, flip)
-    if flip <= turn:
-        return least, flips
-    return least, [*_searched(flow, factor, least, flip), *flips]
+    return least, flips if flip <= turn else [*_searched(flow, factor, least, flip), *flips]
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
@@ -250,9 +232,8 @@ def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
     shapes = np.linalg.eigh(k / sizes[0] + sqrt(2.0) * d / sizes[1])[1]
     rows = []
     for v in shapes.T:
-        stiff, drag = (
-            0.0 if abs(x) <= _UNDAMPED * size else x for x, size in zip((v @ k @ v, v @ d @ v), sizes, strict=True)
-        )
+        own = zip((v @ k @ v, v @ d @ v), sizes, strict=True)
+        stiff, drag = (0.0 if abs(x) <= _UNDAMPED * size else x for x, size in own)
         if stiff < 0.0 or drag < 0.0:
             rows.append(ModePeriod(0.0, 1.0 + 0.0j, v))
         elif stiff > 0.0 or drag > 0.0:
@@ -289,56 +270,38 @@ def _least_damped(k: FloatArray, d: FloatArray) -> float:
     return float(np.linalg.eigvalsh(half.T @ inner @ half)[0]) if held.size else inf
 
 
-def _guess(k: FloatArray, d: FloatArray, factor: float) -> float:
-    """Return a first guess of the largest step, from the norms of K and D."""
-    flip = _flip(float(np.linalg.norm(k, 2)), float(np.linalg.norm(d, 2)), max(factor, 1.0))
-    return flip if flip < inf else 1.0
-
-
 def _searched(
     flow: Linearisation, factor: float, low: float, high: float, *, in_place: bool = False
 ) -> list[ModePeriod]:
     """Return the first step at which a search upwards from a stable one meets growth, refined by halving."""
-    if low <= 0.0:
-        return [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
-    zero = flow.second_order.invariant
-    neutral = len(zero.zero) + zero.chains
-
-    def radius(h: float) -> float:
-        """Return the largest |z| off the neutral motions, whose w are the smallest."""
-        k, d = _stepped(flow, h, factor, in_place=in_place)
-        values = np.linalg.eigvals(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
-        return float(np.abs(1.0 + h * values[np.argsort(np.abs(values))[neutral:]]).max())
-
-    before = (1.0 + CLOSE) * low
-    if radius(before) > 1.0:  # the bound is the margin
-        return [_critical_mode(flow, low, factor, in_place=in_place)]
-    for h in np.geomspace(before, max(high, 2.0 * low), _TRIALS)[1:].tolist():
-        if radius(h) > 1.0:
-            return [_critical_mode(flow, _bisect(radius, before, h), factor, in_place=in_place)]
-        before = h
-    return []
-
-
-def _bisect(radius: Callable[[float], float], low: float, high: float) -> float:
     from scipy.optimize import brentq
 
-    return float(brentq(lambda h: radius(h) - 1.0, low, high, xtol=1e-12 * high, rtol=1e-12))
+    if low <= 0.0:
+        return [ModePeriod(0.0, 1.0 + 0.0j, flow.modes[0].shape)]
+    zero, m = flow.second_order.invariant, flow.q.shape[1]
 
+    def critical(h: float) -> ModePeriod:
+        """Return the mode of the largest |z| off the neutral motions, whose w = (z − 1)/h are the smallest."""
+        parts = stepped_equation(flow.stiffness, flow.damping, h, factor, m, in_place=in_place)
+        k, d = (part.toarray() for part in parts)
+        values, vectors = np.linalg.eig(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
+        moving = np.argsort(np.abs(values), kind="stable")[len(zero.zero) + zero.chains :]
+        z = 1.0 + h * values[moving]
+        worst = int(np.argmax(np.abs(z) + EPS * z.imag))
+        shape = vectors[: len(k), moving[worst]]
+        return ModePeriod(h, complex(z[worst]), shape / np.linalg.norm(shape))
 
-def _stepped(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> tuple[FloatArray, FloatArray]:
-    """K and D of the equation of w = (z − 1)/h, dense."""
-    parts = stepped_equation(flow.stiffness, flow.damping, h, factor, flow.q.shape[1], in_place=in_place)
-    return parts[0].toarray(), parts[1].toarray()
+    def growth(h: float) -> float:
+        return abs(critical(h).multiplier) - 1.0
 
-
-def _critical_mode(flow: Linearisation, h: float, factor: float, *, in_place: bool) -> ModePeriod:
-    """Mode on the unit circle at a step."""
-    k, d = _stepped(flow, h, factor, in_place=in_place)
-    values, vectors = np.linalg.eig(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
-    zero = flow.second_order.invariant
-    moving = np.argsort(np.abs(values), kind="stable")[len(zero.zero) + zero.chains :]
-    z = 1.0 + h * values[moving]
-    worst = int(np.argmax(np.abs(z) + EPS * z.imag))
-    shape = vectors[: len(k), moving[worst]]
-    return ModePeriod(h, complex(z[worst] / abs(z[worst])), shape / np.linalg.norm(shape))
+    before, step = (1.0 + CLOSE) * low, low
+    if growth(before) <= 0.0:  # else the bound is the margin
+        for h in np.geomspace(before, max(high, 2.0 * low), _TRIALS)[1:].tolist():
+            if growth(h) > 0.0:
+                step = float(brentq(growth, before, h, xtol=1e-12 * h, rtol=1e-12))
+                break
+            before = h
+        else:
+            return []
+    found = critical(step)
+    return [replace(found, multiplier=found.multiplier / abs(found.multiplier))]

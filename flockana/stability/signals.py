@@ -93,11 +93,7 @@ def structural_system(flock: Any) -> control.StateSpace:
     off = (np.eye(n * m) - unit @ unit.T)[:kept]
     lengths, length_names = _lengths(flock)
     blocks = ((flock.stiffness[:kept] @ extend), (flock.damping[:kept] @ extend))
-    names = (
-        labels("x", n - 1, m) + labels("v", n - 1, m),
-        labels("f", n, m),
-        labels("x", n, m) + length_names,
-    )
+    names = (labels("x", n - 1, m) + labels("v", n - 1, m), labels("f", n, m), labels("x", n, m) + length_names)
     return _system(blocks, off, np.vstack([extend, lengths @ extend]), names, "shape")
 
 
@@ -108,10 +104,6 @@ def translational_system(flock: Any) -> control.StateSpace:
     mean = translations(n, m).T / np.sqrt(n)
     target, target_names = _target_inputs(flock)
     alone = flock.second_order.split
-    names = (
-        axes_of("qc", m) + axes_of("pc", m),
-        labels("f", n, m) + target_names,
-        axes_of("qc", m),
-    )
+    names = (axes_of("qc", m) + axes_of("pc", m), labels("f", n, m) + target_names, axes_of("qc", m))
     blocks = (np.diag(alone.stiffness), np.diag(alone.damping))
     return _system(blocks, mean @ np.hstack([np.eye(n * m), target]), np.eye(m), names, "centre")

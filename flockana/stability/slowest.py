@@ -126,11 +126,6 @@ def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
     return True
 
 
-def _start(size: int) -> FloatArray:
-    """Return a fixed start vector, so that results are reproducible."""
-    return np.random.default_rng(0).standard_normal(size)
-
-
 def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
     """Return eigenvalues and displacements nearest to zero off the invariant subspace, with their radius."""
     from scipy.sparse import csc_array, eye_array
@@ -153,11 +148,10 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         dq = solve(-p - damping @ q)
         return off(np.concatenate([dq, q + shift * dq]))
 
-    operator = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64)
+    operator, most = LinearOperator((2 * size, 2 * size), matvec=inverse, dtype=np.float64), 5 * count // 2
+    start = off(np.random.default_rng(0).standard_normal(2 * size))  # fixed, so that results are reproducible
     try:
-        inverted, vectors = eigs(
-            operator, k=count, which="LM", v0=off(_start(2 * size)), ncv=min(2 * size, 5 * count // 2)
-        )
+        inverted, vectors = eigs(operator, k=count, which="LM", v0=start, ncv=min(2 * size, most))
     except ArpackError as error:
         raise SolverError(f"ARPACK found no {count} eigenvalues nearest to zero ({error}); ask for fewer") from error
     values = shift + 1.0 / inverted

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from math import exp, inf, pi, sqrt
+from math import exp, pi, sqrt
 from typing import Any
 
 from flockana.base.checks import ensure_positive
@@ -34,11 +34,6 @@ class Specifications:
         Largest H₂ norm from forces on the agents to the shape.
     overshoot : float, optional
         Largest overshoot of the centre after a step of the γ-agent, as a share of the step.
-
-    Raises
-    ------
-    ArgumentError
-        On a specification that is not positive, or if there is none.
 
     Examples
     --------
@@ -99,13 +94,10 @@ def evaluated(law: Algorithm2, q: Any, asked: Specifications, c1: float, c2: flo
     trial = replace(law, gains=gains)
     rest = find_equilibrium(trial, q).q if len(q) > 1 else q
     reached = {name: _reached(name, trial, rest) for name in asked.asked}
+    ratios = {name: reached[name] / float(getattr(asked, name)) for name in reached}
     least = ("decay", "delay", "period")
-    wanted = {name: float(getattr(asked, name)) for name in reached}
-    room = {
-        name: reached[name] / wanted[name] - 1.0 if name in least else 1.0 - reached[name] / wanted[name]
-        for name in reached
-    }
-    return SpecifiedGains(gains, reached, {name: max(-1e3, value) for name, value in room.items()})
+    room = {name: max(-1e3, ratio - 1.0 if name in least else 1.0 - ratio) for name, ratio in ratios.items()}
+    return SpecifiedGains(gains, reached, room)
 
 
 def _reached(name: str, law: Algorithm2, rest: Any) -> float:
@@ -118,5 +110,4 @@ def _reached(name: str, law: Algorithm2, rest: Any) -> float:
     if name == "overshoot":
         ratio = CentreOfMass(law.gains).damping_ratio
         return exp(-pi * ratio / sqrt(1.0 - ratio * ratio)) if ratio < 1.0 else 0.0
-    system = disturbance_system(law_blocks(law, rest, strict=False))
-    return inf if system is None else h2_norm(system)
+    return h2_norm(disturbance_system(law_blocks(law, rest, strict=False)))

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_known, ensure_nonnegative, ensure_points
+from flockana.base.checks import ComplexArray, FloatArray, ensure_known, ensure_nonnegative, ensure_points
 from flockana.base.errors import ArgumentError, format_value
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import Gains
@@ -20,8 +19,6 @@ from flockana.stability.translational import CentreOfMass
 
 if TYPE_CHECKING:
     from control import TransferFunction
-
-ComplexArray = npt.NDArray[np.complex128]
 
 GAINS = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
 
@@ -59,11 +56,6 @@ def gain_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, 
     follow : bool
         Find the equilibrium anew at every value.
 
-    Raises
-    ------
-    ArgumentError
-        On a gain that the law does not use, or values that do not rise.
-
     Examples
     --------
     >>> from flockana.environment.targets import StaticTarget
@@ -97,11 +89,6 @@ def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferF
     values : array_like, shape (L,)
         Its values, rising.
 
-    Raises
-    ------
-    ArgumentError
-        On another gain, or per-agent gains.
-
     Examples
     --------
     >>> locus, loop = centre_locus(Gains(c2_gamma=2.0), "c1_gamma", [0.0, 1.0, 2.0])
@@ -117,10 +104,8 @@ def centre_locus(gains: Gains, name: str, values: Any) -> tuple[Sweep, TransferF
     for level in levels.tolist():
         roots = CentreOfMass(replace(gains, **{name: level})).poles + 0.0
         rows.append(_joined(rows[-1], roots) if rows else roots)
-    numerator, denominator = ([1.0], [1.0, gains.c2_gamma, 0.0])
-    if name == "c2_gamma":
-        numerator, denominator = [1.0, 0.0], [1.0, 0.0, gains.c1_gamma]
-    return Sweep(name, levels, np.array(rows), 0), control.TransferFunction(numerator, denominator)
+    loops = {"c1_gamma": ([1.0], [1.0, gains.c2_gamma, 0.0]), "c2_gamma": ([1.0, 0.0], [1.0, 0.0, gains.c1_gamma])}
+    return Sweep(name, levels, np.array(rows), 0), control.TransferFunction(*loops[name])
 
 
 def _rising(values: Any) -> FloatArray:

@@ -7,7 +7,7 @@ from math import inf, pi
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
+from flockana.base.checks import ComplexArray, FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.dynamics.predicates import ensure_run
@@ -16,7 +16,6 @@ from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.centre_path import (
-    ComplexArray,
     Motion,
     centre_path,
     motion,
@@ -74,14 +73,12 @@ def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
     if gains.c1_gamma > 0.0:
         lag, swing = steady_motion(gains, moving)
         steady = moving.start + moving.velocity * start - lag + (swing * turn).real
-        return transient(
-            gains, t - start, place - steady, speed - moving.velocity - (1j * moving.omega * swing * turn).real
-        )
+        slip = speed - moving.velocity - (1j * moving.omega * swing * turn).real
+        return transient(gains, t - start, place - steady, slip)
     swing = CentreOfMass(gains, moving.factor).response(moving.omega) * moving.swing
     slip = speed - moving.drift - (1j * moving.omega * swing * turn).real
     since, drag = (t - start)[:, None], gains.c2_gamma
-    left: FloatArray = -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
-    return left
+    return -np.exp(-drag * since) * slip / drag if drag > 0.0 else 0.0 * since * slip
 
 
 @check_kinds
@@ -174,11 +171,6 @@ def tracking(run: Trajectory) -> Tracking:
     ----------
     run : Trajectory
         A run of Algorithm 2, or of its map, with a static, linear, sine or circle target.
-
-    Raises
-    ------
-    ArgumentError
-        On another law or target, or per-agent gains.
 
     Examples
     --------

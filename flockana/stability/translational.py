@@ -36,11 +36,6 @@ class CentreOfMass:
     factor : float
         1 for the true velocity, 0 for a p_r held at zero, 0.009 for the MSN project's (erratum E12).
 
-    Raises
-    ------
-    ArgumentError
-        With per-agent gains.
-
     Examples
     --------
     >>> centre = CentreOfMass(Gains(c1_gamma=4.0, c2_gamma=4.0))

@@ -13,14 +13,14 @@ from flockana.symbolic.parameters import exact
 
 C, GAIN, STEP = sp.symbols("c w delta", positive=True)
 SPEED, BOUND = sp.symbols("v^d m", positive=True)
+PULL, LEAST, DRIVE = sp.symbols("g r w^ga", positive=True)
 OWN = sp.Symbol("v", real=True)  # of an agent on a line
 _X = sp.Symbol("x", nonnegative=True)
 
 
 def pair_symbols(m: int = 2) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]:
     """Return (p_i, v_i, p_j, v_j): positions and velocities of an agent and a neighbour."""
-    p_i, v_i, p_j, v_j = (vector(name, ensure_dimension(m)) for name in ("p_i", "v_i", "p_j", "v_j"))
-    return p_i, v_i, p_j, v_j
+    return tuple(vector(name, ensure_dimension(m)) for name in ("p_i", "v_i", "p_j", "v_j"))
 
 
 def bearing(m: int = 2) -> tuple[sp.Expr, sp.Matrix, sp.Expr, sp.Matrix]:
@@ -80,12 +80,9 @@ def derive_equivalence(m: int = 2) -> Derivation:
     """
     left, right = bearing_form(m), position_form(m)
     residuals = tuple(sp.simplify(a - b) for name in left for a, b in zip(left[name], right[name], strict=True))
-    d, b, d_rate, b_rate = sp.symbols("d_ij b_ij d'_ij b'_ij")
+    d, b, d_rate, b_rate, v_i, v_j = sp.symbols("d_ij b_ij d'_ij b'_ij v_i v_j")
     steps = (
-        Step(
-            "The rates of distance and bearing by the chain rule.",
-            sp.Eq(d * b_rate + d_rate * b, sp.Symbol("v_j") - sp.Symbol("v_i")),
-        ),
+        Step("The rates of distance and bearing by the chain rule.", sp.Eq(d * b_rate + d_rate * b, v_j - v_i)),
         Step("Both forms of cohesion and of separation.", sp.Eq((d - C) * b, (1 - C / d) * d * b), d > 0),
     )
     return Derivation("Position form and bearing-distance form", steps, sp.Integer(0), residuals)
@@ -133,7 +130,7 @@ def fastest_under_drag(step: sp.Expr, force: sp.Expr, bound: sp.Expr, *, digits:
     return sp.nsolve(saturation(v + delta * u, bound=m) - v, v, m / 2, prec=digits)
 
 
-def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, weight: sp.Expr = GAIN) -> sp.Expr:
+def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr = DRIVE, weight: sp.Expr = GAIN) -> sp.Expr:
     """Return the distance at which an agent that heads for a wall stands: global drive and repulsion balance (J12).
 
     Examples
@@ -143,16 +140,12 @@ def stand_off(*, desired_speed: sp.Expr = SPEED, drive: sp.Expr | None = None, w
     """
     d = sp.Symbol("d", real=True)
     push = exact("weight", weight) * (d - C)
-    forward = (sp.Symbol("w^ga", positive=True) if drive is None else exact("drive", drive)) * exact(
-        "v^d", desired_speed
-    )
+    forward = exact("drive", drive) * exact("v^d", desired_speed)
     (distance,) = sp.solve(sp.Eq(forward + push, 0), d)
     return sp.expand(distance)
 
 
-def rest_distance(
-    *, separation: sp.Expr = GAIN, cohesion: sp.Expr | None = None, repulsion: sp.Expr | None = None
-) -> sp.Expr:
+def rest_distance(*, separation: sp.Expr = GAIN, cohesion: sp.Expr = PULL, repulsion: sp.Expr = LEAST) -> sp.Expr:
     """Return the distance of a pair at rest: where separation and cohesion balance, but no less than r (J15).
 
     Cohesion is off at r and nearer: where the balance would be there, the pair slides at r.
@@ -165,10 +158,9 @@ def rest_distance(
     3/2
     """
     d = sp.Symbol("d", positive=True)
-    pull = (sp.Symbol("g", positive=True) if cohesion is None else exact("cohesion", cohesion)) * d
-    (distance,) = sp.solve(sp.Eq(exact("separation", separation) * (d - C) + pull, 0), d)
-    least = sp.Symbol("r", positive=True) if repulsion is None else exact("repulsion", repulsion)
-    return sp.Max(least, sp.factor(distance))
+    balance = exact("separation", separation) * (d - C) + exact("cohesion", cohesion) * d
+    (distance,) = sp.solve(sp.Eq(balance, 0), d)
+    return sp.Max(exact("repulsion", repulsion), sp.factor(distance))
 
 
 def altitude(speed: sp.Expr | None = None) -> sp.Expr:
@@ -179,7 +171,7 @@ def altitude(speed: sp.Expr | None = None) -> sp.Expr:
     >>> altitude(0), altitude(BOUND), altitude(2 * BOUND)
     (r, a, a)
     """
-    r, a = sp.symbols("r a", positive=True)
+    r, a = LEAST, sp.Symbol("a", positive=True)
     v = sp.Symbol("v", nonnegative=True) if speed is None else exact("speed", speed)
     return sp.expand(r + (a - r) * sp.Min(1, v / BOUND))
 
@@ -194,6 +186,6 @@ def informed_pair() -> tuple[sp.Matrix, sp.Expr]:
     >>> informed_pair()[1]
     g*w + lambda**2 + lambda*(2*g + w)
     """
-    g, rate = sp.Symbol("g", positive=True), sp.Symbol("lambda")
+    g, rate = PULL, sp.Symbol("lambda")
     matrix = sp.Matrix([[-g - GAIN, g], [g, -g]])
     return matrix, sp.collect(sp.expand(matrix.charpoly(rate).as_expr()), rate)

@@ -8,9 +8,9 @@ from itertools import combinations
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
-from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.derivation import Derivation
 from flockana.symbolic.led_dead_zone import HALF_PULL, OF_SQUARE
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.pair import energy_balance, vector
 
 THRUST, BRAKE, DAMPING = sp.symbols("alpha beta c", real=True)
 PULL, MATCH = sp.symbols("c_1 c_2", nonnegative=True)
@@ -50,7 +50,7 @@ def given_frame_identity(m: int = 2, *, informed: int = 2) -> Derivation:
             u[i] -= PULL * (q[i] - q_r) + MATCH * p[i]
             energy += PULL * (q[i] - q_r).dot(q[i] - q_r) / 2
             rate -= MATCH * p[i].dot(p[i])
-    return _identity("Energy in the given frame", energy, rate, (q, p, u))
+    return energy_balance("Energy in the given frame", energy, rate, q, p, u)
 
 
 def moving_frame_identity(m: int = 2) -> Derivation:
@@ -65,10 +65,4 @@ def moving_frame_identity(m: int = 2) -> Derivation:
         u[i] += THRUST * p[i] + a_r - PULL * (q[i] - q_r) - MATCH * (p[i] - p_r)
         energy += PULL * x.dot(x) / 2 + v.dot(v) / 2
         rate += (THRUST - MATCH) * v.dot(v)
-    return _identity("Energy in the moving frame", energy, rate, (q, p, u))
-
-
-def _identity(title: str, energy: sp.Expr, rate: sp.Expr, flow: tuple[list[sp.Matrix], ...]) -> Derivation:
-    derived = along_flow(energy, *([entry for column in columns for entry in column] for columns in flow))
-    steps = (Step("The energy", energy), Step("changes at", rate))
-    return Derivation(title, steps, rate, (sp.expand(derived - rate),))
+    return energy_balance("Energy in the moving frame", energy, rate, q, p, u)

@@ -14,24 +14,17 @@ import sympy as sp
 from flockana.base.checks import ensure_dimension, ensure_known
 from flockana.base.errors import ArgumentError
 from flockana.symbolic import sums
-from flockana.symbolic.derivation import Step, latex_steps
+from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
-from flockana.symbolic.pair import (
-    ADJACENCY,
-    along_flow,
-    own_force,
-    pair_force,
-    pair_potential,
-    vector,
-)
+from flockana.symbolic.pair import ADJACENCY, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
 LAWS = ("algorithm1", "algorithm2")
 
 
 @dataclass(frozen=True)
-class ConcreteFlock:
+class ConcreteFlock(Printed):
     """Small flock under a law, every expression explicit in the symbols q and p.
 
     Parameters
@@ -40,11 +33,6 @@ class ConcreteFlock:
         ``"algorithm1"`` or ``"algorithm2"``.
     kinetic_factor : sympy.Expr
         Of sum |p_i|^2 (sum |v_i|^2) in the energy: 1/2; the printed H of erratum E1 has 1.
-
-    Raises
-    ------
-    ArgumentError
-        If the law is unknown, n < 1 or m is not 1, 2 or 3.
 
     Examples
     --------
@@ -161,9 +149,7 @@ class ConcreteFlock:
 
         def entry(indexed: sp.Indexed) -> sp.Expr:
             i, k = (int(index) - 1 for index in indexed.indices)
-            if indexed.base == sums.Z:
-                return sigma_norm(self.q[k] - self.q[i])
-            return rows[indexed.base][i][k]
+            return sigma_norm(self.q[k] - self.q[i]) if indexed.base == sums.Z else rows[indexed.base][i][k]
 
         written = sums.write_out(generic, self.n, self.m)
         return written.xreplace({indexed: entry(indexed) for indexed in written.atoms(sp.Indexed)})
@@ -178,7 +164,3 @@ class ConcreteFlock:
             Step("What is left between the two:", self.residual),
         )
         return latex_steps(f"{self.law.capitalize()}, n = {self.n}, m = {self.m}", steps)
-
-    def _repr_latex_(self) -> str:
-        """Return the LaTeX that a notebook shows."""
-        return f"$${self.latex()}$$"

@@ -31,14 +31,12 @@ def copies_part() -> Derivation:
     """Derive how far a copy is from the mean of all, for f_r = -k q - b p: one equation for any number of copies."""
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3
-    pulled = {
-        q.diff(T, 2): -STIFFNESS * q - DAMPING * q.diff(T) + K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies
-    }
+    pulls = (K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies)
+    pulled = {q.diff(T, 2): -STIFFNESS * q - DAMPING * q.diff(T) + pull for q, pull in zip(copies, pulls, strict=True)}
     away = copies[0] - mean
     left = away.diff(T, 2).subs(pulled)
     right = -(STIFFNESS + K1) * away - (DAMPING + K2) * away.diff(T)
     d = sp.Function("d")(T)
     result = sp.Eq(d.diff(T, 2), (-DAMPING - K2) * d.diff(T) + (-STIFFNESS - K1) * d)
-    return Derivation(
-        "How copies part", (Step("Of a copy less the mean:", result),), result, (sp.expand((left - right).doit()),)
-    )
+    steps = (Step("Of a copy less the mean:", result),)
+    return Derivation("How copies part", steps, result, (sp.expand((left - right).doit()),))

@@ -49,6 +49,10 @@ def direction(rho: sp.Expr = RHO, eta: sp.Expr = ETA) -> sp.Expr:
     return rho / sp.sqrt(1 + eta * rho**2)
 
 
+def _pieces(rho: sp.Expr, beyond: sp.Expr, near: sp.Expr, between: sp.Expr, far: sp.Expr) -> sp.Expr:
+    return sp.Piecewise((beyond, rho >= R), (near, rho < D_1), (between, rho <= D_2), (far, True))
+
+
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
     """Return f(rho), negative where it repels, 0 on [d_1, d_2] and from r on.
 
@@ -58,12 +62,7 @@ def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
     -2
     """
     inner, outer = (sp.S.One,) * 2 if ramp == 0 else (sp.Min(1, (D_1 - rho) / ramp), sp.Min(1, (rho - D_2) / ramp))
-    return sp.Piecewise(
-        (sp.S.Zero, rho >= R),
-        (-inner * repulsion(rho), rho < D_1),
-        (sp.S.Zero, rho <= D_2),
-        (outer * attraction(rho), True),
-    )
+    return _pieces(rho, sp.S.Zero, -inner * repulsion(rho), sp.S.Zero, outer * attraction(rho))
 
 
 def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
@@ -109,12 +108,7 @@ def potential(rho: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
         return K_1 * s**2 / 2
 
     near = repulsive_primitive(D_1, eta=eta) - repulsive_primitive(rho, eta=eta)
-    return sp.Piecewise(
-        (primitive(R) + pull(R), rho >= R),
-        (near + pull(rho), rho < D_1),
-        (pull(rho), rho <= D_2),
-        (primitive(rho) + pull(rho), True),
-    )
+    return _pieces(rho, primitive(R) + pull(R), near + pull(rho), pull(rho), primitive(rho) + pull(rho))
 
 
 def derive_potential() -> Derivation:

@@ -41,8 +41,19 @@ def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
 
+class Printed:
+    """Base class of what a notebook shows as LaTeX."""
+
+    def latex(self) -> str:
+        """Return the steps as LaTeX."""
+        raise NotImplementedError
+
+    def _repr_latex_(self) -> str:
+        return f"$${self.latex()}$$"
+
+
 @dataclass(frozen=True)
-class Derivation:
+class Derivation(Printed):
     """A result with the steps that lead to it.
 
     Parameters
@@ -70,10 +81,5 @@ class Derivation:
         """Return whether every computed residual vanishes identically."""
         return all(residual == 0 for residual in self.residuals)
 
-    def latex(self) -> str:
-        """Return the steps as LaTeX."""
+    def latex(self) -> str:  # noqa: D102
         return latex_steps(self.title, self.steps)
-
-    def _repr_latex_(self) -> str:
-        """Return the LaTeX that a notebook shows."""
-        return f"$${self.latex()}$$"

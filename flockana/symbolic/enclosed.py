@@ -87,7 +87,8 @@ class Enclosed:
                 given = [values[each] for each in arguments]
                 value = operation(x, *(each for each, _ in given))
                 if centre is not None and (node.is_Add or node.is_Mul):
-                    value = _tightened(value, centre[k][0], x - middle)
+                    mean = centre[k][0][0] + value[1] * (x - middle)  # by the mean value form
+                    value = _with_value(value, value[0].intersection(mean))
                 if not all(map(arb.is_finite, value.coeffs())):
                     return None
                 values.append((value, _sign(node, value, [sign for _, sign in given])))
@@ -96,11 +97,6 @@ class Enclosed:
         except (UndefinedError, ValueError, ZeroDivisionError, OverflowError):
             return None
         return values
-
-
-def _tightened(series: Any, centre: Any, off: arb) -> Any:
-    """Return a series with its value improved by the mean value form."""
-    return _with_value(series, _value(series).intersection(_value(centre) + series[1] * off))
 
 
 def _coefficients(series: arb_series) -> list[arb]:
@@ -139,17 +135,8 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
     if (of := _FUNCTIONS.get(node.func)) is not None:
         return lambda x, argument: of(argument)
     if not isinstance(node, sp.Function):  # an infinity, bounds of one, or none
-        return _undefined
+        return lambda x, *arguments: _where(False, x)
     raise TypeError(f"{node.func.__name__} has no enclosure")
-
-
-def _undefined(x: arb, *arguments: Any) -> Any:
-    raise UndefinedError
-
-
-def _value(series: Any) -> arb:
-    """Return the value of a series, its first coefficient."""
-    return series[0]
 
 
 def _with_value(series: Any, value: arb) -> Any:
@@ -157,21 +144,22 @@ def _with_value(series: Any, value: arb) -> Any:
     return arb_series([value, *_coefficients(series)[1:]])
 
 
-def _positive(series: Any) -> Any:
-    if not _value(series) > 0:
+def _where(holds: Any, series: Any) -> Any:
+    """Return a series; raise unless an operation is certainly analytic there."""
+    if not holds:
         raise UndefinedError
     return series
+
+
+def _positive(series: Any) -> Any:
+    return _where(series[0] > 0, series)
 
 
 def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
     """Return a plain power, or its inverse unless `up`: whole ones of any base, roots of a positive one."""
     of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
-    value = _with_value(_multiplied(of, whole), _power_range(_value(of), whole)) if whole > 1 else of
-    if up:
-        return value
-    if not abs(_value(value)) > 0:
-        raise UndefinedError
-    return 1 / value
+    value = _with_value(_multiplied(of, whole), _power_range(of[0], whole)) if whole > 1 else of
+    return value if up else 1 / _where(abs(value[0]) > 0, value)
 
 
 def _multiplied(base: Any, whole: int) -> Any:
@@ -194,11 +182,10 @@ def _power_range(base: arb, whole: int) -> arb:
 
 
 def _exp(x: Any) -> Any:
-    if _value(x) < _LARGEST and _value(x) > -_LARGEST:
+    if x[0] < _LARGEST and x[0] > -_LARGEST:
         return x.exp()
-    if not _value(x) < _LARGEST:
-        raise UndefinedError
-    least = arb(0).union(arb(-_LARGEST).max(_value(x).upper()).exp().upper())
+    _where(x[0] < _LARGEST, x)
+    least = arb(0).union(arb(-_LARGEST).max(x[0].upper()).exp().upper())
     return _with_value(x, arb(0)).exp() * least
 
 
@@ -209,7 +196,7 @@ def _integrated(value: arb, slope: Any, x: Any) -> Any:
 
 def _tanh(x: Any) -> Any:
     """Return tanh of a series, from its ends, as it increases; its slope is 1 − tanh²."""
-    at = _value(x).lower().tanh().union(_value(x).upper().tanh())
+    at = x[0].lower().tanh().union(x[0].upper().tanh())
     value = arb_series([at])
     for _ in range(ctx.cap - 1):
         value = _integrated(at, 1 - value * value, x)
@@ -228,51 +215,37 @@ def _cosine_range(x: arb) -> arb:
     return ends.union(arb(1 - 2 * (whole % 2))).intersection(arb(0, 1))
 
 
-def _tan(x: Any) -> Any:
-    if not abs(_value(x).cos()) > 0 or not 2 * _value(x).rad() < arb.pi():
-        raise UndefinedError
-    return x.tan()
-
-
 def _inside(x: Any) -> Any:
     """Return a series whose value is certainly within (−1, 1)."""
-    if not (_value(x) > -1 and _value(x) < 1):
-        raise UndefinedError
-    return x
+    return _where(x[0] > -1 and x[0] < 1, x)
 
 
 def _hyperbolic(x: Any, *, odd: bool) -> Any:
     up, down = _exp(x), _exp(-x)
-    return _with_value((up - down if odd else up + down) / 2, _value(x).sinh() if odd else _value(x).cosh())
-
-
-def _acosh(x: Any) -> Any:
-    if not _value(x) > 1:
-        raise UndefinedError
-    return _integrated(_value(x).acosh(), (x * x - 1).rsqrt(), x)
+    return _with_value((up - down if odd else up + down) / 2, x[0].sinh() if odd else x[0].cosh())
 
 
 _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sp.exp: _exp,
     sp.log: lambda x: _positive(x).log(),
-    sp.sin: lambda x: _with_value(x.sin(), _cosine_range(_value(x) - arb.pi() / 2)),
-    sp.cos: lambda x: _with_value(x.cos(), _cosine_range(_value(x))),
-    sp.tan: _tan,
+    sp.sin: lambda x: _with_value(x.sin(), _cosine_range(x[0] - arb.pi() / 2)),
+    sp.cos: lambda x: _with_value(x.cos(), _cosine_range(x[0])),
+    sp.tan: lambda x: _where(abs(x[0].cos()) > 0 and 2 * x[0].rad() < arb.pi(), x).tan(),
     sp.atan: lambda x: x.atan(),
-    sp.asin: lambda x: _integrated(_value(_inside(x)).asin(), (1 - x * x).rsqrt(), x),
-    sp.acos: lambda x: _integrated(_value(_inside(x)).acos(), -(1 - x * x).rsqrt(), x),
+    sp.asin: lambda x: _integrated(_inside(x)[0].asin(), (1 - x * x).rsqrt(), x),
+    sp.acos: lambda x: _integrated(_inside(x)[0].acos(), -(1 - x * x).rsqrt(), x),
     sp.sinh: lambda x: _hyperbolic(x, odd=True),
     sp.cosh: lambda x: _hyperbolic(x, odd=False),
     sp.tanh: _tanh,
-    sp.asinh: lambda x: _integrated(_value(x).asinh(), _power(1 + _power(x, 2), 1, 2, up=False), x),
-    sp.acosh: _acosh,
-    sp.atanh: lambda x: _integrated(_value(_inside(x)).atanh(), 1 / (1 - x * x), x),
+    sp.asinh: lambda x: _integrated(x[0].asinh(), _power(1 + _power(x, 2), 1, 2, up=False), x),
+    sp.acosh: lambda x: _integrated(_where(x[0] > 1, x)[0].acosh(), (x * x - 1).rsqrt(), x),
+    sp.atanh: lambda x: _integrated(_inside(x)[0].atanh(), 1 / (1 - x * x), x),
 }
 
 
 def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
     """Return the certain sign of a node, from its ball or from its operands."""
-    ball = _value(value)
+    ball = value[0]
     if ball > 0:
         return POSITIVE
     known = NONNEGATIVE if ball >= 0 else OPEN

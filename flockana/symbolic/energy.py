@@ -10,18 +10,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
-from flockana.symbolic.derivation import Step, latex_steps
+from flockana.symbolic.derivation import Printed, Step, latex_steps
 from flockana.symbolic.functions import HALF
 from flockana.symbolic.norms import EPS, sigma_norm
-from flockana.symbolic.pair import (
-    ADJACENCY,
-    PHI,
-    along_flow,
-    own_force,
-    pair_force,
-    pair_potential,
-    vector,
-)
+from flockana.symbolic.pair import ADJACENCY, PHI, along_flow, own_force, pair_force, pair_potential, vector
 from flockana.symbolic.parameters import GAINS, GainSymbols
 from flockana.symbolic.sums import (
     I_,
@@ -40,7 +32,7 @@ from flockana.symbolic.sums import (
 
 
 @dataclass(frozen=True)
-class EnergyIdentity:
+class EnergyIdentity(Printed):
     """Energy, its derived rate along the flow, the claimed closed form, and their difference.
 
     Parameters
@@ -78,10 +70,6 @@ class EnergyIdentity:
         """Return the derivation as LaTeX."""
         return latex_steps(self.name, self.steps)
 
-    def _repr_latex_(self) -> str:
-        """Return the LaTeX that a notebook shows."""
-        return f"$${self.latex()}$$"
-
 
 class GenericPair:
     """Two agents i and j among n, by components: the terms of dH/dt that involve both."""
@@ -114,14 +102,13 @@ class GenericPair:
     def tidy(self, expression: sp.Expr) -> sp.Expr:
         """Return an expression expanded in relative coordinates, the sigma-norm of the pair named z_ij."""
         root = sp.Symbol("w", positive=True)
-        relative = {
-            i: j + sp.Symbol(f"d{i}", real=True) for ends in (self.q, self.p) for i, j in zip(*ends, strict=True)
-        }
+        ends = [pair for both in (self.q, self.p) for pair in zip(*both, strict=True)]
+        relative = {i: j + sp.Symbol(f"d{i}", real=True) for i, j in ends}
         sigma = sigma_norm(self.q[1] - self.q[0])
         expression = expression.xreplace({sigma: self.z}).subs(1 + EPS * sigma, root)
         expanded = sp.expand(expression.subs(relative))
         collected = sp.collect(expanded, [PHI(self.z), ADJACENCY(self.z)], func=sp.factor)
-        back = {relative[i] - j: i - j for ends in (self.q, self.p) for i, j in zip(*ends, strict=True)}
+        back = {relative[i] - j: i - j for i, j in ends}
         return collected.xreplace(back).subs(root, 1 + EPS * self.z)
 
     def lift(self, expression: sp.Expr) -> sp.Expr:
@@ -141,12 +128,9 @@ def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple
     power = pair.along(factor * (p_i.dot(p_i) + p_j.dot(p_j)), gains)
     total = pair.tidy(potential + power)
     claimed = -gains.c2_alpha * pair.laplacian_form()
+    first = r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
     steps = (
-        Step(
-            r"One generic pair, $d\psi_\alpha/dz = \phi_\alpha$: its potential changes at "
-            r"$c_1^\alpha \nabla\psi_\alpha \cdot (p_j - p_i)$,",
-            potential,
-        ),
+        Step(first + r"$c_1^\alpha \nabla\psi_\alpha \cdot (p_j - p_i)$,", potential),
         Step("the forces between the two, entered in the kinetic energy, work at", power),
         Step("and together the pair contributes", total),
     )
@@ -160,11 +144,6 @@ def algorithm1_identity(m: int = 2, *, gains: GainSymbols = GAINS, kinetic_facto
     ----------
     kinetic_factor : sympy.Expr
         H = V + factor * sum |p_i|^2. Anything but 1/2 leaves a residual (erratum E1).
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
 
     Examples
     --------
@@ -201,11 +180,6 @@ def structural_identity(m: int = 2, *, gains: GainSymbols = GAINS, lambda_: sp.E
         Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
     lambda_ : sympy.Expr, optional
         Weight of the inertia; c1_gamma if not given. Anything else leaves a residual.
-
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
 
     Examples
     --------

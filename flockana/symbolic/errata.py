@@ -16,21 +16,14 @@ from flockana.symbolic.parameters import AlphaSymbols, GainSymbols
 def e1_identity(m: int = 2) -> EnergyIdentity:
     """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p, whose first term has no sign.
 
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
-
     Examples
     --------
     >>> e1_identity(1).holds
     False
     """
     printed = algorithm1_identity(m, kinetic_factor=sp.S.One)
-    left = Step(
-        r"The difference, $-\dot V - c_2^\alpha\, p^T \hat L p$, is not 0, and $\dot V$ has no sign:",
-        printed.residual,
-    )
+    text = r"The difference, $-\dot V - c_2^\alpha\, p^T \hat L p$, is not 0, and $\dot V$ has no sign:"
+    left = Step(text, printed.residual)
     return replace(printed, name=r"E1: the printed $H = V + \sum_i \|p_i\|^2$", steps=(*printed.steps, left))
 
 

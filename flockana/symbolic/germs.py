@@ -85,16 +85,12 @@ class _GermVisitor:
         factor = _first(Enclosed(x**exponent, x), base.factor)
         return Germ(base.power * power, factor)
 
-    def _range(self, one: Germ) -> arb:
-        """Return all values of a bounded germ, its limit included."""
-        return one.factor * self._until(one.power)
-
     def _function(self, of: Any, argument: Germ) -> Germ:
         none = Fraction(0)
         if of is sp.log and argument.power != 0:
             return self._logarithm(argument)
         if argument.power >= 0:
-            at = self._range(argument)
+            at = argument.factor * self._until(argument.power)  # all values, the limit included
             if of in _ODD and argument.power > 0:
                 slope = Enclosed(sp.diff(of(_T), _T), _T)
                 return Germ(argument.power, argument.factor * _first(slope, at.union(arb(0))))

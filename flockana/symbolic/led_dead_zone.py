@@ -7,13 +7,11 @@ from sympy.core.function import UndefinedFunction
 
 from flockana.base.checks import ensure_dimension
 from flockana.symbolic.dead_zone import K_2
-from flockana.symbolic.derivation import Derivation, Step
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.derivation import Derivation
+from flockana.symbolic.pair import energy_balance, vector
 
 C_1, C_2 = sp.symbols("c_1 c_2", nonnegative=True)
-HALF_PULL = sp.Function(
-    "W", real=True
-)  # F(rho)/2rho as a function of rho^2: no roots, so that residuals are polynomials
+HALF_PULL = sp.Function("W", real=True)  # F(rho)/2rho as a function of rho^2: no roots: residuals are polynomials
 OF_SQUARE = UndefinedFunction("psi", real=True, __dict__={"fdiff": lambda self, argindex=1: HALF_PULL(self.args[0])})
 GROUP, PINNED = (0, 0, 1), (0,)  # three agents: two of one leader, the first of them pinned, and one of another
 
@@ -47,7 +45,6 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
             u[i] -= C_1 * (q[i] - q_l[i]) + C_2 * slip[i]
             energy += C_1 * (q[i] - q_l[i]).dot(q[i] - q_l[i]) / 2
             lost -= C_2 * slip[i].dot(slip[i])
-    states = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
-    rate = along_flow(energy, *([entry for column in columns for entry in column] for columns in states))
-    steps = (Step("The energy in the frames of the leaders,", energy), Step("changes at", lost))
-    return Derivation("Energy of the dead-zone law with leaders", steps, lost, (sp.expand(rate - lost),))
+    flow = [*q, *leaders[0]], [*p, *leaders[1]], [*u, *leaders[2]]
+    title = "Energy of the dead-zone law with leaders"
+    return energy_balance(title, energy, lost, *flow, of="The energy in the frames of the leaders,")

@@ -62,11 +62,9 @@ def derive_pair_jacobian(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivatio
         for block, claimed in zip(derived, stated, strict=True)
         for entry in block - sign * claimed
     ]
+    first = r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:"
     steps = (
-        Step(
-            r"The force of $j$ on $i$ in $\Delta = q_j - q_i$, with $w = \sqrt{1 + \epsilon \|\Delta\|^2}$:",
-            weight * delta,
-        ),
+        Step(first, weight * delta),
         Step(r"the slope of its weight in $\|\Delta\|^2$,", slope),
         Step(r"and of $a_{ij}$,", consensus),
         Step(r"so $\partial u_i/\partial q_j = -\partial u_i/\partial q_i$ has from this pair", by_position),
@@ -128,9 +126,8 @@ def derive_obstacle_jacobian(kind: str, m: int = 2, *, gains: GainSymbols = GAIN
     by_position = -gains.c1_beta * (weight * own + 2 * slope * gap * gap.T)
     by_position += gains.c2_beta * (WEIGHT(z) * turn(one) - 2 * braking * slip * gap.T)
     by_velocity = -gains.c2_beta * WEIGHT(z) * own
-    names = {
-        f(z): sp.Symbol(f.__name__) for f in (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
-    }  # then it is rational
+    functions = (PHI_BETA, WEIGHT, PHI_BETA_SLOPE, WEIGHT_SLOPE)
+    names = {f(z): sp.Symbol(f.__name__) for f in functions}  # then it is rational
     force = one.force(gains)
     residuals = [
         one.reduce((entry - claimed).xreplace(names))

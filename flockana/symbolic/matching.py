@@ -5,9 +5,9 @@ from itertools import combinations
 import sympy as sp
 
 from flockana.base.checks import ensure_dimension
-from flockana.symbolic.derivation import Derivation, Step
+from flockana.symbolic.derivation import Derivation
 from flockana.symbolic.led_dead_zone import HALF_PULL, OF_SQUARE
-from flockana.symbolic.pair import along_flow, vector
+from flockana.symbolic.pair import energy_balance, vector
 
 WEIGHT = sp.Function("a", nonnegative=True)  # of the squared distance
 
@@ -29,6 +29,5 @@ def matching_identity(m: int = 2, *, potential: bool = True) -> Derivation:
         u[i], u[j] = u[i] + push, u[j] - push
         lost -= WEIGHT(square) * slip.dot(slip)
     energy += sum((v - mean).dot(v - mean) for v in p) / 2
-    rate = along_flow(energy, *([entry for column in columns for entry in column] for columns in (q, p, u)))
-    steps = (Step("The energy in the frame of the centre of mass,", energy), Step("changes at", lost))
-    return Derivation("Energy of agents that match velocities", steps, lost, (sp.expand(rate - lost),))
+    of = "The energy in the frame of the centre of mass,"
+    return energy_balance("Energy of agents that match velocities", energy, lost, q, p, u, of=of)

@@ -102,11 +102,6 @@ def numeric_law(
     q_r, p_r : array_like, shape (m,), optional
         State of the gamma-agent; the origin at rest if not given.
 
-    Raises
-    ------
-    ArgumentError
-        If the law, n, m or a vector is bad, or a parameter is still a symbol.
-
     Examples
     --------
     >>> paper = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)

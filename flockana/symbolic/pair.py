@@ -12,6 +12,7 @@ import sympy as sp
 from sympy.core.function import UndefinedFunction
 
 from flockana.base.kinds import check_kinds
+from flockana.symbolic.derivation import Derivation, Step
 from flockana.symbolic.norms import sigma_norm, sigma_norm_gradient
 from flockana.symbolic.parameters import GAINS, GainSymbols
 
@@ -74,3 +75,11 @@ def own_force(
 def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], u: Sequence[sp.Expr]) -> sp.Expr:
     """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u."""
     return sp.Add(*(sp.diff(energy, qk) * pk + sp.diff(energy, pk) * uk for qk, pk, uk in zip(q, p, u, strict=True)))
+
+
+def energy_balance(
+    title: str, energy: sp.Expr, rate: sp.Expr, *flow: Sequence[sp.Matrix], of: str = "The energy"
+) -> Derivation:
+    """Derive that an energy of columns q and p changes at a stated rate along q' = p, p' = u; the flow is (q, p, u)."""
+    derived = along_flow(energy, *([entry for column in columns for entry in column] for columns in flow))
+    return Derivation(title, (Step(of, energy), Step("changes at", rate)), rate, (sp.expand(derived - rate),))

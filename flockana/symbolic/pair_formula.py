@@ -7,6 +7,7 @@ between two cuts it is smooth, and sympy derives there, in y = s² or y = z, wha
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import mpmath  # type: ignore[import-untyped]
@@ -152,18 +153,12 @@ class PiecewiseFormula:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Derived expressions between consecutive marks."""
-        found = tuple(
-            derive_piece(
-                self.chosen(self.formula.main, 0.5 * (left + right)),
-                self.chosen(self.formula.adjacency, 0.5 * (left + right)),
-                self.formula.distance,
-                forces=self.formula.forces,
-            )
-            for left, right in zip(self.marks[:-1], self.marks[1:], strict=True)
-        )
-        for piece in found:
-            _ensure_derived(piece.slope, _CURVATURE)
-        return found
+        formula, found = self.formula, []
+        for middle in (0.5 * (left + right) for left, right in pairwise(self.marks)):
+            main, weight = (self.chosen(part, middle) for part in (formula.main, formula.adjacency))
+            found.append(derive_piece(main, weight, formula.distance, forces=formula.forces))
+            _ensure_derived(found[-1].slope, _CURVATURE)
+        return tuple(found)
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
         """Return an expression with the piece that holds at a distance."""

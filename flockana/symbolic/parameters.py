@@ -26,12 +26,23 @@ def exact(name: str, value: Any) -> sp.Expr:
     return expression
 
 
-def _fill(bundle: Any, derived: tuple[str, ...] = ()) -> None:
-    """Convert every given field of a frozen bundle to an exact expression."""
+def _fill(bundle: Any, *derived: str) -> None:
+    """Convert every given field of a frozen bundle to an exact expression; raise on one that is certainly not > 0."""
     for field in fields(bundle):
         value = getattr(bundle, field.name)
         if value is not None or field.name not in derived:
             object.__setattr__(bundle, field.name, exact(field.name, value))
+    for name in (field.name for field in fields(bundle) if field.name not in derived):
+        value = getattr(bundle, name)
+        _require(value.is_positive, f"{name} = {value}: expected a number > 0")
+    _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
+
+
+def _derive(bundle: Any, **values: sp.Expr) -> None:
+    """Set the fields of a frozen bundle that were not given."""
+    for name, value in values.items():
+        if getattr(bundle, name) is None:
+            object.__setattr__(bundle, name, value)
 
 
 def _require(condition: bool | None, message: str) -> None:
@@ -54,11 +65,6 @@ class AlphaSymbols:
     unit : number or sympy.Expr
         The length l > 0 that sigma_1 counts in, 1 in the source: phi(s) contains sigma_1(s/l**2 + c).
 
-    Raises
-    ------
-    ArgumentError
-        If a value is not a finite number or expression, or lies outside its range.
-
     Examples
     --------
     >>> AlphaSymbols(a=1, b=9).c
@@ -79,21 +85,11 @@ class AlphaSymbols:
     unit: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
-        _fill(self, ("c", "d_alpha", "r_alpha"))
-        for name in ("eps", "h", "a", "b", "d", "r", "unit"):
-            value = getattr(self, name)
-            _require(value.is_positive, f"{name} = {value}: expected a number > 0")
-        _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")
+        _fill(self, "c", "d_alpha", "r_alpha")
         _require((self.b - self.a).is_nonnegative, f"a = {self.a}, b = {self.b}: expected a <= b, or phi(0) != 0")
         _require((self.r - self.d).is_positive, f"d = {self.d}, r = {self.r}: expected r > d")
-        computed = {
-            "c": sp.Abs(self.a - self.b) / sp.sqrt(4 * self.a * self.b),
-            "d_alpha": sigma_norm(self.d, eps=self.eps),
-            "r_alpha": sigma_norm(self.r, eps=self.eps),
-        }
-        for name, value in computed.items():
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, value)
+        scales = {f"{name}_alpha": sigma_norm(getattr(self, name), eps=self.eps) for name in ("d", "r")}
+        _derive(self, c=sp.Abs(self.a - self.b) / sp.sqrt(4 * self.a * self.b), **scales)
 
 
 @dataclass(frozen=True)
@@ -109,11 +105,6 @@ class BetaSymbols:
     unit : number or sympy.Expr
         The length l > 0 that sigma_1 counts in, 1 in the source.
 
-    Raises
-    ------
-    ArgumentError
-        If a value is not a finite number or expression, or lies outside its range.
-
     Examples
     --------
     >>> BetaSymbols(eps=1, h=0.9, d=sp.sqrt(3)).d_beta
@@ -127,13 +118,8 @@ class BetaSymbols:
     unit: sp.Expr = sp.S.One
 
     def __post_init__(self) -> None:
-        _fill(self, ("d_beta",))
-        for name in ("eps", "h", "d", "unit"):
-            value = getattr(self, name)
-            _require(value.is_positive, f"{name} = {value}: expected a number > 0")
-        _require((1 - self.h).is_nonnegative, f"h = {self.h}: expected 0 < h <= 1")
-        if self.d_beta is None:
-            object.__setattr__(self, "d_beta", sigma_norm(self.d, eps=self.eps))
+        _fill(self, "d_beta")
+        _derive(self, d_beta=sigma_norm(self.d, eps=self.eps))
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,19 @@ class _Potential:
     """Potential as integral from `zero`: `smooth` on [0, edge], `tapered` on [edge, cutoff], 0 beyond."""
 
     smooth: Scalar
-    tapered: Scalar
     closed: Scalar
     zero: sp.Expr
-    edge: sp.Expr
     cutoff: sp.Expr
+    h: sp.Expr
+
+    @property
+    def edge(self) -> sp.Expr:
+        """End of the plateau."""
+        return self.h * self.cutoff
+
+    def tapered(self, z: sp.Expr) -> sp.Expr:
+        """Return the force on the taper."""
+        return taper(z / self.cutoff, h=self.h) * self.smooth(z)
 
     def integral(self, low: sp.Expr, high: sp.Expr) -> sp.Expr:
         """Return the integral over the taper, left unevaluated: it has no elementary form."""
@@ -101,26 +109,20 @@ def alpha_antiderivative(z: sp.Expr, *, alpha: AlphaSymbols = ALPHA) -> sp.Expr:
 
 def alpha_potential(alpha: AlphaSymbols) -> _Potential:
     """Return the pieces of psi_alpha."""
-    return _Potential(
-        smooth=lambda z: phi(z - alpha.d_alpha, alpha=alpha),
-        tapered=lambda z: taper(z / alpha.r_alpha, h=alpha.h) * phi(z - alpha.d_alpha, alpha=alpha),
-        closed=lambda z: alpha_antiderivative(z, alpha=alpha),
-        zero=alpha.d_alpha,
-        edge=alpha.h * alpha.r_alpha,
-        cutoff=alpha.r_alpha,
-    )
+
+    def smooth(z: sp.Expr) -> sp.Expr:
+        return phi(z - alpha.d_alpha, alpha=alpha)
+
+    def closed(z: sp.Expr) -> sp.Expr:
+        return alpha_antiderivative(z, alpha=alpha)
+
+    return _Potential(smooth, closed, alpha.d_alpha, alpha.r_alpha, alpha.h)
 
 
 def _beta(beta: BetaSymbols) -> _Potential:
     """Return the pieces of psi_beta, which is 0 at its cut-off."""
-    return _Potential(
-        smooth=lambda z: written(beta_smooth(z, beta)),
-        tapered=lambda z: taper(z / beta.d_beta, h=beta.h) * written(beta_smooth(z, beta)),
-        closed=lambda z: written(beta_closed(z, beta)),
-        zero=beta.d_beta,
-        edge=beta.h * beta.d_beta,
-        cutoff=beta.d_beta,
-    )
+    smooth, closed = (lambda z, of=of: written(of(z, beta)) for of in (beta_smooth, beta_closed))
+    return _Potential(smooth, closed, beta.d_beta, beta.d_beta, beta.h)
 
 
 def _refuse_indicator(h: sp.Expr) -> None:

@@ -84,9 +84,6 @@ class FloatCode(PythonCodePrinter):
     def _print_Pi(self, pi: sp.Expr) -> str:  # noqa: N802  # sympy's name
         return "pi"
 
-    def _print_Abs(self, magnitude: sp.Expr) -> str:  # noqa: N802  # sympy's name
-        return f"abs({self._print(magnitude.args[0])})"
-
     def _print_Piecewise(self, pieces: sp.Piecewise) -> str:  # noqa: N802  # sympy's name
         *chosen, (last, _) = pieces.args
         head = "".join(f"{self._print(value)} if {self._print(where)} else " for value, where in chosen)

@@ -97,15 +97,11 @@ def separation_forms(edges: Edges) -> dict[str, Derivation]:
         "identity-corrected": (D_in * q, -D_in * factors * D.T * p),
         "34": (separation, -D_in * (sp.eye(len(edges)) - factors) * D.T * p),
     }
-    return {
-        name: Derivation(
-            f"Separation, {name}",
-            (Step("By its sums:", left), Step("As a product of matrices:", right)),
-            right,
-            tuple(sp.expand(left - right)),
-        )
-        for name, (left, right) in forms.items()
-    }
+    found = {}
+    for name, (left, right) in forms.items():
+        steps = (Step("By its sums:", left), Step("As a product of matrices:", right))
+        found[name] = Derivation(f"Separation, {name}", steps, right, tuple(sp.expand(left - right)))
+    return found
 
 
 def edge_matrices(edges: Edges) -> tuple[sp.Matrix, sp.Matrix]:
@@ -193,6 +189,5 @@ def spacing_spectrum(m: int) -> Derivation:
         Step(r"Its derivative at length $\rho$ along the first axis:", stiffness),
         Step("The characteristic polynomial of the edge:", expected),
     )
-    return Derivation(
-        "Spectrum at the desired spacing", steps, sp.factor(expected), (sp.expand(determinant - expected),)
-    )
+    residuals = (sp.expand(determinant - expected),)
+    return Derivation("Spectrum at the desired spacing", steps, sp.factor(expected), residuals)

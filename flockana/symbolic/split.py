@@ -30,11 +30,6 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
     gains : GainSymbols
         Gains; all symbolic if not given. With c1_gamma = c2_gamma = 0 this is Algorithm 1.
 
-    Raises
-    ------
-    ArgumentError
-        If m is not 1, 2 or 3.
-
     Examples
     --------
     >>> derive_split(2).holds
@@ -56,19 +51,11 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
         _gradient_residual(pair, gains),
     )
     f_ij, f_ji = sp.symbols("f_ij f_ji")
+    relative = sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i)))
     steps = (
-        Step(
-            "Forces between agents obey action = reaction, and so drop out of the mean:",
-            sp.Eq(f_ij + f_ji, 0),
-        ),
-        Step(
-            r"The centre $q_c' = p_c$ moves as one agent without neighbours, linearly: $p_c' =$",
-            translational,
-        ),
-        Step(
-            r"Forces between agents depend on differences only: $f_{ij}(q, p) = f_{ij}(x, v)$.",
-            sp.Eq(f_ij, sp.Function("f")(*(x_j - x_i), *(v_j - v_i))),
-        ),
+        Step("Forces between agents obey action = reaction, and so drop out of the mean:", sp.Eq(f_ij + f_ji, 0)),
+        Step(r"The centre $q_c' = p_c$ moves as one agent without neighbours, linearly: $p_c' =$", translational),
+        Step(r"Forces between agents depend on differences only: $f_{ij}(q, p) = f_{ij}(x, v)$.", relative),
         Step(
             r"The feedback on agent $i$ minus that on the centre contains none of $q_c, p_c, q_r, p_r$. It is linear, "
             r"and $\sum_i x_i = \sum_i v_i = 0$, so its mean over the agents is 0:",
@@ -80,9 +67,5 @@ def derive_split(m: int = 2, *, gains: GainSymbols = GAINS) -> Derivation:
             sp.Eq(sp.Symbol("lambda"), gains.c1_gamma),
         ),
     )
-    return Derivation(
-        "Algorithm 2: structural and translational dynamics",
-        steps,
-        sp.Tuple(own, translational),
-        tuple(residuals),
-    )
+    name = "Algorithm 2: structural and translational dynamics"
+    return Derivation(name, steps, sp.Tuple(own, translational), tuple(residuals))

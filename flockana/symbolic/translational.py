@@ -52,10 +52,8 @@ def transfer_function(scale: sp.Expr = sp.S.One, *, gains: GainSymbols = GAINS, 
     (3*s + 4)/(s**2 + 3*s + 4)
     """
     q_c = sp.Symbol("Q_c")
-    q_r = sp.S.One
-    force = own_force(
-        *(sp.Matrix([term]) for term in (q_c, s * q_c, q_r, exact("scale", scale) * s * q_r)), gains=gains
-    )
+    terms = (q_c, s * q_c, sp.S.One, exact("scale", scale) * s)
+    force = own_force(*(sp.Matrix([term]) for term in terms), gains=gains)
     (response,) = sp.solve(sp.Eq(s**2 * q_c, force[0]), q_c)
     return response
 

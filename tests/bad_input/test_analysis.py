@@ -52,7 +52,6 @@ def cases():
     yield "find_equilibrium q0", POINTS, lambda v: find_equilibrium(LAW, v)
     yield "find_equilibrium law", OTHERS, lambda v: find_equilibrium(v, Q)
     yield "find_equilibrium max_iter", COUNTS, lambda v: find_equilibrium(LAW, Q, max_iter=v)
-    yield "find_equilibrium margin", POSITIVE, lambda v: find_equilibrium(LAW, Q, margin=v)
     yield "find_equilibrium method", {"unknown": "x", "a number": 3}, lambda v: find_equilibrium(LAW, Q, method=v)
     yield "linearise equilibrium", POINTS, lambda v: fl.linearise(LAW, v)
     yield "linearise p", without(POINTS, "none"), lambda v: fl.linearise(LAW, Q, v)

@@ -75,15 +75,6 @@ def resealed(data):
     return with_digest({key: value for key, value in data.items() if key != "digest"})
 
 
-def leaves(data, at=()):
-    """Where every number and every text stands that is one."""
-    if isinstance(data, dict | list):
-        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
-            yield from leaves(value, (*at, key))
-    elif isinstance(data, bool | int | float) or (isinstance(data, str) and data[:1] in "-0123456789"):
-        yield at
-
-
 def more(value):
     """A decimal one thousandth larger."""
     return repr(float(value) * 1.001 + 0.001)

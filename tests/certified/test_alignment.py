@@ -1,7 +1,5 @@
 """Alignment of a flock with an equilibrium: a true rotation to the last bit, and the nearest one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import arb, ctx

@@ -1,7 +1,5 @@
 """Certificates of basins: a change of any number is seen, and of one that was sealed again no false claim passes."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Iterator

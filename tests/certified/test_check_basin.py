@@ -1,7 +1,5 @@
 """What a checker of basins asks of each pair and shell, and that a basin of nothing is none."""
 
-from __future__ import annotations
-
 import copy
 import json
 from fractions import Fraction

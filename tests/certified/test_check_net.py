@@ -12,7 +12,6 @@ from flint import arb, arb_mat, ctx
 
 from flockana import Algorithm2, AlphaInteraction, Gains, StaticTarget
 from flockana.certified import check_net
-from flockana.certified.balls import hull
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.check import RejectedError
 from flockana.certified.check_net import Net
@@ -74,12 +73,6 @@ def test_a_pair_at_its_range_is_looked_at_and_one_beyond_is_not():
     for gap, seen in ((arb("8.4"), True), (arb("8.41", "0.02"), True), (arb("8.41"), False)):
         pairs = [pair for pair, _, _ in NET.pairs([[arb(0), arb(0)], [gap, arb(0)], [arb(99), arb(0)], [arb(50)] * 2])]
         assert ((0, 1) in pairs) is (seen and not gap >= arb(Fraction("8.4").numerator) / Fraction("8.4").denominator)
-
-
-def test_one_ball_holds_all_lengths_of_a_bond():
-    total = hull(arb(2), arb(1), arb(3, 0.5))
-    assert total.contains(arb(1))
-    assert total.contains(arb(3.5))
 
 
 def test_the_matrix_of_an_equilibrium_that_is_enclosed_holds_that_of_each_point():
@@ -211,7 +204,3 @@ def test_what_is_no_such_law_is_refused(change, message):
 def test_what_is_no_flock_is_refused(positions):
     with pytest.raises(RejectedError, match="no flock"):
         Net(text_of(LAW, positions))
-
-
-def test_root_two_is_rounded_up():
-    assert check_net.ROOT_TWO**2 > 2

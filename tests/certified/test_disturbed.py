@@ -1,7 +1,5 @@
 """Ultimate bounds: their scaling, their edge, a push that a run survives, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import sqrt

@@ -4,14 +4,21 @@ import numpy as np
 import pytest
 from flint import arb, arb_series, ctx
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, LinearTarget, StaticTarget
+from flockana import Algorithm3, AlphaInteraction, BetaInteraction, Gains, LinearTarget, Sphere, StaticTarget
 from flockana.certified.balls import series_length
 from flockana.certified.laws import flow_of
 from flockana.certified.series import PairNumbers, Piece
 from flockana.kernels import alpha as kernel
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 
 LAWS = [AlphaInteraction(), AlphaInteraction(d=3.0, r=4.5, eps=0.2, h=0.4, a=2.0, b=7.0, unit=1.5)]
 LENGTHS = {Piece.CORE: 0.4, Piece.TAPER: 0.8, Piece.OUT: 1.1}  # of r
+
+
+def numbers_of(s2, par):
+    """Stress, adjacency and their slopes of the kernels."""
+    slopes = kernel.pair_alpha_slope(s2, par), kernel.pair_alpha_adjacency_slope(s2, par)
+    return (*kernel.pair_alpha(s2, par), *slopes)
 
 
 @pytest.mark.parametrize("alpha", LAWS)
@@ -20,11 +27,7 @@ def test_stress_adjacency_and_their_slopes_are_those_of_the_kernels(alpha, piece
     law, share = PairNumbers.of_alpha(alpha), 0.1 if piece is Piece.CORE else 0.8
     s2 = (share * alpha.r) ** 2
     assert law.piece(arb(s2)) is piece
-    expected = (
-        *kernel.pair_alpha(s2, alpha.par),
-        kernel.pair_alpha_slope(s2, alpha.par),
-        kernel.pair_alpha_adjacency_slope(s2, alpha.par),
-    )
+    expected = numbers_of(s2, alpha.par)
     with series_length(1):
         series = arb_series([arb(s2)])
         found = [float(x[0]) for x in (*law.pair(series, piece), *law.slopes(series, piece))]
@@ -41,11 +44,7 @@ def test_a_ball_across_a_switch_holds_the_values_on_both_sides(alpha):
         wide = arb(length2, 0.3)
         assert law.piece(wide) is Piece.SWITCH
         for s2 in (length2 - 0.25, length2, length2 + 0.25):
-            point = (
-                *kernel.pair_alpha(s2, alpha.par),
-                kernel.pair_alpha_slope(s2, alpha.par),
-                kernel.pair_alpha_adjacency_slope(s2, alpha.par),
-            )
+            point = numbers_of(s2, alpha.par)
             hull = (*law.pair(wide), *law.slopes(wide))
             assert all((x + arb(0, 1e-12)).contains(arb(y)) for x, y in zip(hull, point, strict=True))
 
@@ -56,12 +55,15 @@ def test_out_of_range_is_a_piece_of_its_own_and_exactly_r_lies_on_the_switch():
     assert law.piece(arb(8.5) ** 2) is Piece.SWITCH
 
 
-GAINS = Gains(c1_alpha=12.0, c2_alpha=3.5, c1_gamma=1.25, c2_gamma=0.75)
+GAINS = Gains(c1_alpha=12.0, c2_alpha=3.5, c1_gamma=1.25, c2_gamma=0.75, c1_beta=40.0, c2_beta=5.0)
+BETAS = [BetaInteraction(), BetaInteraction(d=2.0, r=3.0, eps=0.2, h=0.5, unit=1.5)]
 
 
 def laws(m):
     q, p = tuple(np.arange(1.0, m + 1.0)), (0.5,) * m
+    spheres = {"obstacles": (Sphere((0.5,) * m, 0.5), Sphere((3.0,) * m, 2.0)), "target": StaticTarget(q, p)}
     return [
+        *(Algorithm3(gains=GAINS, beta=beta, **spheres) for beta in BETAS),
         Algorithm1(gains=GAINS),
         Algorithm2(gains=GAINS, target=LinearTarget(q, p)),
         Algorithm2(gains=GAINS, target=StaticTarget(q, p)),

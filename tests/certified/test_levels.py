@@ -22,20 +22,6 @@ def test_the_balls_are_about_the_bounds_in_floating_point(alpha, m):
     assert floor.rad() < 1e-20
 
 
-def test_two_agents_at_one_place_cost_c_star_and_no_more():
-    with ctx.workprec(100):
-        assert levels.coincident_floor(AlphaInteraction(), 2, 2).overlaps(
-            levels.coincident_state(AlphaInteraction(), 2, 2)
-        )
-
-
-def test_a_length_at_which_a_pair_is_bound_is_not_called_too_short():
-    with ctx.workprec(100):
-        pair, shortest = PairNumbers.of_alpha(AlphaInteraction()), levels._shortest_bound(AlphaInteraction())
-        assert abs(float(shortest) - 6.568) < 1e-3
-        assert pair.far < pair.potential(arb(shortest) ** 2) < pair.far + arb("1e-9")
-
-
 def test_a_state_left_behind_has_the_energy_of_its_lattice_and_none_where_there_is_none():
     law = Algorithm1(gains=Gains(c1_alpha=3.0, c2_alpha=1.0))
     for n, m in ((7, 2), (4, 1), (5, 3)):
@@ -56,10 +42,6 @@ def test_a_unit_of_length_counts_twice():
     q = coincident_lattice(HEAVY.alpha, 5, 2)
     found = levels.gain(HEAVY) * levels.coincident_state(HEAVY.alpha, 5, 2)
     assert float(found) == pytest.approx(HEAVY.structural_energy(q, np.zeros_like(q)), rel=1e-12)
-
-
-def test_a_floor_is_a_ball_about_a_number_that_no_digits_write():
-    assert not levels.coincident_floor(LONG, 7, 2).is_exact()
 
 
 @pytest.mark.parametrize("n", [2, 9])

@@ -103,7 +103,3 @@ def test_a_curvature_is_below_that_of_every_matrix_in_the_balls():
             found = around.curvature(bonds, [along], [fmpq(0)])
             assert found <= 2 * along.lower()
             assert found > 2 * along.lower() - (2 if along.rad() > 0 else arb("0.01"))
-
-
-def test_root_two_is_rounded_up():
-    assert shells.ROOT_TWO**2 > 2

@@ -1,7 +1,5 @@
 """What a tube says of a run that is known exactly: bounds are attained, and rounded to the safe side."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from types import SimpleNamespace
@@ -56,9 +54,8 @@ def test_the_energy_of_free_motion_is_the_same_all_the_time(meeting):
 
 def test_the_least_clearance_is_attained():
     """An agent that nothing moves flies by a disc of radius 1, whose centre it passes at 3; another one stays away."""
-    law = Algorithm3(
-        gains=FREE, target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((9.0, 50.0), 2.0), Sphere((0.0, 0.0), 1.0))
-    )
+    spheres = Sphere((9.0, 50.0), 2.0), Sphere((0.0, 0.0), 1.0)
+    law = Algorithm3(gains=FREE, target=StaticTarget((0.0, 0.0)), obstacles=spheres)
     tube = enclose(law, [[-2.0, 3.0], [60.0, 40.0]], [[1.0, 0.0], [0.0, 0.0]], (0.0, 2.5))
     found = tube.min_clearance()
     assert 2.0 - 1e-3 < found.lower <= 2.0

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.certified import check_tube
 from flockana.certified.check import RejectedError, check_data
 from flockana.certified.tube_certificate import tube_certificate, write_tube_certificate
-from tests.certified.conftest import leaves, more, resealed, with_leaf
+from tests.certified.conftest import more, resealed, with_leaf
 
 LAW = Algorithm2(target=StaticTarget((0.0,)))
 
@@ -37,19 +37,6 @@ def test_it_holds_and_says_what_was_verified(data, tmp_path, tube):
     assert float(data["distance"]) <= tube.min_distance().lower + 1e-3
     write_tube_certificate(tube, tmp_path / "tube.json")
     assert check_certificate(tmp_path / "tube.json").kind == "tube"
-
-
-def test_any_one_number_that_is_altered_is_rejected(data):
-    def other(value):
-        if not isinstance(value, str):
-            return not value if isinstance(value, bool) else value + 1
-        return value[:-1] + ("2" if value[-1] != "2" else "3")
-
-    places = list(leaves(data))
-    assert len(places) > 300
-    for at in places:
-        with pytest.raises(RejectedError, match="digest"):
-            check_data(with_leaf(data, at, other))
 
 
 def bits(value):
@@ -123,20 +110,6 @@ def test_what_it_states_is_what_is_proved(data, name):
     other = ["Every flock flocks."] if name == "prose" else "Every flock flocks."
     with pytest.raises(RejectedError, match=r"states|lists|format"):
         check_data(resealed({**data, name: other}))
-
-
-@pytest.mark.parametrize(
-    "number",
-    [
-        *("1e999999999", "0x1p999999999", "1" * 501, "1e-1_000_000_000", " 1e99999999", "1e99999999 ", "\n1e99999999"),
-        *("0x1p 999999999", "0x1p999999999 ", "1 /3", "1_0", "+1", ".5", "5.", "1E5", "0X1p3", "inf", "nan", "∞", ""),
-    ],
-)
-def test_a_number_without_end_or_of_another_form_is_rejected_at_once(data, number):
-    for at in (("times", 1), ("law", "d"), ("basin", "radius")):
-        altered = with_leaf(data, at, lambda _: number)
-        with pytest.raises(RejectedError, match=r"expected a (decimal|number in hex).* at most 500 characters"):
-            check_data(resealed({**altered, "basin": resealed(altered["basin"])}))
 
 
 def test_what_has_no_certificate_is_said(tube):

@@ -1,7 +1,5 @@
 """Signs of curvatures against normal forms with a known answer, at links that let go, at kinks, and in every unit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -24,14 +22,9 @@ LAW = Algorithm1()
 
 def cubic(curvature, bend, force, length=1.0):
     """One agent on a line in U = ½ curvature x² + ⅙ bend x³, with that force left."""
-    return Landscape(
-        lambda q: csr_array([[curvature + bend * q[0, 0]]]),
-        np.zeros((1, 1)),
-        np.zeros((1, 0)),
-        force=force,
-        length=length,
-        unit=abs(curvature) * length,
-    )
+    here, rigid, unit = np.zeros((1, 1)), np.zeros((1, 0)), abs(curvature) * length
+    stiffness = lambda q: csr_array([[curvature + bend * q[0, 0]]])  # noqa: E731
+    return Landscape(stiffness, here, rigid, force=force, length=length, unit=unit)
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-6.0, -1.0), st.sampled_from([-1.0, 1.0]))

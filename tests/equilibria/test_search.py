@@ -27,14 +27,14 @@ def test_starts_have_the_scale_of_the_lattice():
 
 
 def test_a_search_reaches_harborths_count_and_finds_each_minimum_once():
-    starts = random_starts(7, 2, 7.0, 30, density=3.0)
+    starts = random_starts(7, 2, 7.0, 12, density=3.0)
     found = search(LAW, starts)
     assert len(found.best.links) == harborth(7) == 12
     assert found.best.kind == "minimum"
     minima = [one.equilibrium for one in found.found if one.equilibrium.kind == "minimum"]
     for k, one in enumerate(minima):
         assert not any(congruent(one.q, other.q, tol=1e-4) for other in minima[k + 1 :])
-    assert sum(one.count for one in found.found) + len(found.failures) == 30
+    assert sum(one.count for one in found.found) + len(found.failures) == 12
     energies = np.array([one.equilibrium.energy for one in found.found])
     assert np.all(np.diff(energies) > -1e-9 * np.abs(energies).max())  # but for lattices of as many links, which tie
     with ThreadPoolExecutor(1) as executor:

@@ -1,7 +1,5 @@
 """Equilibria against force balances solved by hand, known indices, and the ways to fail."""
 
-from __future__ import annotations
-
 import signal
 
 import casadi
@@ -14,7 +12,7 @@ from flockana import Algorithm1, Algorithm2, Algorithm3, DeadZoneFlocking, Spher
 from flockana.base.errors import ArgumentError, SolverError, UnknownNameError
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.equilibria import solve as solve_module
-from flockana.equilibria.classify import Spectrum, classify_spectrum, spectrum
+from flockana.equilibria.classify import Spectrum, classify_spectrum
 from flockana.equilibria.potential import Potential
 from flockana.equilibria.program import Program
 from flockana.equilibria.solve import all_pairs, finish
@@ -43,15 +41,6 @@ def test_two_agents_under_algorithm_2_sit_where_the_pull_balances_the_push():
     assert found.energy == pytest.approx(expected, rel=1e-12)
 
 
-def test_the_compressed_hexagon_has_the_spacing_of_its_force_balance():
-    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
-    start = hexagonal_patch(1, 7.0) + 0.3 * np.random.default_rng(0).standard_normal((7, 2))
-    found = find_equilibrium(law, start)
-    spacing = brentq(lambda s: 60.0 * stress(s) + 1.1, 6.5, 7.0, xtol=1e-13)
-    assert found.strain() == pytest.approx(1.0 - spacing / 7.0, rel=1e-8)
-    assert (found.kind, len(found.links)) == ("minimum", 12)
-
-
 def test_two_agents_at_one_place_are_a_maximum_on_a_line_and_in_the_plane():
     for m in (1, 2):
         found = find_equilibrium(Algorithm1(), np.zeros((2, m)), method="root")
@@ -70,14 +59,6 @@ def test_a_doubled_end_of_a_link_is_a_saddle_of_index_one_and_a_doubled_corner_o
     found = find_equilibrium(Algorithm1(), np.vstack([triangle, triangle[:1]]), method="root")
     assert (found.kind, found.index) == ("saddle", 1 + (split + 1.5 * stiff < 0.0))
     assert found.hessian_eigenvalues[0] == pytest.approx(30.0 * (split + 0.5 * stiff), rel=1e-9)
-
-
-def test_a_perturbed_saddle_is_found_by_the_root_finder():
-    start = np.array([[0.02, 0.01], [-0.01, 0.0], [7.1, 0.02]])
-    found = find_equilibrium(Algorithm1(), start, method="root")
-    assert found.kind == "saddle"
-    assert found.residual < 1e-12
-    assert np.linalg.norm(found.q[0] - found.q[1]) < 1e-9
 
 
 @pytest.mark.parametrize(("m", "rigid"), [(1, 1), (2, 3), (3, 6)])
@@ -105,14 +86,6 @@ def test_kind_by_the_spectrum():
     assert kind([-2.0, -1.0], 2, 0) == "maximum"
     assert kind([0.0, 1.0], 0, 1) == "degenerate"
     assert kind([0.5, 1.0], 0, 0) == "minimum"
-
-
-def test_the_spectrum_leaves_out_the_rigid_motions_and_nothing_else():
-    q = hexagonal_patch(1, 7.0)
-    found = spectrum(Potential(Algorithm1()), q)
-    full = np.linalg.eigvalsh(Algorithm1().stiffness(q).toarray())
-    assert np.abs(full[:3]).max() < 1e-10
-    np.testing.assert_allclose(found.eigenvalues, full[3:], rtol=1e-9)
 
 
 def test_an_agent_between_a_wall_and_the_target_rests_where_the_forces_cancel():
@@ -187,16 +160,15 @@ def test_failures_are_clear():
     with pytest.raises(UnknownNameError, match="did you mean 'root'"):
         find_equilibrium(Algorithm1(), start, method="roots")
     with pytest.raises(
-        ArgumentError, match="expected a sum of a pair term and others whose forces are gradients, such as Algorithm1"
+        ArgumentError, match="expected a sum of a pair term and others whose forces are gradients, such"
     ):
         find_equilibrium("Algorithm1", start)
     for method, most in (("minimise", 60_000), ("descent", 60_000), ("ipopt", 6000), ("root", 6000)):
         with pytest.raises(ArgumentError, match=f"expected n m <= {most}"):
             find_equilibrium(Algorithm1(), np.zeros((most // 2 + 1, 2)), method=method)
+    inside = Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),))
     with pytest.raises(ArgumentError, match="starts inside"):
-        find_equilibrium(
-            Algorithm3(target=StaticTarget((9.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),)), [[0.5, 0.0]]
-        )
+        find_equilibrium(inside, [[0.5, 0.0]])
 
 
 def test_ctrl_c_stops_the_solver_where_it_is(answering, monkeypatch):
@@ -262,25 +234,10 @@ def test_strain_is_that_of_contacts():
     assert (len(loose.links), np.isnan(loose.strain())) == (1, True)
 
 
-def test_a_hexagon_is_a_strict_minimum_at_the_contact_distance():
-    found = find_equilibrium(DeadZoneFlocking(), hexagonal_patch(1, 3.6))
-    assert (found.kind, found.zero_modes, found.residual < 1e-12) == ("minimum", 0, True)
-    assert 3.5 - 0.25 < spacing(found) < 3.5
-    law = DeadZoneFlocking()
-    assert np.abs(law.acceleration(0.0, found.q, 0.0 * found.q)).max() < 1e-11 * law.interaction.contact_force * 10
-
-
 @pytest.mark.parametrize(
     # spacings of flocks that settled from random starts; from a hexagonal patch the lattice is a neighbouring one
     ("k1", "reference", "near"),
-    [
-        (0.0, 3.43, 0.03),
-        (0.01, 3.40, 0.01),
-        (0.05, 3.15, 0.07),
-        (0.1, 2.69, 0.05),
-        (0.5, 1.78, 0.03),
-        (1.0, 1.53, 0.01),
-    ],
+    [(0.0, 3.43, 0.03), (0.05, 3.15, 0.07), (1.0, 1.53, 0.01)],
 )
 def test_k1_compresses_the_lattice(k1, reference, near):
     start = hexagonal_spiral(50, 3.4 if k1 < 0.05 else 3.1 if k1 < 0.2 else 1.7)

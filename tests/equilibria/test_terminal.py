@@ -53,21 +53,6 @@ def test_curvature_does_not_see_rigid_motions_and_sees_a_soft_hinge():
     assert curvature(0.5 * chain) < -0.1  # squeezed, the chain buckles
 
 
-def test_curvature_of_two_squeezed_agents_is_that_of_the_pair_law():
-    """Algorithm 2, two agents: the only free mode is the stretch, λ + 2 c1α d(w s)/ds along the pair."""
-    q = np.array([[0.0], [6.0]])
-    law = Algorithm2(gains=LAW2.gains, target=StaticTarget((0.0,)))
-    alpha, s, step = law.alpha, 6.0, 1e-5
-
-    def force(x: float) -> float:
-        return alpha.phi_alpha(alpha.sigma_norm(x)) * x / np.sqrt(1.0 + alpha.eps * x**2)
-
-    stretch = 0.5 + 2.0 * 2.0 * (force(s + step) - force(s - step)) / (2.0 * step)
-    stiffness = law.stiffness(q).toarray()
-    direction = np.array([-1.0, 1.0]) / np.sqrt(2.0)
-    assert direction @ stiffness @ direction == pytest.approx(stretch, rel=1e-8)
-
-
 def test_a_terminal_state_is_measured():
     q = np.array([[0.0, 0.0], [7.7, 0.0], [0.0, 0.0]])
     p = np.array([[1.0, 0.0], [3.0, 0.0], [2.0, 0.0]])

@@ -6,21 +6,8 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import ArgumentError
-from flockana.lattice import (
-    classify,
-    coordination,
-    crossings,
-    defects,
-    edge_length_error,
-    hexagonal_patch,
-    is_alpha_lattice,
-    is_planar,
-    links,
-    rigidity,
-    square,
-    strain,
-    triangular,
-)
+from flockana.lattice import coordination, crossings, defects, hexagonal_patch, is_planar, rigidity, square, triangular
+from flockana.lattice.measure import classify, edge_length_error, is_alpha_lattice, links, strain
 
 D, R = 7.0, 8.4
 
@@ -103,11 +90,6 @@ def test_an_open_face_is_seen_however_the_agents_are_numbered():
         assert defects(placed, number[spokes + rim]).interior.nonzero()[0].tolist() == [number[0]]
         for k in range(4):
             assert not defects(placed, number[spokes + rim[:k] + rim[k + 1 :]]).interior.any()
-
-
-def test_squares_are_no_triangles():
-    q = square(5, 5, D)
-    assert not defects(q, links(q, R)).interior.any()
 
 
 def test_defects_without_links_and_in_space():

@@ -4,19 +4,8 @@ import numpy as np
 import pytest
 
 from flockana.base.errors import SolverError
-from flockana.lattice import (
-    Rigidity,
-    fcc,
-    hexagonal_patch,
-    honeycomb,
-    line,
-    links,
-    rigidity,
-    rigidity_matrix,
-    simple_cubic,
-    square,
-    triangular,
-)
+from flockana.lattice import Rigidity, links, rigidity, rigidity_matrix
+from flockana.lattice.builders import fcc, hexagonal_patch, honeycomb, line, simple_cubic, square, triangular
 from flockana.lattice.rigidity import eigenvalues_below, rigid_motion_count
 
 OCTAHEDRON = np.concatenate([np.eye(3), -np.eye(3)])

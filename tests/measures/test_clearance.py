@@ -1,7 +1,5 @@
 """Clearance of runs between samples: exact paths, a bound that holds, and the constrained α-lattice measure."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -52,9 +50,8 @@ def test_the_closest_point_is_told_whatever_is_handled_at_once(chunk, monkeypatc
 
 def test_a_passage_through_an_obstacle_is_not_missed() -> None:
     """Both samples are outside; the path runs through the centre, or through the polygon's depth of 1.5."""
-    assert clearance(*_straight([-9.0, 0.0], [8.0, 0.0]), [Sphere((0.0, 0.0), 2.0)]).lower == pytest.approx(
-        -2.0, abs=1e-6
-    )
+    through = clearance(*_straight([-9.0, 0.0], [8.0, 0.0]), [Sphere((0.0, 0.0), 2.0)])
+    assert through.lower == pytest.approx(-2.0, abs=1e-6)
     square = Polygon([(-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5)])
     found = clearance(*_straight([-9.0, 0.0], [8.0, 0.0]), [square])
     assert found.lower == pytest.approx(-1.5, abs=1e-6)
@@ -122,7 +119,7 @@ def test_the_allowance_is_taken_off() -> None:
 def test_whom_it_passes_over_could_not_have_come_lower() -> None:
     """Against every path of every agent, halved as far as need be, from whichever end it starts far off."""
     rng, passed = np.random.default_rng(0), 0
-    for _ in range(1500):
+    for _ in range(300):
         obstacle = OBSTACLES[rng.integers(len(OBSTACLES))]
         q, u = rng.uniform(-8.0, 8.0, (2, 5, 2)), rng.uniform(-20.0, 20.0, (2, 5, 2))
         p, slack = rng.uniform(-9.0, 9.0, (2, 5, 2)), rng.uniform(0.0, 3.0, (1, 5)) * rng.integers(2)
@@ -134,7 +131,7 @@ def test_whom_it_passes_over_could_not_have_come_lower() -> None:
         every = refine(obstacle, curves[:, :, :2], off + slack[0], np.inf, 1e-9)
         assert found.lower == pytest.approx(min(least, every.lower), abs=1e-6)
         passed += found.lower > least - 1e-9
-    assert 150 < passed < 1350
+    assert 30 < passed < 270
 
 
 def test_no_obstacles() -> None:

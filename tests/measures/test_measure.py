@@ -17,12 +17,6 @@ def test_a_dead_zone_flock_has_components_at_its_range_and_no_strain(law):
     assert law.pair == DeadZoneInteraction()
 
 
-def test_links_of_a_lattice_law_are_as_before():
-    run = simulate(Algorithm1(), [[0.0], [7.7], [30.0]], [[0.0]] * 3, (0.0, 0.01), t_eval=[0.0])
-    found = {name: it.number(run) for name, it in measures().items()}
-    assert (found["components"], found["strain"]) == (2.0, pytest.approx(0.1))
-
-
 def test_a_law_without_a_pair_interaction_has_no_net():
     law = MinimalFlocking(edges=[(0, 1)], spacing=1.0)
     assert law.pair is None

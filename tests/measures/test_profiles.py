@@ -44,6 +44,5 @@ def test_two_agents_have_one_distance():
 def test_instants_in_blocks_are_those_one_by_one(n, count):
     """More of them than are held at once, and more pairs at one instant."""
     q, shares = np.random.default_rng(n).normal(size=(count, n, 2)), (0.0, 0.3, 1.0)
-    np.testing.assert_array_equal(
-        pair_distance_profile(q, shares), [np.quantile(pdist(instant), shares) for instant in q]
-    )
+    expected = [np.quantile(pdist(instant), shares) for instant in q]
+    np.testing.assert_array_equal(pair_distance_profile(q, shares), expected)

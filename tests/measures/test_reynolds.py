@@ -26,9 +26,8 @@ def test_the_rules_add_up_to_algorithm_1(m: int) -> None:
 def test_stress_by_hand() -> None:
     """ε = 3/25 and distance 5: 1 + ε‖x‖² = 4, so ‖x‖_σ = 25/3 and the link bears φ_α/2."""
     alpha = AlphaInteraction(d=4.0, r=6.0, eps=3.0 / 25.0, h=0.9)
-    rules = reynolds(
-        [[0.0, 0.0], [3.0, 4.0]], [[1.0, 0.0], [0.0, 2.0]], alpha=alpha, gains=Gains(c1_alpha=1, c2_alpha=1)
-    )
+    q, p, gains = [[0.0, 0.0], [3.0, 4.0]], [[1.0, 0.0], [0.0, 2.0]], Gains(c1_alpha=1, c2_alpha=1)
+    rules = reynolds(q, p, alpha=alpha, gains=gains)
     s = 25.0 / 3.0 - (math.sqrt(1.0 + 0.12 * 16.0) - 1.0) / 0.12
     phi = 5.0 * s / math.hypot(1.0, s)
     assert rules.adjacency.tolist() == [1.0]

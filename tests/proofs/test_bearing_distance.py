@@ -11,7 +11,7 @@ import sympy as sp
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.symbolic.spanning_trees import S, tree_characteristic
+from flockana.symbolic.spanning_trees import S
 from flockana.theorems.bearing_distance.j03 import path_matrices
 from proofs import bearing_distance, bearing_distance_printed, undirected_trees
 
@@ -19,11 +19,6 @@ from proofs import bearing_distance, bearing_distance_printed, undirected_trees
 def test_all_numberings_of_rooted_trees_are_tried():
     assert [len(list(bearing_distance.trees(agents))) for agents in (2, 3, 4, 5)] == [1, 2, 6, 24]
     assert set(bearing_distance.trees(3)) == {((0, 1), (0, 2)), ((0, 1), (1, 2))}
-
-
-def test_the_determinant_does_not_factor_off_trees():
-    assert not tree_characteristic(((0, 1), (1, 2), (2, 1))).holds  # a pair that sees each other
-    assert not tree_characteristic(((0, 1), (0, 2), (1, 2))).holds  # two parents
 
 
 def test_the_linearised_tree_is_that_of_the_law():
@@ -122,15 +117,6 @@ def test_another_distance_is_no_steady_state():
     off = {symbol: value * sp.Rational(6, 5) for symbol, value in behind.items()}
     controls = u.subs(off)
     assert controls[0, 0] != controls[0, 1]
-
-
-def test_the_least_eigenvalue_of_five_children_is_negative_and_of_four_zero():
-    for children, sign in ((3, 1), (4, 0), (5, -1)):
-        star = np.eye(children + 1)
-        star[0, 1:] = star[1:, 0] = -0.5
-        least = np.linalg.eigvalsh(star)[0]
-        assert np.sign(np.round(least, 12)) == sign
-        assert least == pytest.approx(1 - np.sqrt(children) / 2, abs=1e-12)
 
 
 def test_a_leaf_without_length_adds_no_row():

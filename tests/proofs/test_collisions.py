@@ -1,7 +1,5 @@
 """The proofs about collisions: what is false, or not certain, of a wrong constant is not called proved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 
@@ -221,10 +219,7 @@ def test_a_stronger_count_than_turan_is_refuted():
 BEST = {  # m + 2 points of the least ratio: halves of a segment, a square, a triangle between two poles
     1: [[-1.0], [0.0], [1.0]],
     2: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-    3: [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
-    + [
-        [2.0 / np.sqrt(3.0) * np.cos(angle), 2.0 / np.sqrt(3.0) * np.sin(angle), 0.0] for angle in (0.0, 2.0944, 4.1888)
-    ],
+    3: [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [4 / 12**0.5, 0.0, 0.0], [-(3**-0.5), 1.0, 0.0], [-(3**-0.5), -1.0, 0.0]],
 }
 
 
@@ -254,9 +249,8 @@ def test_the_energies_of_lattices_are_those_of_the_kernels():
     from flockana.lattice import hexagonal_spiral
 
     for n in (7, 14, 19):
-        assert float(n_max.lattice_energy(n, par)) == pytest.approx(
-            alpha.potential_energy(hexagonal_spiral(n, 7.0)), rel=1e-12
-        )
+        energy = alpha.potential_energy(hexagonal_spiral(n, 7.0))
+        assert float(n_max.lattice_energy(n, par)) == pytest.approx(energy, rel=1e-12)
     assert float(far_potential(par)) == pytest.approx(alpha.far_potential, rel=1e-14)
 
 

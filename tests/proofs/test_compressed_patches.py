@@ -7,10 +7,9 @@ import pytest
 
 pytest.importorskip("z3")  # the extra flockana[proofs]
 
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from flockana import Algorithm1, AlphaInteraction, find_equilibrium
-from flockana.certified import krawczyk
 from flockana.certified.balls import AlphaParameters
 from flockana.equilibria.potential import Potential
 from flockana.lattice import hexagonal_patch, rigidity
@@ -33,36 +32,6 @@ def seven():
 
 def floats(matrix):
     return np.array([[float(x) for x in row] for row in matrix.tolist()])
-
-
-# the linear algebra
-
-
-def test_krawczyk_encloses_a_root_and_refuses_what_it_cannot_tell():
-    f = lambda x: [x[0] * x[0] - 2]  # noqa: E731
-    slope = lambda x: arb_mat([[2 * x[0]]])  # noqa: E731
-    (root,) = krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("0.01"))
-    assert root.contains(arb(2).sqrt())
-    assert float(root.rad()) < 1e-4
-    assert krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("1e-5")) is None  # the root is outside
-    assert krawczyk.enclose_zero(f, slope, [arb("1.414")], arb("1.5e-4")) is None  # just outside
-    assert krawczyk.enclose_zero(lambda x: [x[0] * x[0] + 2], slope, [arb("1.414")], arb("0.01")) is None
-    double = lambda x: [x[0] * x[0] - 2 * x[0] + 1]  # noqa: E731
-    assert krawczyk.enclose_zero(double, lambda x: arb_mat([[2 * x[0] - 2]]), [arb("1.001")], arb("0.01")) is None
-
-
-def test_the_least_eigenvalue_is_a_lower_bound_and_a_close_one():
-    for size in (1, 3, 12):
-        q, _ = np.linalg.qr(RNG.normal(size=(size, size)))
-        matrix = q @ np.diag(np.linspace(0.5, 9.0, size)) @ q.T
-        balls = arb_mat([[arb(float(x), 1e-9) for x in row] for row in (matrix + matrix.T) / 2])
-        assert 0.499 < float(krawczyk.least_eigenvalue(balls)) <= 0.5
-    assert krawczyk.least_eigenvalue(arb_mat([[1, 2], [2, 1]])) is None  # -1 and 3
-    assert krawczyk.least_eigenvalue(arb_mat([[1, 1], [1, 1]])) is None  # 0 and 2
-    assert krawczyk.least_eigenvalue(arb_mat([[arb(1, 2), 0], [0, 3]])) is None  # not certain
-    star = lambda x: arb_mat([[1, 0, x], [0, 1, x], [x, x, 1]])  # noqa: E731
-    assert krawczyk.least_eigenvalue(star(arb(0, 0.6))) is None  # 1 - 0.6 √2 at least, but not certain of it
-    assert 0.3 < float(krawczyk.least_eigenvalue(star(arb(0, 0.3)))) <= 1 - 0.3 * 2**0.5
 
 
 # Algorithm 1

@@ -117,20 +117,6 @@ def test_monotone_functions_are_not_overestimated():
     assert float(around.lower()) > -1e-6
 
 
-@pytest.mark.parametrize("h", ["0.2", "0.95"])
-def test_psi_is_continuous_where_its_pieces_meet(h):
-    par = AlphaParameters(h=h)
-    cutoff = intervals.r_alpha(par)
-    knee = intervals.ball(par.h) * cutoff
-    for place in (knee, cutoff, intervals.d_alpha(par)):
-        here = intervals.psi_alpha(place, par)
-        assert here.rad() < 1e-30
-        assert here.overlaps(intervals.psi_alpha(place.mid(), par))
-    assert intervals.psi_alpha(cutoff, par).overlaps(intervals.psi_alpha(arb(100), par))
-    assert intervals.psi_alpha(intervals.d_alpha(par), par).contains(0)
-    assert intervals.phi(arb(0), 7, 15).contains(0)
-
-
 def test_parameters_are_the_decimals_that_are_printed():
     assert AlphaParameters.of(AlphaInteraction()) == AlphaParameters(7, "8.4", 0.1, "0.2", 5, 5)
     assert str(exact(0.1)) == "1/10"

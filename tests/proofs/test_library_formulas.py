@@ -1,7 +1,5 @@
 """The link between library and proofs: a slip in a kernel, or in a formula, makes a step fail."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

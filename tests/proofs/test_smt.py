@@ -35,12 +35,7 @@ MUTANTS = [
     ("collisions", "_instant", "TOGETHER * C1 * C_STAR <= H,", "2 * TOGETHER * C1 * C_STAR <= H,"),
     ("bearing_distance", "_energies", "z3.And(x >= rho - gap, rho - gap > 0)", "z3.And(x >= rho - gap / 2, rho > gap)"),
     ("bearing_distance", "_energies", "square / 2 + MU * (length", "square + MU * (length"),
-    (
-        "dead_zone_parting",
-        "separation_steps",
-        "parting_speed(defaults(), FROM",
-        "parting_speed(defaults() | {R_D: sp.Integer(16)}, FROM",
-    ),
+    ("dead_zone_parting", "separation_steps", "(defaults(), FROM", "(defaults() | {R_D: sp.Integer(16)}, FROM"),
     ("dead_zone_parting", "separation_steps", "KEPT = 14, 12, 9", "KEPT = 13, 12, 9"),
     ("dead_zone_parting", "separation_steps", "f <= p_r * n_r + k1 * r,", "2 * f <= p_r * n_r + k1 * r,"),
     ("dead_zone_pairs", "rest_steps", "STIFF = 50", "STIFF = 1"),

@@ -1,7 +1,5 @@
 """Delay margins against closed forms, roots against the margin, and delayed flocks just below and above it."""
 
-from __future__ import annotations
-
 from math import inf, pi
 
 import numpy as np
@@ -11,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.special import lambertw
 
 from flockana import Algorithm1, Algorithm2, Delayed, Gains, MinimalFlocking, StaticTarget, find_equilibrium, simulate
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.stability import crossings
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, scalar_margin
@@ -257,18 +255,14 @@ def test_knowing_its_own_state_at_once_an_agent_bears_more_than_twice_the_delay(
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "message"),
+    ("call", "message"),
     [
-        (
-            lambda: delay_system(LAW, [[0.0, 0.0]], delayed="some"),
-            UnknownNameError,
-            "unknown set of delayed terms 'some'",
-        ),
-        (lambda: rightmost_roots(scalar(1.0, 1.0), 0.0), ArgumentError, "delay = 0: expected a number > 0"),
-        (lambda: scalar_margin("x", 1), ArgumentError, "k = 'x': expected one real number"),
-        (lambda: scalar_margin(1.0, -1.0), ArgumentError, "d = -1: expected a number >= 0"),
+        (lambda: delay_system(LAW, [[0.0, 0.0]], delayed="some"), "unknown set of delayed terms 'some'"),
+        (lambda: rightmost_roots(scalar(1.0, 1.0), 0.0), "delay = 0: expected a number > 0"),
+        (lambda: scalar_margin("x", 1), "k = 'x': expected one real number"),
+        (lambda: scalar_margin(1.0, -1.0), "d = -1: expected a number >= 0"),
     ],
 )
-def test_refusals(call, error, message):
-    with pytest.raises(error, match=message):
+def test_refusals(call, message):
+    with pytest.raises(ArgumentError, match=message):
         call()

@@ -1,7 +1,5 @@
 """Maps linearised: against finite differences of the map itself, closed forms, and what is refused."""
 
-from __future__ import annotations
-
 import control
 import numpy as np
 import pytest

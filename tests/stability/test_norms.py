@@ -1,9 +1,6 @@
 """Norms against closed forms, python-control, and the bounds that hold for every flock."""
 
-import sys
-from importlib.machinery import ModuleSpec
 from math import inf, sqrt
-from types import ModuleType
 
 import control
 import numpy as np
@@ -12,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, Disturbed, StaticTarget, find_equilibrium, linearise, simulate
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.blocks import complement, law_blocks
@@ -65,25 +62,6 @@ def test_against_python_control(law):
     assert hinf_norm(system)[0] == pytest.approx(control.norm(square, "inf", method="scipy"), rel=3e-6)
 
 
-def test_slycot_is_asked_where_it_is_present(monkeypatch):
-    """A stand-in: slycot is not among our requirements."""
-    stand_in = ModuleType("slycot")
-    stand_in.__spec__ = ModuleSpec("slycot", None)
-    monkeypatch.setitem(sys.modules, "slycot", stand_in)
-    monkeypatch.setattr(control, "linfnorm", lambda system, tol: (system.nstates + tol, 7.0))
-    assert hinf_norm(oscillator(1.0, 1.0), tol=0.5) == (2.5, 7.0)
-
-
-def test_the_peak_is_the_largest_gain_of_a_fine_sweep():
-    law = Algorithm2(target=ORIGIN)
-    system = disturbance_system(law_blocks(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q))
-    norm, peak = hinf_norm(system)
-    gains = [np.linalg.norm(system(1j * w), 2) for w in np.linspace(0.0, 60.0, 300)]
-    assert max(gains) <= norm * (1.0 + 1e-9)
-    assert np.linalg.norm(system(1j * peak), 2) == pytest.approx(norm, rel=1e-9)
-    assert max(gains) > 0.99 * norm
-
-
 def test_the_quotient_is_exact():
     """What is left of the spectrum is the whole, less one zero for each neutral or drifting motion."""
     for law, gone in ((Algorithm1(), 5), (Algorithm2(target=ORIGIN), 1)):
@@ -116,29 +94,11 @@ def test_white_noise_moves_the_shape_as_the_norm_says():
     assert covariance[:n, :n].max() > 10.0 * power  # while the orientation walks away
 
 
-def test_deviations_that_hold_the_turning_are_unbounded_but_on_a_line():
-    law = Algorithm2(target=ORIGIN)
-    assert (
-        disturbance_system(law_blocks(law, find_equilibrium(law, hexagonal_spiral(3, 7.0)).q), output="deviations")
-        is None
-    )
-    line = Algorithm2(target=StaticTarget((0.0,)))
-    flock = law_blocks(line, find_equilibrium(line, [[-4.0], [3.0]]).q)
-    norms = [h2_norm(disturbance_system(flock, output=name)) for name in ("shape", "deviations")]
-    assert norms[0] == pytest.approx(norms[1], rel=1e-12)
-
-
 @pytest.mark.parametrize("law", [Algorithm1(), Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=0.3, c2_gamma=8.0))])
 def test_the_closed_form_brackets_h2(law):
     flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(12, 7.0)).q)
     low, high = h2_bounds(flock)
     assert low <= h2_norm(disturbance_system(flock)) <= high
-
-
-def test_with_equal_damping_the_bracket_closes():
-    law = Algorithm2(target=ORIGIN, gains=Gains(c2_alpha=0.0, c2_gamma=3.0))
-    flock = law_blocks(law, find_equilibrium(law, hexagonal_spiral(7, 7.0)).q)
-    assert h2_bounds(flock) == pytest.approx((h2_norm(disturbance_system(flock)),) * 2, rel=1e-9)
 
 
 def test_norms_grow_with_the_flock():
@@ -158,30 +118,17 @@ def test_per_agent_gains_keep_one_neutral_rotation():
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "message"),
+    ("call", "message"),
     [
-        (
-            lambda: law_blocks(Algorithm1(), [[0.0], [6.0]]),
-            ArgumentError,
-            "no equilibrium: residual force .* finds one",
-        ),
-        (
-            lambda: law_blocks(Algorithm3(target=ORIGIN), [[0.0, 0.0]]),
-            ArgumentError,
-            "expected Algorithm1 or Algorithm2",
-        ),
-        (lambda: law_blocks(Algorithm1(), np.zeros((1001, 2))), ArgumentError, "n m = 2002: expected at most 2000"),
-        (lambda: law_blocks(Algorithm2(target=ORIGIN), [[0.0]]), ArgumentError, "the target has 2 components"),
-        (
-            lambda: disturbance_system(law_blocks(Algorithm1(), [[0.0], [7.0]]), output="all"),
-            UnknownNameError,
-            "unknown output 'all'",
-        ),
-        (lambda: norms_against_size(Algorithm1(), [0]), ArgumentError, "sizes = 0"),
+        (lambda: law_blocks(Algorithm1(), [[0.0], [6.0]]), "no equilibrium: residual force .* finds one"),
+        (lambda: law_blocks(Algorithm3(target=ORIGIN), [[0.0, 0.0]]), "expected Algorithm1 or Algorithm2"),
+        (lambda: law_blocks(Algorithm1(), np.zeros((1001, 2))), "n m = 2002: expected at most 2000"),
+        (lambda: law_blocks(Algorithm2(target=ORIGIN), [[0.0]]), "the target has 2 components"),
+        (lambda: norms_against_size(Algorithm1(), [0]), "sizes = 0"),
     ],
 )
-def test_refusals(call, error, message):
-    with pytest.raises(error, match=message):
+def test_refusals(call, message):
+    with pytest.raises(ArgumentError, match=message):
         call()
 
 

@@ -1,7 +1,5 @@
 """Margins of broken loops: closed forms of one agent, a delay that eats the phase margin, gains that lose stability."""
 
-from __future__ import annotations
-
 from math import atan2, degrees, hypot, inf, sqrt
 
 import numpy as np

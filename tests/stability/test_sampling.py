@@ -1,7 +1,5 @@
 """Largest sampling periods: against closed forms, the map's own multipliers, and runs that grow or decay."""
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np
@@ -10,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flockana import Algorithm2, ExplicitEuler, Gains, StaticTarget, TaylorStep, find_equilibrium, linearise, simulate
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.vicsek import HeadingAveraging
-from flockana.stability.sampling import SCHEMES, sampling_margin, scalar_period
+from flockana.stability.sampling import sampling_margin, scalar_period
 
 LAW = Algorithm2(target=StaticTarget((0.0, 0.0)))
 REST = find_equilibrium(LAW, hexagonal_spiral(10, 7.0)).q
@@ -66,7 +64,7 @@ def test_periods_in_closed_form(k, d, factor, period):
 @pytest.mark.parametrize("scheme", MAPS)
 def test_a_flock_is_stable_below_its_margin_and_not_just_above(scheme):
     """By the multipliers of the map, which are held against finite differences of its steps elsewhere."""
-    found = sampling_margin(LAW, REST, scheme=scheme)
+    found = sampling_margin(MAPS[scheme](LAW, 0.5) if scheme != "hold" else LAW, REST)
     for share, stable in ((0.5, True), (0.999, True), (1.001, False), (1.05, False)):
         assert linearise(MAPS[scheme](LAW, share * found.period), REST).stable == stable, share
     at = linearise(MAPS[scheme](LAW, found.period), REST)
@@ -79,7 +77,7 @@ def test_a_flock_is_stable_below_its_margin_and_not_just_above(scheme):
 
 
 def test_a_hold_is_the_taylor_step():
-    hold, taylor = (sampling_margin(LAW, REST, scheme=name) for name in ("hold", "taylor"))
+    hold, taylor = (sampling_margin(law, REST) for law in (LAW, TaylorStep(LAW, 0.1)))
     assert (hold.period, hold.least) == (taylor.period, taylor.least)
     assert 0.9 * hold.period < hold.least < hold.period  # K and D do not commute: the bound is one
     assert hold.first.frequency == pytest.approx(abs(np.angle(hold.first.multiplier)) / hold.period)
@@ -88,7 +86,7 @@ def test_a_hold_is_the_taylor_step():
 @pytest.mark.parametrize("share", [0.97, 1.03])
 def test_runs_decay_below_the_margin_and_grow_above(share):
     """Nonlinear runs from a nudge along the mode that goes first."""
-    found = sampling_margin(LAW, REST, scheme="semi-implicit")
+    found = sampling_margin(SemiImplicitEuler(LAW, 0.1), REST)
     start = REST + 1e-7 * np.real(found.first.shape)
     run = simulate(SemiImplicitEuler(LAW, share * found.period), start, 0.0 * start, (0.0, 120 * found.period))
     away = np.linalg.norm(run.q - REST, axis=(1, 2))
@@ -98,7 +96,7 @@ def test_runs_decay_below_the_margin_and_grow_above(share):
 
 def test_many_agents_flip_where_the_least_eigenvalue_of_m_vanishes():
     many = find_equilibrium(LAW, hexagonal_spiral(45, 7.0)).q
-    found = sampling_margin(LAW, many, scheme="msn")
+    found = sampling_margin(MAPS["msn"](LAW, 0.1), many)
     assert found.certified
     flow = linearise(LAW, many)
     k, d, h = flow.stiffness.toarray(), flow.damping.toarray(), found.period
@@ -116,21 +114,15 @@ def test_what_is_not_damped_has_no_margin_and_drift_is_set_apart():
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "message"),
+    ("call", "message"),
     [
-        (lambda: sampling_margin(LAW, REST, scheme="rk4"), UnknownNameError, "unknown scheme"),
-        (lambda: sampling_margin(TaylorStep(LAW), REST, scheme="hold"), ArgumentError, "brings its own"),
-        (lambda: sampling_margin(HeadingAveraging(), REST), ArgumentError, "or a map that steps one"),
-        (lambda: sampling_margin("law", REST), ArgumentError, "law = 'law': expected a law"),
-        (lambda: sampling_margin(LAW, 1.1 * REST), ArgumentError, "the state is no equilibrium"),
-        (lambda: scalar_period(-1.0, 1.0), ArgumentError, "k = -1"),
-        (lambda: sampling_margin(LAW, REST).times(0.0), ArgumentError, "dt = 0"),
+        (lambda: sampling_margin(HeadingAveraging(), REST), "or a map that steps one"),
+        (lambda: sampling_margin("law", REST), "law = 'law': expected a law"),
+        (lambda: sampling_margin(LAW, 1.1 * REST), "the state is no equilibrium"),
+        (lambda: scalar_period(-1.0, 1.0), "k = -1"),
+        (lambda: sampling_margin(LAW, REST).times(0.0), "dt = 0"),
     ],
 )
-def test_bad_input_is_refused(call, error, message):
-    with pytest.raises(error, match=message):
+def test_bad_input_is_refused(call, message):
+    with pytest.raises(ArgumentError, match=message):
         call()
-
-
-def test_every_scheme_is_known():
-    assert set(MAPS) | {"taylor"} == set(SCHEMES)

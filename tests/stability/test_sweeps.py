@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Algorithm2, Gains, StaticTarget, find_equilibrium
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.lattice import hexagonal_spiral
 from flockana.stability.blocks import law_blocks
 from flockana.stability.delay import delay_margin, delay_system, scalar_margin
@@ -52,9 +52,8 @@ def test_the_equilibrium_is_followed():
     stays = gain_sweep(law, [[-3.5], [3.5]], "c1_gamma", values, follow=False)
     pressed = replace(law, gains=replace(law.gains, c1_gamma=3.0))
     there = law_blocks(pressed, find_equilibrium(pressed, [[-3.5], [3.5]]).q).matrix()
-    np.testing.assert_allclose(
-        np.sort_complex(moved.eigenvalues[1]), np.sort_complex(np.linalg.eigvals(there)), rtol=1e-9
-    )
+    expected = np.sort_complex(np.linalg.eigvals(there))
+    np.testing.assert_allclose(np.sort_complex(moved.eigenvalues[1]), expected, rtol=1e-9)
     assert abs(moved.eigenvalues[1] - stays.eigenvalues[1]).max() > 0.5
     for sweep, level in ((moved, 0.5), (stays, 3.0)):
         row = sweep.eigenvalues[values.index(level)]
@@ -85,19 +84,19 @@ def test_the_margin_of_the_sweep_is_that_of_the_state():
 
 
 @pytest.mark.parametrize(
-    ("call", "error", "message"),
+    ("call", "message"),
     [
-        (lambda: gain_sweep(Algorithm1(), [[0.0]], "c1_gamma", [1.0]), UnknownNameError, "unknown gain 'c1_gamma'"),
-        (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), UnknownNameError, "nown: c1_gamma, c2_gamma"),
-        (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), ArgumentError, "expected rising gains"),
-        (lambda: centre_locus(Gains(), "c1_gamma", []), ArgumentError, "expected rising gains"),
-        (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), ArgumentError, "given per agent"),
-        (lambda: centre_locus(3, "c1_gamma", [1.0]), ArgumentError, "gains = 3: expected Gains"),
-        (lambda: gain_sweep(3, [[0.0]], "c1_gamma", [1.0]), ArgumentError, "law = 3: expected Algorithm1"),
-        (lambda: margin_sweep(3, [[0.0]], "c1_gamma", [1.0]), ArgumentError, "law = 3: expected Algorithm1"),
-        (lambda: margin_sweep(Algorithm1(), [[0.0]], "c3", [1.0]), UnknownNameError, "unknown gain 'c3'"),
+        (lambda: gain_sweep(Algorithm1(), [[0.0]], "c1_gamma", [1.0]), "unknown gain 'c1_gamma'"),
+        (lambda: centre_locus(Gains(), "c1_alpha", [1.0]), "nown: c1_gamma, c2_gamma"),
+        (lambda: centre_locus(Gains(), "c1_gamma", [2.0, 1.0]), "expected rising gains"),
+        (lambda: centre_locus(Gains(), "c1_gamma", []), "expected rising gains"),
+        (lambda: centre_locus(Gains(c1_gamma=[1.0]), "c1_gamma", [1.0]), "given per agent"),
+        (lambda: centre_locus(3, "c1_gamma", [1.0]), "gains = 3: expected Gains"),
+        (lambda: gain_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
+        (lambda: margin_sweep(3, [[0.0]], "c1_gamma", [1.0]), "law = 3: expected Algorithm1"),
+        (lambda: margin_sweep(Algorithm1(), [[0.0]], "c3", [1.0]), "unknown gain 'c3'"),
     ],
 )
-def test_refusals(call, error, message):
-    with pytest.raises(error, match=message):
+def test_refusals(call, message):
+    with pytest.raises(ArgumentError, match=message):
         call()

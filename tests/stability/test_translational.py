@@ -9,16 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, Algorithm2, Gains, scenario, simulate
+from flockana import Algorithm1, Algorithm2, CircleTarget, Gains, SineTarget, StaticTarget, scenario, simulate
 from flockana.base.errors import ArgumentError
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
+from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity
 from flockana.laws.msn import MSNDiscretisation
 from flockana.stability.centre_path import centre_path, motion, steady_error
 from flockana.stability.tracking import response_ratio, tracking
@@ -68,12 +61,6 @@ def test_the_step_response_is_the_textbooks():
     np.testing.assert_allclose(found.outputs, 1 - np.exp(-3 * t) * (np.cos(4 * t) + 0.75 * np.sin(4 * t)), atol=1e-12)
 
 
-def test_the_frequency_response_is_a_control_object():
-    found = CentreOfMass(gains(4.0, 4.0)).frequency_response([1.0, 2.0])
-    assert isinstance(found, control.FrequencyResponseData)
-    np.testing.assert_allclose(found.complex, [(4 + 4j) / (3 + 4j), (4 + 8j) / 8j], rtol=1e-14)
-
-
 def test_gains_of_the_erratum():
     """E12: 0.852 with the project's p_r and 1.109 with the true one; its map all at once 0.8375 and 1.0907."""
     entry = scenario("msn-case4-printed")
@@ -96,11 +83,6 @@ def test_the_maps_system_is_the_maps(position_factor):
     system = map_system(law)
     out = control.forced_response(system, 0.1 * np.arange(8), paths[1:].T).outputs.ravel()
     np.testing.assert_allclose(seen, out, rtol=1e-12)
-
-
-def test_without_a_step_the_map_is_the_flow():
-    law = MSNDiscretisation(Algorithm2(gains=gains(3.0, 1.5), target=StaticTarget((0.0,))), dt=1e-5, in_place=False)
-    assert map_gain(law, 1.3, factor=0.3) == pytest.approx(predicted_gain(law.gains, 1.3, factor=0.3), rel=1e-4)
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -7,22 +7,12 @@ import sympy as sp
 from flockana.interactions import DeadZoneInteraction
 from flockana.symbolic import dead_zone as dead
 
-NAMES = {
-    "d_1": "d1",
-    "d_2": "d2",
-    "r": "r",
-    "r_d": "r_d",
-    "k_r": "k_r",
-    "k_delta": "k_delta",
-    "k_1": "k1",
-    "eta": "eta",
-}
+NAMES = {"d_1": "d1", "d_2": "d2", "k_1": "k1", **{name: name for name in ("r", "r_d", "k_r", "k_delta", "eta")}}
 
 
 def with_numbers(expression, pair):
-    return expression.subs(
-        {s: sp.Rational(str(getattr(pair, NAMES[s.name]))) for s in expression.free_symbols - {dead.RHO}}
-    )
+    parameters = expression.free_symbols - {dead.RHO}
+    return expression.subs({s: sp.Rational(str(getattr(pair, NAMES[s.name]))) for s in parameters})
 
 
 def test_the_primitives_are_primitives_for_eta_zero_and_positive():

@@ -6,28 +6,11 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import (
-    ALPHA,
-    AlphaSymbols,
-    BetaSymbols,
-    GainSymbols,
-    adjacency,
-    bump,
-    phi,
-    phi_alpha,
-    phi_beta,
-    sigma_1,
-    sigma_norm,
-    sigma_norm_gradient,
-)
+from flockana.symbolic import ALPHA, AlphaSymbols, BetaSymbols, GainSymbols, sigma_norm, sigma_norm_gradient
+from flockana.symbolic.functions import adjacency, bump, phi, phi_alpha, phi_beta
 
 H = ALPHA.h
 PAPER = AlphaSymbols(eps=0.1, h=0.2, a=5, b=5, d=7, r=8.4)
-
-
-@pytest.mark.parametrize(("a", "b"), [(5, 5), (7, 9), (1, 9), (3, 4), (sp.Rational(1, 7), 15)])
-def test_phi_vanishes_at_zero_exactly(a: int, b: int) -> None:
-    assert sp.simplify(phi(sp.S.Zero, alpha=AlphaSymbols(a=a, b=b))) == 0
 
 
 def test_phi_at_zero_needs_a_at_most_b() -> None:
@@ -39,14 +22,6 @@ def test_phi_at_zero_needs_a_at_most_b() -> None:
         AlphaSymbols(a=9, b=7)
 
 
-def test_phi_limits() -> None:
-    """It rises from -b far below to a far above."""
-    s = sp.Symbol("s", real=True)
-    alpha = AlphaSymbols(a=7, b=9)
-    assert sp.limit(phi(s, alpha=alpha), s, sp.oo) == 7
-    assert sp.limit(phi(s, alpha=alpha), s, -sp.oo) == -9
-
-
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_sigma_norm_gradient_is_its_gradient(m: int) -> None:
     z = sp.Matrix(sp.symbols(f"z1:{m + 1}", real=True))
@@ -54,20 +29,6 @@ def test_sigma_norm_gradient_is_its_gradient(m: int) -> None:
     stated = z / (1 + ALPHA.eps * sigma_norm(z))
     assert sp.simplify(gradient - sigma_norm_gradient(z)) == sp.zeros(m, 1)
     assert sp.simplify(gradient - stated) == sp.zeros(m, 1)
-
-
-def test_sigma_norm_is_even_and_takes_lengths() -> None:
-    x, y = sp.symbols("x y", real=True)
-    assert sigma_norm(sp.Matrix([x - y, y])) == sigma_norm(sp.Matrix([y - x, -y]))
-    assert sigma_norm(sp.Matrix([3, 4])) == sigma_norm(sp.Integer(5))
-    assert sp.limit(sigma_norm(x), ALPHA.eps, 0) == x**2 / 2
-
-
-def test_sigma_1_is_odd_and_bounded() -> None:
-    s = sp.Symbol("s", real=True)
-    assert sigma_1(s) + sigma_1(-s) == 0
-    assert sp.limit(sigma_1(s), s, sp.oo) == 1
-    assert sigma_1(sp.Matrix([2, 2])) == sp.Matrix([2, 2]) / 3
 
 
 def test_bump_joins_with_its_first_derivative_but_not_its_second() -> None:
@@ -78,16 +39,6 @@ def test_bump_joins_with_its_first_derivative_but_not_its_second() -> None:
         taper = sp.diff(falling, z, order)
         assert sp.simplify(taper.subs(z, H) - sp.diff(plateau, z, order) - at_h) == 0
         assert sp.simplify(sp.diff(beyond, z, order) - taper.subs(z, 1) - at_one) == 0
-
-
-def test_bump_values_at_its_joints() -> None:
-    h = sp.Rational(1, 5)
-    values = [bump(z, h=h) for z in (sp.S.Zero, h, sp.Rational(3, 5), sp.S.One, sp.Integer(2))]
-    assert values == [1, 1, sp.Rational(1, 2), 0, 0]
-
-
-def test_bump_at_h_one_is_an_indicator_that_jumps() -> None:
-    assert [bump(z, h=sp.S.One) for z in (sp.S.Zero, sp.Rational(999, 1000), sp.S.One)] == [1, 1, 0]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import GAINS, GainSymbols, algorithm1_identity, norms, obstacles, pair, sums, theorem6
+from flockana.symbolic import GAINS, norms, obstacles, pair, sums, theorem6
 from flockana.symbolic.obstacles import KINDS, GenericObstacle, derive_braking, derive_envelope, sphere_beta, wall_beta
 from flockana.symbolic.theorem6 import (
     BRAKING,
@@ -39,22 +39,6 @@ def test_outside_an_obstacle_every_term_is_nonpositive(kind: str, m: int) -> Non
     assert braking.residual == 0
     assert braking.holds
     assert braking.holds_inside == (kind == "wall")
-
-
-def test_the_terms_at_wall_and_sphere() -> None:
-    w, T, tau = obstacles.NORMAL_SPEED, obstacles.TANGENT_SQUARE, obstacles.DEPTH
-    assert derive_braking("wall").terms == (0, -(w**2))
-    assert derive_braking("sphere").terms == (-T * tau / (1 + tau), -(w**2))
-    assert derive_braking("sphere").inside == (T * tau, -(w**2))
-
-
-def test_inside_a_sphere_an_exact_state_gains_energy() -> None:
-    column = sp.Matrix
-    _, rate = sphere_beta(column([1, 0]), column([0, 1]), column([0, 0]), sp.Integer(2))
-    assert column([0, 1]).dot(rate - column([0, 1])) == 1
-    foot, rate = wall_beta(column([-1, 0]), column([3, 1]), column([0, 5]), column([2, 0]))
-    assert foot == column([0, 0])
-    assert rate == column([0, 1])
 
 
 @DIMENSIONS
@@ -91,11 +75,6 @@ def test_the_closed_form_is_the_printed_one() -> None:
 @DIMENSIONS
 def test_condition_76_is_the_sign_of_the_drag(m: int) -> None:
     assert condition_76_residual(m) == 0
-
-
-def test_without_gamma_and_obstacles_it_is_algorithm_1() -> None:
-    gains = GainSymbols(c1_beta=0, c2_beta=0, c1_gamma=0, c2_gamma=0)
-    assert theorem6_identity(2, gains=gains, kinds=()).rate == algorithm1_identity(2).rate
 
 
 @DIMENSIONS

@@ -28,7 +28,7 @@ SMOOTH = [
     pair("(s**2/d**2 - 1 - log(s**2/d**2))*(1 - s/r)**2", "(1 + cos(pi*s/r))/2"),
     pair("exp(-s/k)/s" + END, k=0.3),
     pair("tanh(1000000*(s - 1.3))" + END),
-    pair("exp(-((s - 1.3)*1000000)**2)" + END),
+    pair("exp(-((s - 1.3)*1000)**2)" + END),
     pair("sqrt((s - 1.3)**2 + 1e-12)" + END),
     pair("sqrt(cos(s) + 2)" + END),
     pair("abs(s - 1)**3" + END),

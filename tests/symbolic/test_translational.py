@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.symbolic import GAINS, GainSymbols, damping_ratio, frequency_gain, natural_frequency, transfer_function
+from flockana.symbolic import GAINS, GainSymbols, frequency_gain, transfer_function
 from flockana.symbolic.translational import OMEGA, S
 
 K = sp.Symbol("k", real=True)
@@ -16,21 +16,6 @@ def test_transfer_functions_of_the_spec() -> None:
     denominator = S**2 + c2 * S + c1
     for scale, numerator in ((1, c2 * S + c1), (0, c1), (K, K * c2 * S + c1)):
         assert sp.simplify(transfer_function(scale) - numerator / denominator) == 0
-
-
-def test_denominator_is_the_standard_second_order_form() -> None:
-    omega_n, zeta = natural_frequency(), damping_ratio()
-    _, denominator = sp.fraction(transfer_function())
-    assert sp.expand(denominator - (S**2 + 2 * zeta * omega_n * S + omega_n**2)) == 0
-    assert damping_ratio(MSN) == 1
-
-
-def test_it_is_the_state_space_form() -> None:
-    """(q_c, p_c) driven by (q_r, p_r): the two inputs' transfer functions, superposed with p_r = k s q_r."""
-    c1, c2 = GAINS.c1_gamma, GAINS.c2_gamma
-    a, b = sp.Matrix([[0, 1], [-c1, -c2]]), sp.Matrix([[0, 0], [c1, c2]])
-    responses = sp.Matrix([[1, 0]]) * (S * sp.eye(2) - a).inv() * b
-    assert sp.simplify(responses[0] + K * S * responses[1] - transfer_function(K)) == 0
 
 
 def test_frequency_gain_is_the_modulus() -> None:
