@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
+from flockana.base.checks import FloatArray, ensure_flag, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import atomic_write, ensure_path
 from flockana.base.memory import ResultCache
@@ -19,7 +19,7 @@ from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.recorded.accuracy import Accuracy, band, ensure_error
+from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
 from flockana.recorded.unknown import UnknownLaw
 
 if TYPE_CHECKING:
@@ -27,12 +27,8 @@ if TYPE_CHECKING:
 
 _FARTHEST = 1e50  # size of a number whose fifth power, as smoothing takes it, is finite
 _ERRORS = ("bound", "sd", "p_bound", "p_sd")
-_UNITS = {"t": (0, 1), "q": (1, 0), "p": (1, -1), "u": (1, -2)} | {
-    "bound": (1, 0),
-    "sd": (1, 0),
-    "p_bound": (1, -1),
-    "p_sd": (1, -1),
-}
+_UNITS = dict.fromkeys(("q", "bound", "sd"), (1, 0)) | dict.fromkeys(("p", "p_bound", "p_sd"), (1, -1))
+_UNITS |= {"t": (0, 1), "u": (1, -2)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,15 +115,15 @@ class Recording(ResultCache):
 
     def _check_accuracy(self) -> None:
         ensure_flag("estimated", self.estimated)
+        given = {name for name in _ERRORS if getattr(self, name) is not None}
         for one, other in (("bound", "sd"), ("p_bound", "p_sd")):
-            if getattr(self, one) is not None and getattr(self, other) is not None:
+            if {one, other} <= given:
                 raise ArgumentError(f"{one} and {other} are both given: expected one of them")
-        for name in _ERRORS:
-            object.__setattr__(self, name, ensure_error(name, getattr(self, name), self.q.shape[:2]))
-        if self.p_bound is not None and self.sd is not None:
-            raise ArgumentError("sd and p_bound are given: expected p_sd, as a recording has one kind of accuracy")
-        if self.p_sd is not None and self.bound is not None:
-            raise ArgumentError("bound and p_sd are given: expected p_bound, as a recording has one kind of accuracy")
+        normalise(self, lambda name, value: ensure_error(name, value, self.q.shape[:2]), *_ERRORS)
+        for one, other, wanted in (("sd", "p_bound", "p_sd"), ("bound", "p_sd", "p_bound")):
+            if {one, other} <= given:
+                kind = "as a recording has one kind of accuracy"
+                raise ArgumentError(f"{one} and {other} are given: expected {wanted}, {kind}")
 
     def __repr__(self) -> str:
         gaps = f", {self.gaps} gaps" if self.gaps else ""
@@ -164,16 +160,12 @@ class Recording(ResultCache):
         """Half widths of positions and velocities, and how they are known."""
         if self.bound is None and self.sd is None:
             return Accuracy(np.inf, np.inf, "unknown")
-        speed: Any
-        if self.bound is not None:
-            place, speed = self.bound, self.p_bound
-            kind = "estimated" if self.estimated else "bound"
-        else:
+        kind: Kind = "estimated" if self.estimated else "sd" if self.bound is None else "bound"
+        place, speed = self.bound, self.p_bound
+        if self.bound is None:
             width = band(2 * self.q.shape[0] * self.n, self.m)
-            place = width * self.sd
-            speed = None if self.p_sd is None else width * self.p_sd
-            kind = "estimated" if self.estimated else "sd"
-        return Accuracy(place, place / self.interval if speed is None else speed, kind)  # type: ignore[arg-type]
+            place, speed = times(self.sd, width), times(self.p_sd, width)
+        return Accuracy(place, place / self.interval if speed is None else speed, kind)
 
     def window(self, start: float, end: float) -> Recording:
         """Return the samples between two times.

@@ -39,11 +39,7 @@ def kinematic_scheme(rec: Recording) -> Found | None:
         return None
     h, p = rec.interval, rec.p
     moved = np.diff(rec.q, axis=0)
-    forms = {
-        "explicit Euler": p[:-1],
-        "semi-implicit Euler": p[1:],
-        "Taylor steps": 0.5 * (p[:-1] + p[1:]),
-    }
+    forms = {"explicit Euler": p[:-1], "semi-implicit Euler": p[1:], "Taylor steps": 0.5 * (p[:-1] + p[1:])}
     size = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(moved).max())
     turned = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():

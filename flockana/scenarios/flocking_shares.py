@@ -1,6 +1,7 @@
 """Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -39,38 +40,26 @@ def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _share(
-    name: str, law: Algorithm1 | Algorithm2, text: str, *, end: float, report: Report
+    name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report
 ) -> Callable[[int], Scenario]:
+    title = f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?"
+    source = (
+        f"Olfati-Saber 2006 says that {claim}; nothing is printed of how often. The start is that of Fig. 12 (n = "
+        f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours."
+    )
+    more: dict[str, Any] = {"seeds": _SEEDS, "settings": "printed parameters of Fig. 12, gains ours"}
+    more |= {"options": {"t_eval": np.array([0.0, end])}, "shipped": verified(f"source:{report.name}")}
+
     def build(seed: int = 0) -> Scenario:
-        return Scenario(
-            name,
-            f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?",
-            f"Olfati-Saber 2006 says that {text}; nothing is printed of how often. The start is that of Fig. 12 (n = "
-            f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours.",
-            law,
-            *random_start(seed, _N, 2),
-            (0.0, end),
-            seed,
-            {},
-            (report,),
-            {"t_eval": np.array([0.0, end])},
-            seeds=_SEEDS,
-            settings="printed parameters of Fig. 12, gains ours",
-            shipped=verified(f"source:{report.name}"),
-        )
+        start, span = random_start(seed, _N, 2), (0.0, end)
+        return Scenario(name, title, source, law, *start, span, seed, {}, (report,), **more)
 
     return build
 
 
+_FOLLOWING = Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0)))
+_RARELY = "Algorithm 1 rarely flocks and often fragments"
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
-    "algorithm1-flocks": _share(
-        "algorithm1-flocks", Algorithm1(), "Algorithm 1 rarely flocks and often fragments", end=15.0, report=_fragments
-    ),
-    "algorithm2-flocks": _share(
-        "algorithm2-flocks",
-        Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0))),
-        "Algorithm 2 flocks",
-        end=40.0,
-        report=_flocks,
-    ),
+    "algorithm1-flocks": _share("algorithm1-flocks", Algorithm1(), _RARELY, end=15.0, report=_fragments),
+    "algorithm2-flocks": _share("algorithm2-flocks", _FOLLOWING, "Algorithm 2 flocks", end=40.0, report=_flocks),
 }

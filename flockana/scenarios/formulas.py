@@ -36,8 +36,7 @@ def _follows(seed: int = 0) -> Scenario:
         "spacing 8, each coordinate displaced by up to 1, velocities up to 1 per axis."
     )
     law = Algorithm2(_morse(), Gains(1.0, 1.0, 0.0, 0.0, 0.2, 0.5), LinearTarget((40.0, 0.0), (1.0, 0.0)))
-    q = grid + generator.uniform(-1.0, 1.0, grid.shape)
-    p = generator.uniform(-1.0, 1.0, grid.shape)
+    q, p = grid + generator.uniform(-1.0, 1.0, grid.shape), generator.uniform(-1.0, 1.0, grid.shape)
     expected = verified("energy") | _VERIFIED | vacuous("os-3") | verified("os-3:i", "os-3:iii")
     return Scenario("morse-follows", title, source, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
 

@@ -160,18 +160,12 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
     return Scenario("informed-survey", title, source, law, q, p, (0.0, 80.0), seed, expected, reports, **more)
 
 
+_KNOWN = "A circling leader whose acceleration all agents know: the centre of mass converges to it"
+_UNKNOWN = "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind"
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
     "informed-through": _one_informed,
-    "leader-known": _varying(
-        "leader-known",
-        "A circling leader whose acceleration all agents know: the centre of mass converges to it",
-        feedforward=True,
-    ),
-    "leader-unknown": _varying(
-        "leader-unknown",
-        "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind",
-        feedforward=False,
-    ),
+    "leader-known": _varying("leader-known", _KNOWN, feedforward=True),
+    "leader-unknown": _varying("leader-unknown", _UNKNOWN, feedforward=False),
 }

@@ -107,8 +107,7 @@ def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
         "Ours: a random rooted out-tree that never changes, α_i r_i = 2 m for all, σ = μ = 1, q uniform in a box of "
         "6 m, p in [-1, 1] m/s."
     )
-    q = rng.uniform(0.0, 6.0, (n, m))
-    p = rng.uniform(-1.0, 1.0, (n, m))
+    q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
     return Scenario("zone-tree", title, source, law, q, p, (0.0, 100.0), seed, expected, references=_REFERENCES)
 
 
@@ -124,8 +123,7 @@ def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
         "σ = μ = 1, q uniform in a box of 6 m, p in [-1, 1] m/s."
     )
     law = MinimalFlocking(edges=path, spacing=2.0, normalised=False)
-    q = rng.uniform(0.0, 6.0, (n, m))
-    p = rng.uniform(-1.0, 1.0, (n, m))
+    q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
     return Scenario("zone-path", title, source, law, q, p, (0.0, 200.0), seed, expected, references=_REFERENCES)
 
 

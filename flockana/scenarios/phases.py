@@ -29,8 +29,7 @@ def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40
         "2/√3), p uniform in [-1, 1]², 60 time units."
     )
     law = Algorithm2(alpha, gains, StaticTarget((0.0, 0.0)))
-    q = generator.uniform(-0.5 * side, 0.5 * side, (n, 2))
-    p = generator.uniform(-1.0, 1.0, (n, 2))
+    q, p = generator.uniform(-0.5 * side, 0.5 * side, (n, 2)), generator.uniform(-1.0, 1.0, (n, 2))
     expected = verified("energy", "os-3:i")
     return Scenario("phase", title, source, law, q, p, (0.0, _END), seed, expected, references=OURS)
 

@@ -1,6 +1,7 @@
 """Scenarios with rigorous verdicts: a flock that provably forms, and a proved collision."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -31,21 +32,16 @@ def _flock_of_three(seed: int = 0) -> Scenario:
 
 
 def _collision(seed: int = 0) -> Scenario:
-    return Scenario(
-        "proved-collision",
-        "Two agents head on: that they collide is proved",
+    title = "Two agents head on: that they collide is proved"
+    source = (
         "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = "
         "1.6 c*. A tube shows them in the other order, so they met: no bound above c* excludes a collision. The start "
-        "is fixed.",
-        Algorithm1(),
-        np.array([[0.0], [1.0]]),
-        np.array([[32.0], [-32.0]]),
-        (0.0, 0.0625),
-        seed,
-        verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice"),
-        references=OURS,
-        enclosed=Enclosure(("collision-energy",)),
+        "is fixed."
     )
+    q, p = np.array([[0.0], [1.0]]), np.array([[32.0], [-32.0]])
+    expected = verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice")
+    more: dict[str, Any] = {"references": OURS, "enclosed": Enclosure(("collision-energy",))}
+    return Scenario("proved-collision", title, source, Algorithm1(), q, p, (0.0, 0.0625), seed, expected, **more)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {"proved-flock": _flock_of_three, "proved-collision": _collision}
