@@ -21,7 +21,8 @@ class Fact:
 def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     """Return the conjunction of facts: unmet if one is, else assumed if one is, else met."""
     facts = list(facts)
-    worst = min((fact.status for fact in facts), key=_ORDER.index, default="met")
+    met: FactStatus = "met"
+    worst = min((met, *(fact.status for fact in facts)), key=_ORDER.index)
     deciding = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)

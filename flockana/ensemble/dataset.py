@@ -68,8 +68,8 @@ def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> xarra
 
     claimed = [[record.claims.get(name, (None, None, None)) for name in claims] for record in records]
     verdicts = [[_code(STATUSES, record.verdicts.get(name)) for name in theorems] for record in records]
-    statuses, margins, errors = ([[entry[k] for entry in row] for row in claimed] for k in range(3))
-    codes = [[_code(STATUSES, status) for status in row] for row in statuses]
+    codes = [[_code(STATUSES, status) for status, _, _ in row] for row in claimed]
+    margins, errors = ([[entry[k] for entry in row] for row in claimed] for k in (1, 2))
     variables = {
         "status": by("claim", claims, codes, **_flags(STATUSES)),
         "margin": by("claim", claims, margins, long_name="margin of a claim"),

@@ -130,10 +130,13 @@ def falsify(
             ended = "interrupted"
     if record.best.found and not deepen:
         ended = "found"
-    case, broken = begin if record.point is None else space.case(record.point), record.best.claim or claim or ""
-    values = {name: float(law_parameter(case.law, name)) for name in space.parameters}
-    table, how = record.columns(broken), (seed, budget, search.restarts, ended, record.message)
-    return sealed(Falsification(item.id, broken, case, values, record.best.verdict, *table, *how))
+    case, best = begin if record.point is None else space.case(record.point), record.best
+    name, values = best.claim or claim or "", {x: float(law_parameter(case.law, x)) for x in space.parameters}
+    table, restarts = record.columns(name), search.restarts
+    found = Falsification(
+        item.id, name, case, values, best.verdict, *table, seed, budget, restarts, ended, record.message
+    )
+    return sealed(found)
 
 
 def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:

@@ -156,18 +156,15 @@ class Counterexample:
                 f"wrote it ({data.get('flockana_version')}), or search again"
             )
         try:
-            q0, p0 = ensure_state(data["q0"], data["p0"])
-            found = cls(
-                *(_text(data[name]) for name in _TEXTS),
-                ensure_law(from_data(data["law"])),
-                *(q0, p0, ensure_time_span(data["t_span"]), _options(data["options"])),
-                Tolerances(**data["tolerances"]),
-                *(_number(data[name]) for name in _NUMBERS),
-                _text(data["flockana_version"]),
-            )
+            theorem, claim, scenario, version = (_text(data[name]) for name in (*_TEXTS, "flockana_version"))
+            margin, error = (_number(data[name]) for name in _NUMBERS)
+            law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
+            state = ensure_state(data["q0"], data["p0"])
+            start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
+            found = cls(theorem, claim, scenario, law, *start, tolerances, margin, error, version)
             without_digest(data, keys=_KEYS)
-        except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
-            raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
+        except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as fault:
+            raise FileError(f"{path} is damaged: {fault}; search again with `flockana falsify`") from fault
         return sealed(found)
 
 

@@ -144,8 +144,9 @@ def export_lammps(
         README: readme_text(title, table, clock, result),
     }
     files = _write_files(folder, texts)
-    done = (tuple(each) for each in (result.exact, result.near, result.missing))
-    return LammpsExport(folder, files, table.force_error, table.energy_error, *done, clock.dt, clock.steps)
+    exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
+    errors = table.force_error, table.energy_error
+    return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:

@@ -29,9 +29,8 @@ def table_arrays(
     if not frame.columns.is_unique:
         twice = frame.columns[frame.columns.duplicated()][0]
         raise ArgumentError(f"{where}: the column {twice!r} is given twice; expected each once")
-    layout = (
-        given_layout(columns, list(frame), where) if isinstance(columns, Mapping) else layout_of(list(frame), where)
-    )
+    names = list(frame)
+    layout = given_layout(columns, names, where) if isinstance(columns, Mapping) else layout_of(names, where)
     if layout.wide:
         return _wide(frame, layout, _times(frame, layout, dt, clock, where))
     if layout.agent is None:
