@@ -157,14 +157,14 @@ class Counterexample:
             )
         try:
             theorem, claim, scenario, version = (_text(data[name]) for name in (*_TEXTS, "flockana_version"))
-            margin, error = (_number(data[name]) for name in _NUMBERS)
+            numbers = [_number(data[name]) for name in _NUMBERS]
             law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
             state = ensure_state(data["q0"], data["p0"])
             start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
-            found = cls(theorem, claim, scenario, law, *start, tolerances, margin, error, version)
+            found = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
             without_digest(data, keys=_KEYS)
-        except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as fault:
-            raise FileError(f"{path} is damaged: {fault}; search again with `flockana falsify`") from fault
+        except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
+            raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error
         return sealed(found)
 
 
