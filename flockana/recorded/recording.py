@@ -21,6 +21,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
 from flockana.recorded.unknown import UnknownLaw
+from flockana.recorded.velocities import filled, with_velocities
 
 if TYPE_CHECKING:
     import xarray
@@ -98,13 +99,13 @@ class Recording(ResultCache):
             k = int(np.argmax(~(np.diff(t) > 0.0)))
             raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times; sort them")
         object.__setattr__(self, "t", _frozen(t))
-        object.__setattr__(self, "q", _frozen(_whole_vectors(q)))
+        object.__setattr__(self, "q", _frozen(q))
         for name in ("p", "u"):
             if (value := getattr(self, name)) is not None:
                 array = _with_gaps(name, value)
                 if array.shape != q.shape:
                     raise ArgumentError(f"{name} has shape {array.shape}: expected {q.shape}, as q has")
-                object.__setattr__(self, name, _frozen(_whole_vectors(array)))
+                object.__setattr__(self, name, _frozen(array))
         unseen = np.flatnonzero(~self.present.any(axis=0))
         if unseen.size:
             raise ArgumentError(f"q[:, {unseen[0]}] is NaN throughout: expected agents that are seen; leave it out")
@@ -232,14 +233,10 @@ class Recording(ResultCache):
         longest : float, optional
             Longest gap that is filled, in time; by default what the data carry.
         """
-        from flockana.recorded.velocities import filled
-
         return filled(self, longest)
 
     def with_velocities(self) -> Recording:
         """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
-        from flockana.recorded.velocities import with_velocities
-
         return with_velocities(self)
 
     def metrics(self, *, d: float, r: float) -> xarray.Dataset:
@@ -349,13 +346,10 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
     return array
 
 
-def _whole_vectors(x: FloatArray) -> FloatArray:
-    """Return the vectors, all components NaN where one is missing."""
-    x[np.isnan(x).any(axis=2)] = np.nan
-    return x
-
-
 def _frozen(array: FloatArray) -> FloatArray:
+    """Return an array that nobody can write to; vectors are NaN as a whole where a component is."""
     array = np.ascontiguousarray(array)
+    if array.ndim == 3:
+        array[np.isnan(array).any(axis=2)] = np.nan
     array.setflags(write=False)
     return array
