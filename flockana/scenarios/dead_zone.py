@@ -146,20 +146,18 @@ def _case(
     return build
 
 
-_JUMPS = _case(
-    "dead-zone-hard",
-    "Dead zone with the printed jumps: contacts chatter",
-    f"{_PRINTED} Here the jumps are as printed.",
-    _CONTRACTS
-    | inconclusive("dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus")
-    | verified("source:together"),
-    own=(50, 40.0, 0.0),
-    settings="printed settings: force jumps",
-)
-
-
 def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
-    return _JUMPS(seed, n, box)
+    build = _case(
+        "dead-zone-hard",
+        "Dead zone with the printed jumps: contacts chatter",
+        f"{_PRINTED} Here the jumps are as printed.",
+        _CONTRACTS
+        | inconclusive("dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus")
+        | verified("source:together"),
+        own=(50, 40.0, 0.0),
+        settings="printed settings: force jumps",
+    )
+    return build(seed, n, box)
 
 
 SCENARIOS = {
