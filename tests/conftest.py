@@ -114,6 +114,30 @@ def browser():
 
 
 @pytest.fixture
+def open_tab(browser):
+    """Open an address, in light or dark, wide or narrow; at the end no error was written to the console."""
+    tabs, troubles = [], []
+
+    def opened(address, *, dark=False, width=1280, quiet=True, offline=False, **options):
+        scheme, size = "dark" if dark else "light", {"width": width, "height": 900}
+        tab = browser.new_page(viewport=size, color_scheme=scheme, **options)
+        tabs.append(tab)
+        tab.set_default_timeout(120_000)  # milliseconds, on a busy machine
+        if quiet:
+            tab.on("pageerror", lambda error: troubles.append(str(error)))
+            tab.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+        if offline:
+            tab.on("request", lambda asked: troubles.append(asked.url) if asked.url.startswith("http") else None)
+        tab.goto(address)
+        return tab
+
+    yield opened
+    for tab in tabs:
+        tab.close()
+    assert troubles == []
+
+
+@pytest.fixture
 def garbage_often_sought():
     """Garbage is sought as Python does by itself, not as seldom as tests have it: a change can be seen."""
     before = gc.get_threshold()

@@ -40,31 +40,15 @@ def address(browser, tmp_path_factory):
 
 
 @pytest.fixture
-def visit(browser):
-    """Open an address, in light or dark, wide or narrow; at the end no error was written to the console."""
-    contexts, troubles = [], []
+def visit(open_tab):
+    """Open the explorer, with a case or without, and wait for its first answers."""
 
-    def visit(url, case=None, *, dark=False, width=1280, quiet=True, until="data-done"):
-        context = browser.new_context(
-            viewport={"width": width, "height": 900},
-            color_scheme="dark" if dark else "light",
-            reduced_motion="reduce",
-            bypass_csp=False,
-        )
-        contexts.append(context)
-        tab = context.new_page()
-        tab.set_default_timeout(PATIENCE)
-        if quiet:
-            tab.on("pageerror", lambda error: troubles.append(str(error)))
-            tab.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
-        tab.goto(url + ("" if case is None else "#" + quote(json.dumps(case))))
+    def visit(url, case=None, *, until="data-done", **how):
+        tab = open_tab(url + ("" if case is None else "#" + quote(json.dumps(case))), reduced_motion="reduce", **how)
         tab.wait_for_selector(f"body[{until}='1']")
         return tab
 
-    yield visit
-    for context in contexts:
-        context.close()
-    assert troubles == []
+    return visit
 
 
 def done(tab, number):

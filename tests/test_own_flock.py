@@ -124,6 +124,7 @@ print(runs.sizes["seed"], "runs")
 """
 
 
+@pytest.mark.slow
 def test_a_script_without_a_guard_is_run_once_and_told_why_it_is_slow(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)

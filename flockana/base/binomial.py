@@ -51,13 +51,12 @@ def clopper_pearson(successes: Any, trials: Any, *, level: float = 0.95) -> tupl
     """
     from scipy.special import betaincinv
 
+    both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
     try:
         k, n = np.broadcast_arrays(real_array(successes), real_array(trials))
     except (TypeError, ValueError, OverflowError):
-        both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
         raise ArgumentError(f"{both}: expected counts") from None
     if not ((k >= 0.0) & (k <= n) & (n <= _MOST) & (k == np.floor(k)) & (n == np.floor(n))).all():
-        both = f"successes = {format_value(successes)}, trials = {format_value(trials)}"
         raise ArgumentError(f"{both}: expected whole numbers 0 <= successes <= trials")
     tail = 0.5 * (1.0 - ensure_level(level))
     # the arguments are kept positive where the end is known without them

@@ -72,6 +72,14 @@ def real_array(value: Any) -> FloatArray:
     return np.asarray(array, dtype=np.float64, order="C")
 
 
+def ensure_numbers(name: str, value: Any, wanted: str) -> FloatArray:
+    """Return `value` as `real_array`, or raise with what is wanted."""
+    try:
+        return real_array(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {wanted}") from None
+
+
 def ensure_points(name: str, value: Any) -> FloatArray:
     """Return an (n, m) float64 array of n >= 1 points in m = 1, 2 or 3 dimensions."""
     try:
@@ -127,10 +135,7 @@ def ensure_kind(name: str, value: Any, kind: type | tuple[type, ...] | str, exam
 
 def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
     """Return a finite float64 vector, of m components if `m` is given."""
-    try:
-        vector = real_array(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {format_value(value)}: expected a vector of numbers") from None
+    vector = ensure_numbers(name, value, "a vector of numbers")
     if vector.ndim != 1 or vector.size not in (1, 2, 3):
         raise ArgumentError(f"{name} has shape {vector.shape}: expected a vector of 1, 2 or 3 components")
     if m is not None and vector.size != m:
@@ -142,10 +147,7 @@ def ensure_vector(name: str, value: Any, m: int | None = None) -> FloatArray:
 
 def ensure_series(name: str, value: Any, length: int | None = None) -> FloatArray:
     """Return a finite float64 series, of the given length if there is one."""
-    try:
-        series = real_array(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {format_value(value)}: expected a series of numbers") from None
+    series = ensure_numbers(name, value, "a series of numbers")
     if series.ndim != 1 or (length is not None and len(series) != length):
         wanted = "a series" if length is None else f"a series of {length} numbers"
         raise ArgumentError(f"{name} has shape {series.shape}: expected {wanted}")

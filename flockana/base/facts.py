@@ -22,7 +22,7 @@ def conjunction(facts: Iterable[Fact], proof: str = "") -> Fact:
     """Return the conjunction of facts: unmet if one is, else assumed if one is, else met."""
     facts = list(facts)
     met: FactStatus = "met"
-    worst = next((status for status in _ORDER if any(fact.status == status for fact in facts)), met)
+    worst = min((met, *(fact.status for fact in facts)), key=_ORDER.index)
     deciding = [fact for fact in facts if fact.status == worst]
     if worst == "met":
         return Fact("met", proof)

@@ -10,7 +10,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from flockana.base.checks import ensure_kind, real_array
+from flockana.base.checks import ensure_kind, ensure_numbers
 from flockana.base.errors import ArgumentError, format_value
 
 _P = ParamSpec("_P")
@@ -58,7 +58,7 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
         given: dict[str, Any] = called.bind(*args, **kwargs).arguments
         for name, kind in kinds.items():
             if name in given and kind in _ARRAYS:
-                _ensure_numbers(name, given[name])
+                ensure_numbers(name, given[name], "an array of real numbers")
             elif name in given and kind in _SYMBOLIC:
                 _ensure_symbolic(name, given[name])
             elif name in given:
@@ -69,14 +69,6 @@ def check_kinds(function: Callable[_P, _R]) -> Callable[_P, _R]:
         return function(*args, **kwargs)
 
     return checked
-
-
-def _ensure_numbers(name: str, value: Any) -> None:
-    """Raise unless a value is an array of real numbers."""
-    try:
-        real_array(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {format_value(value)}: expected an array of real numbers") from None
 
 
 def _ensure_symbolic(name: str, value: Any) -> None:

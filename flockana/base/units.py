@@ -70,15 +70,12 @@ def _rescaled(item: Any, length: float, time: float) -> Any:
 def scaled_fields(item: Any, length: float, time: float) -> dict[str, Any]:
     """Return the constructor arguments of a parameter object in other units."""
     powers: Mapping[str, Powers] = getattr(item, "units", {})
-    fields_scaled = {}
-    for field in (each for each in fields(item) if each.init):
-        value = getattr(item, field.name)
-        if field.name in powers:
-            by_length, by_time = powers[field.name]
-            fields_scaled[field.name] = times(value, length**by_length * time**by_time)
-        else:
-            fields_scaled[field.name] = _rescaled(value, length, time)
-    return fields_scaled
+    values = {field.name: getattr(item, field.name) for field in fields(item) if field.init}
+    factors = {name: length**by_length * time**by_time for name, (by_length, by_time) in powers.items()}
+    return {
+        name: times(value, factors[name]) if name in powers else _rescaled(value, length, time)
+        for name, value in values.items()
+    }
 
 
 def times(value: Any, factor: float) -> Any:

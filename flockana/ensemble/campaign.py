@@ -19,7 +19,7 @@ from flockana.base.checks import ensure_known
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.base.progress import progress_bar
 from flockana.dynamics.trajectory import Trajectory
-from flockana.ensemble.dataset import RESERVED, job_grid, metric_name, to_dataset
+from flockana.ensemble.dataset import RESERVED, Grid, metric_name, to_dataset
 from flockana.ensemble.digest import run_key
 from flockana.ensemble.executors import ensure_worker_options, worker_pool
 from flockana.ensemble.guard import can_start_processes
@@ -124,38 +124,35 @@ def ensemble(
     [0, 0, 0, 0]
     """
     ensure_worker_options(executor, cluster, jobs)
-    seeds = ensure_seeds(seeds)
-    axes, fixed = _split(parameters)
-    runs = prod(map(len, axes.values()), start=len(seeds))
-    if runs > MOST:
+    grid = Grid(*_split(parameters), ensure_seeds(seeds))
+    if (runs := prod(grid.shape)) > MOST:
         raise ArgumentError(f"{runs} runs: expected at most {MOST}, seeds times values of options; {_REMEDY}")
     chosen = _ensure_metrics(metrics)
-    _ensure_names(axes, fixed, chosen)
+    _ensure_names((*grid.axes, *grid.fixed, *map(metric_name, chosen)))
     if tolerances is not None and not isinstance(tolerances, Tolerances):
         raise ArgumentError(f"tolerances = {tolerances!r}: expected flockana.Tolerances(...)")
     given = chosen_flock(scenario, law=law, q0=q0, p0=p0, t_span=t_span)
     flock = given if isinstance(given, Flock) else None
     if flock is None:
-        name, checked = _ensure_scenario(given, axes, fixed, seeds[0]), _ensure_theorems(theorems)
+        name, checked = _ensure_scenario(given, grid), _ensure_theorems(theorems)
     else:
-        name, checked = flock.name, _ensure_flock(flock, seeds, axes, fixed, theorems)
+        name, checked = flock.name, _ensure_flock(flock, grid, theorems)
     request = Request(name, checked, chosen, tolerances or Tolerances(), flock=flock)
-    grid = job_grid(axes, fixed, seeds)
+    all_jobs = grid.jobs()
     with ExitStack() as stack:
         kept = None if store is None else stack.enter_context(Store(store))
-        keys = _keys(request, grid, strict=kept is not None)
+        keys = _keys(request, all_jobs, strict=kept is not None)
         records = {} if kept is None else kept.read(keys.values())
         if retry:
             records = {key: record for key, record in records.items() if record.status == COMPLETE}
-        missing = [job for job in grid if keys[job] not in records]
+        missing = [job for job in all_jobs if keys[job] not in records]
         if missing:
             advance = stack.enter_context(progress_bar(len(missing), enabled=progress, steady=True))
-            text = f"runs, {len(grid) - len(missing)} stored before" if len(missing) < len(grid) else "runs"
+            text = f"runs, {len(all_jobs) - len(missing)} stored before" if len(missing) < len(all_jobs) else "runs"
             done = 0
             if executor is None and cluster is None:
                 jobs = min(jobs or cores(), len(missing))
-                if jobs > 1 and not can_start_processes(request):
-                    jobs = 1
+                jobs = 1 if jobs > 1 and not can_start_processes(request) else jobs
             with worker_pool(executor, cluster=cluster, jobs=jobs) as workers:
                 for made in make_runs(request, missing, workers):
                     new = {keys[record.job]: record for record in made}
@@ -164,7 +161,7 @@ def ensemble(
                     records |= new
                     done += len(new)
                     advance(done, text)
-    return to_dataset(request, axes, fixed, seeds, [records[keys[job]] for job in grid])
+    return to_dataset(request, grid, [records[keys[job]] for job in all_jobs])
 
 
 def ensure_seeds(seeds: Any) -> tuple[int, ...]:
@@ -225,10 +222,10 @@ def _ensure_metrics(metrics: Any) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _ensure_names(axes: Mapping[str, Any], fixed: Mapping[str, Any], metrics: Sequence[str]) -> None:
-    """Raise if two options or metrics share a name in the dataset."""
+def _ensure_names(names: Iterable[str]) -> None:
+    """Raise if two variables share a name in the dataset."""
     seen = {*RESERVED}
-    for name in (*axes, *fixed, *(metric_name(metric) for metric in metrics)):
+    for name in names:
         if name in seen:
             raise ArgumentError(f"{name}: the result has another variable of that name; leave it out or rename it")
         seen.add(name)
@@ -247,41 +244,33 @@ def _ensure_theorems(names: Any) -> tuple[str, ...] | None:
     return chosen
 
 
-def _ensure_scenario(
-    scenario: Any, axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seed: int
-) -> str:
+def _ensure_scenario(scenario: Any, grid: Grid) -> str:
     """Return the name of a scenario after building it once with each option."""
     if isinstance(scenario, str):
         ensure_known("scenario", scenario, scenarios())
-        for job in job_grid(axes, fixed, [seed]):
-            named_scenario(scenario, seed, **dict(job.options))
+        for job in grid.jobs(1):
+            named_scenario(scenario, job.seed, **dict(job.options))
         return scenario
     if not callable(scenario):
         raise ArgumentError(f"scenario = {scenario!r}: expected a name of the catalogue or a function")
     name = reference(scenario)
     try:
-        inspect.signature(scenario).bind(seed, **dict.fromkeys((*axes, *fixed)))
+        inspect.signature(scenario).bind(0, **dict.fromkeys((*grid.axes, *grid.fixed)))
     except TypeError as error:
         raise ArgumentError(f"{name} cannot be called with a seed and these options: {error}") from None
     return name
 
 
-def _ensure_flock(
-    flock: Flock,
-    seeds: Sequence[int],
-    axes: Mapping[str, Sequence[Scalar]],
-    fixed: Mapping[str, Scalar],
-    theorems: Any,
-) -> tuple[str, ...]:
+def _ensure_flock(flock: Flock, grid: Grid, theorems: Any) -> tuple[str, ...]:
     """Return the theorems to check on a flock after building it once with each combination of parameters."""
-    if len(seeds) > 1 and not flock.drawn:
+    if len(grid.seeds) > 1 and not flock.drawn:
         raise ArgumentError(
-            f"{len(seeds)} seeds, but q0 and p0 are arrays, so all runs would be the same: expected functions of a "
-            "seed, such as q0=lambda seed: 20 * numpy.random.default_rng(seed).random((30, 2)), or one seed"
+            f"{len(grid.seeds)} seeds, but q0 and p0 are arrays, so all runs would be the same: expected functions of "
+            "a seed, such as q0=lambda seed: 20 * numpy.random.default_rng(seed).random((30, 2)), or one seed"
         )
-    for job in job_grid(axes, fixed, seeds[:1]):
+    for job in grid.jobs(1):
         flock.scenario(job.seed, **dict(job.options))
-    return flock.theorems(seeds[0]) if theorems is None else _ensure_theorems(theorems) or ()
+    return flock.theorems(grid.seeds[0]) if theorems is None else _ensure_theorems(theorems) or ()
 
 
 def _keys(request: Request, grid: Sequence[Job], *, strict: bool) -> dict[Job, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -26,74 +27,73 @@ RESERVED = (
 )
 
 
-def job_grid(axes: Mapping[str, Sequence[Scalar]], fixed: Mapping[str, Scalar], seeds: Sequence[int]) -> list[Job]:
-    """Return all runs of an ensemble in dataset order: parameters as given, seeds fastest."""
-    points = (dict(zip(axes, values, strict=True)) | dict(fixed) for values in product(*axes.values()))
-    return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in seeds]
+@dataclass(frozen=True)
+class Grid:
+    """Runs of an ensemble in dataset order: parameters with several values, the same with one value, seeds fastest."""
+
+    axes: Mapping[str, Sequence[Scalar]]
+    fixed: Mapping[str, Scalar]
+    seeds: tuple[int, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each parameter, and of seeds."""
+        return (*map(len, self.axes.values()), len(self.seeds))
+
+    def jobs(self, most: int | None = None) -> list[Job]:
+        """Return all runs, or those of the first seeds."""
+        points = (
+            dict(zip(self.axes, values, strict=True)) | dict(self.fixed) for values in product(*self.axes.values())
+        )
+        return [Job(seed, tuple(sorted(point.items()))) for point in points for seed in self.seeds[:most]]
 
 
-def to_dataset(
-    request: Request,
-    axes: Mapping[str, Sequence[Scalar]],
-    fixed: Mapping[str, Scalar],
-    seeds: Sequence[int],
-    records: Sequence[Record],
-) -> xarray.Dataset:
+def to_dataset(request: Request, grid: Grid, records: Sequence[Record]) -> xarray.Dataset:
     """Return records as a dataset along parameters, seeds, claims and theorems."""
     import xarray
 
     from flockana.ensemble.shown import Runs  # loads xarray
 
-    dims, shape = (*axes, "seed"), (*(len(values) for values in axes.values()), len(seeds))
+    dims = (*grid.axes, "seed")
     claims = list(dict.fromkeys(name for record in records for name in record.claims))
     theorems = list(dict.fromkeys(name for record in records for name in record.verdicts))
 
     def over_runs(values: Sequence[Any], dtype: Any, **attributes: Any) -> xarray.Variable:
-        return xarray.Variable(dims, np.array(values, dtype=dtype).reshape(shape), attributes)
+        return xarray.Variable(dims, np.array(values, dtype=dtype).reshape(grid.shape), attributes)
 
     def by(name: str, labels: Sequence[str], rows: Sequence[Sequence[Any]], **attributes: Any) -> xarray.Variable:
         dtype = np.int8 if "flag_values" in attributes else np.float64
-        table = np.array(rows, dtype=dtype).reshape(*shape, len(labels))
+        table = np.array(rows, dtype=dtype).reshape(*grid.shape, len(labels))
         return xarray.Variable((*dims, name), table, attributes)
 
     claimed = [[record.claims.get(name, (None, None, None)) for name in claims] for record in records]
     verdicts = [[_code(STATUSES, record.verdicts.get(name)) for name in theorems] for record in records]
-    of_claims = {
-        "status": by("claim", claims, [[_code(STATUSES, s) for s, _, _ in row] for row in claimed], **_flags(STATUSES)),
-        "margin": by(
-            "claim", claims, [[_float(m) for _, m, _ in row] for row in claimed], long_name="margin of a claim"
-        ),
-        "error": by(
-            "claim", claims, [[_float(e) for _, _, e in row] for row in claimed], long_name="error of a margin"
-        ),
+    codes = [[_code(STATUSES, status) for status, _, _ in row] for row in claimed]
+    margins, errors = ([[entry[k] for entry in row] for row in claimed] for k in (1, 2))
+    variables = {
+        "status": by("claim", claims, codes, **_flags(STATUSES)),
+        "margin": by("claim", claims, margins, long_name="margin of a claim"),
+        "error": by("claim", claims, errors, long_name="error of a margin"),
         "verdict": by("theorem", theorems, verdicts, **_flags(STATUSES)),
-    }
-    of_runs = {
         "run": over_runs([_code(RUNS, record.status) for record in records], np.int8, **_flags(RUNS)),
         "message": over_runs([record.message for record in records], object, long_name="why a run did not complete"),
         "steps": over_runs([record.stats.get("steps", 0) for record in records], np.int64),
         "evaluations": over_runs([record.stats.get("evaluations", 0) for record in records], np.int64),
         "seconds": over_runs([record.seconds for record in records], np.float64, long_name="wall time", units="s"),
     }
-    measured = {
-        metric_name(name): over_runs(
-            [record.metrics.get(name, np.nan) for record in records], np.float64, **_described(name)
-        )
-        for name in request.metrics
-    }
-    coords: dict[str, Any] = {name: list(values) for name, values in axes.items()} | dict(fixed)
-    coords |= {
-        "seed": list(seeds),
-        "claim": np.array(claims, dtype=object),
-        "theorem": np.array(theorems, dtype=object),
-    }
+    for name in request.metrics:
+        values = [record.metrics.get(name, np.nan) for record in records]
+        variables[metric_name(name)] = over_runs(values, np.float64, **_described(name))
+    coords: dict[str, Any] = {name: list(values) for name, values in grid.axes.items()} | dict(grid.fixed)
+    coords["seed"] = list(grid.seeds)
+    coords |= {"claim": np.array(claims, dtype=object), "theorem": np.array(theorems, dtype=object)}
     attributes = {
         "scenario": request.scenario,
         "tolerances": json.dumps(request.to_dict()["tolerances"]),
         "mathematics": request.mathematics,
         "flockana_version": __version__,
     }
-    return Runs(of_claims | of_runs | measured, coords, attributes)
+    return Runs(variables, coords, attributes)
 
 
 def metric_name(name: str) -> str:
@@ -115,10 +115,6 @@ def _flags(names: Sequence[str]) -> dict[str, Any]:
 
 def _code(names: Sequence[str], name: str | None) -> int:
     return -1 if name is None else names.index(name)
-
-
-def _float(value: float | None) -> float:
-    return np.nan if value is None else value
 
 
 def ensure_ensemble(dataset: Any) -> None:

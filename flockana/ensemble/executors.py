@@ -52,8 +52,19 @@ def worker_pool(
     elif count == 1:
         yield WorkerPool(Serial(), lambda: 1)
     else:
-        with _pool(count) as pool:
-            yield pool
+        pools = [ProcessPool(count)]  # the last one is at work; another replaces it when a worker dies
+
+        def renew() -> Executor:
+            pools[-1].stop()
+            pools.append(ProcessPool(count))
+            return pools[-1]
+
+        try:
+            yield WorkerPool(pools[0], lambda: count, renew)
+            pools[-1].shutdown()
+        except BaseException:
+            pools[-1].stop()
+            raise
 
 
 def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
@@ -68,21 +79,3 @@ def ensure_worker_options(executor: Any, cluster: Any, jobs: Any) -> None:
         raise ArgumentError(f"jobs = {jobs}: the cluster at {cluster} has its own size; leave it out")
     if jobs is not None:
         ensure_count("jobs", jobs)
-
-
-@contextmanager
-def _pool(count: int) -> Iterator[WorkerPool]:
-    """Yield a process pool that is replaced when a worker dies."""
-    pools = [ProcessPool(count)]
-
-    def renew() -> Executor:
-        pools[-1].stop()
-        pools.append(ProcessPool(count))
-        return pools[-1]
-
-    try:
-        yield WorkerPool(pools[0], lambda: count, renew)
-        pools[-1].shutdown()
-    except BaseException:
-        pools[-1].stop()
-        raise

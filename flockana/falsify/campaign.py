@@ -130,19 +130,11 @@ def falsify(
             ended = "interrupted"
     if record.best.found and not deepen:
         ended = "found"
-    case = begin if record.point is None else space.case(record.point)
+    case, best = begin if record.point is None else space.case(record.point), record.best
+    name, values = best.claim or claim or "", {x: float(law_parameter(case.law, x)) for x in space.parameters}
+    table, restarts = record.columns(name), search.restarts
     found = Falsification(
-        theorem=item.id,
-        claim=record.best.claim or claim or "",
-        case=case,
-        parameters={name: float(law_parameter(case.law, name)) for name in space.parameters},
-        verdict=record.best.verdict,
-        **record.columns(record.best.claim or claim or ""),
-        seed=seed,
-        budget=budget,
-        restarts=search.restarts,
-        ended=ended,
-        message=record.message,
+        item.id, name, case, values, best.verdict, *table, seed, budget, restarts, ended, record.message
     )
     return sealed(found)
 
@@ -189,15 +181,13 @@ class _Record:
         if evaluation.grade < self.best.grade:
             self.best, self.point = evaluation, point
 
-    def columns(self, claim: str) -> dict[str, Any]:
-        """Return `margins` and `statuses` by claim, NaN and "failed" for failed runs."""
+    def columns(self, claim: str) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]]]:
+        """Return margins and statuses by claim, NaN and "failed" for failed runs."""
         names = list(dict.fromkeys(name for row in self.rows for name in row)) or [claim]
         absent = [("vacuous" if row else "failed", np.nan) for row in self.rows]
         table = {name: [row.get(name, none) for row, none in zip(self.rows, absent, strict=True)] for name in names}
-        return {
-            "margins": {name: np.array([margin for _, margin in column]) for name, column in table.items()},
-            "statuses": {name: tuple(status for status, _ in column) for name, column in table.items()},
-        }
+        margins = {name: np.array([margin for _, margin in column]) for name, column in table.items()}
+        return margins, {name: tuple(status for status, _ in column) for name, column in table.items()}
 
 
 def _margin(claim: Claim) -> float:

@@ -2,47 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
-from flockana.base.checks import FloatArray
 from flockana.base.units import times
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.tolerance import FINEST
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
 from flockana.theorems import Verdict
 
 THOUSANDTH = 1e-3  # of a run's tolerances
 _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, that of a fixed step too
 
 
-class Case(Protocol):
-    """Interface of a law with a start and options of `simulate`: a scenario or a counterexample."""
-
-    @property
-    def law(self) -> Law | DiscreteLaw:
-        """The law of motion."""
-
-    @property
-    def q0(self) -> FloatArray:
-        """Initial positions, shape (n, m)."""
-
-    @property
-    def p0(self) -> FloatArray:
-        """Initial velocities, shape (n, m)."""
-
-    @property
-    def t_span(self) -> tuple[float, float]:
-        """Start and end."""
-
-    @property
-    def options(self) -> Mapping[str, Any]:
-        """Keyword arguments of `simulate`."""
-
-
-def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Case) -> Verdict:
+def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Any) -> Verdict:
     """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too."""
+    # The case, a scenario or a counterexample, has a law, a start and options of `simulate`.
     # A map has no tolerance: its verdict stays as it is.
     if isinstance(case.law, DiscreteLaw) or all(claim.status != "refuted" for claim in verdict.claims):
         return verdict

@@ -26,8 +26,9 @@ from flockana.theorems import Theorem, Tolerances, Verdict, verify
 FORMAT = "flockana-counterexample"
 FORMAT_VERSION = 1
 _OPTIONS = ("method", "rtol", "atol", "dt", "max_step", "t_eval")  # of `simulate`, as a file may give them
+_TEXTS, _NUMBERS = ("theorem", "claim", "scenario"), ("margin", "error")
 _KEYS = (
-    *("format", "format_version", "flockana_version", "theorem", "claim", "scenario", "margin", "error"),
+    *("format", "format_version", "flockana_version", *_TEXTS, *_NUMBERS),
     *("law", "q0", "p0", "t_span", "options", "tolerances"),
 )
 
@@ -126,22 +127,11 @@ class Counterexample:
             If it was changed by hand, or the law holds something that has no written form, such as a user's function.
         """
         self._ensure_found()
-        data = {
-            "format": FORMAT,
-            "format_version": FORMAT_VERSION,
-            "flockana_version": self.version,
-            "theorem": self.theorem,
-            "claim": self.claim,
-            "scenario": self.scenario,
-            "margin": self.margin if math.isfinite(self.margin) else None,
-            "error": self.error if math.isfinite(self.error) else None,
-            "law": to_data(self.law),
-            "q0": self.q0.tolist(),
-            "p0": self.p0.tolist(),
-            "t_span": list(self.t_span),
-            "options": to_data_mapping(self.options),
-            "tolerances": asdict(self.tolerances),
-        }
+        data: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION, "flockana_version": self.version}
+        data |= {name: getattr(self, name) for name in _TEXTS}
+        data |= {name: x if math.isfinite(x := getattr(self, name)) else None for name in _NUMBERS}
+        data |= {name: to_data(getattr(self, name)) for name in ("law", "q0", "p0", "t_span")}
+        data |= {"options": to_data_mapping(self.options), "tolerances": asdict(self.tolerances)}
         return write_atomic(path, json.dumps(with_digest(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
     @classmethod
@@ -166,19 +156,12 @@ class Counterexample:
                 f"wrote it ({data.get('flockana_version')}), or search again"
             )
         try:
-            found = cls(
-                theorem=_text(data["theorem"]),
-                claim=_text(data["claim"]),
-                scenario=_text(data["scenario"]),
-                law=ensure_law(from_data(data["law"])),
-                **dict(zip(("q0", "p0"), ensure_state(data["q0"], data["p0"]), strict=True)),
-                t_span=ensure_time_span(data["t_span"]),
-                options=_options(data["options"]),
-                tolerances=Tolerances(**data["tolerances"]),
-                margin=_number(data["margin"]),
-                error=_number(data["error"]),
-                version=_text(data["flockana_version"]),
-            )
+            theorem, claim, scenario, version = (_text(data[name]) for name in (*_TEXTS, "flockana_version"))
+            numbers = [_number(data[name]) for name in _NUMBERS]
+            law, tolerances = ensure_law(from_data(data["law"])), Tolerances(**data["tolerances"])
+            state = ensure_state(data["q0"], data["p0"])
+            start = *state, ensure_time_span(data["t_span"]), _options(data["options"])
+            found = cls(theorem, claim, scenario, law, *start, tolerances, numbers[0], numbers[1], version)
             without_digest(data, keys=_KEYS)
         except (KeyError, TypeError, ValueError, AttributeError, RecursionError, FlockanaError) as error:
             raise FileError(f"{path} is damaged: {error}; search again with `flockana falsify`") from error

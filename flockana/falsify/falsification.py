@@ -173,20 +173,9 @@ class Falsification:
                 "no counterexample; a larger budget, another seed or a wider region may find one, if there is any"
             )
         assert self.verdict is not None
-        case = self.case
-        found = Counterexample(
-            theorem=self.theorem,
-            claim=self.claim,
-            scenario=self.scenario,
-            law=case.law,
-            q0=case.q0,
-            p0=case.p0,
-            t_span=case.t_span,
-            options=case.options,
-            tolerances=self.verdict.tolerances,
-            margin=self.margin,
-            error=self.error,
-        )
+        case, tolerances = self.case, self.verdict.tolerances
+        start = case.law, case.q0, case.p0, case.t_span, case.options
+        found = Counterexample(self.theorem, self.claim, self.scenario, *start, tolerances, self.margin, self.error)
         return sealed(found)
 
     def save(self, path: str | os.PathLike[str]) -> Path:

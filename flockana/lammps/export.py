@@ -27,13 +27,12 @@ from flockana.lammps.script import (
     SCRIPT,
     TABLE,
     Clock,
-    Translation,
     data_text,
     readme_text,
     script_text,
     translated,
 )
-from flockana.lammps.table import PairTable, inner_cutoff, pair_table
+from flockana.lammps.table import inner_cutoff, pair_table
 from flockana.laws.discrete import ensure_law
 from flockana.laws.law import Law
 from flockana.laws.terms.pairs import PairTerm
@@ -144,7 +143,10 @@ def export_lammps(
         TABLE: table.text(),
         README: readme_text(title, table, clock, result),
     }
-    return _recorded(folder, _write_files(folder, texts), table, clock, result)
+    files = _write_files(folder, texts)
+    exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
+    errors = table.force_error, table.energy_error
+    return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
@@ -221,11 +223,3 @@ def _write_files(folder: Path, texts: dict[str, str]) -> tuple[Path, ...]:
         with atomic_write(folder / name, remedy="choose another folder") as partial:
             partial.write_text(text, encoding="utf-8")
     return tuple(folder / name for name in texts)
-
-
-def _recorded(
-    folder: Path, files: tuple[Path, ...], table: PairTable, clock: Clock, result: Translation
-) -> LammpsExport:
-    exact, near, missing = (tuple(each) for each in (result.exact, result.near, result.missing))
-    errors = table.force_error, table.energy_error
-    return LammpsExport(folder, files, *errors, exact, near, missing, clock.dt, clock.steps)

@@ -110,16 +110,13 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
+        kept = ("basis", "explained", "explained_refitted", "caution")
         return {
             "law": type(self.law).__name__,
-            "basis": self.basis,
-            "explained": self.explained,
-            "explained_refitted": self.explained_refitted,
             "shares": [one._asdict() for one in self.shares],
             "findings": list(self.findings),
-            "caution": self.caution,
             "worst": [{"time": t, "agent": agent, "size": size} for t, agent, size in self.worst],
-        }
+        } | {name: getattr(self, name) for name in kept}
 
 
 def compare(rec: Recording, law: Any) -> Comparison:
@@ -151,8 +148,8 @@ def compare(rec: Recording, law: Any) -> Comparison:
     True
     """
     ensure_recording(rec)
-    own = ensure_law(law)
-    continuous = own.continuous if isinstance(own, DiscreteLaw) else own
+    given = ensure_law(law)
+    continuous = given.continuous if isinstance(given, DiscreteLaw) else given
     if continuous is None:
         raise ArgumentError(
             f"{type(law).__name__} steps no continuous law: expected a law, or a scheme such as TaylorStep"
@@ -165,17 +162,8 @@ def compare(rec: Recording, law: Any) -> Comparison:
     if scheme is None and data.basis == "steps" and found.left < 0.5 * found.total:
         scheme = scheme_by_law(rec, continuous)
     steps = () if scheme is None else (f"steps are {scheme.name} of {scheme.dt:.6g}",)
-    total = found.total or 1.0
+    own, refitted = (1.0 - left / (found.total or 1.0) for left in (found.left, found.left_refitted))
+    texts, noise = (*steps, *found.findings), float(np.nanmedian(data.error))
     return Comparison(
-        law,
-        data.basis,
-        data.t,
-        data.u,
-        found.residual,
-        1.0 - found.left / total,
-        1.0 - found.left_refitted / total,
-        found.shares,
-        (*steps, *found.findings),
-        float(np.nanmedian(data.error)),
-        tuple(rec.ids),
+        law, data.basis, data.t, data.u, found.residual, own, refitted, found.shares, texts, noise, tuple(rec.ids)
     )

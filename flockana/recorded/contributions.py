@@ -42,14 +42,11 @@ def contributions(law: Any) -> tuple[Contribution, ...]:
         return (Contribution("law", type(law).__name__, "the law as a whole", 1.0, _acts(law)),)
     parts, gained = [], replace(law, **_other_terms(law))
     for name in _used_gains(law):
-        symbol, text = SYMBOLS[name]
-        own = getattr(gains, name)
-        if isinstance(own, tuple):
-            single = replace(gained, gains=_single_gain(name, own))
-            parts.append(Contribution(name, f"{symbol} of each agent, times", text, 1.0, _acts(single)))
-        else:
-            single = replace(gained, gains=_single_gain(name, 1.0))
-            parts.append(Contribution(name, symbol, text, float(own), _acts(single)))
+        (symbol, text), own = SYMBOLS[name], getattr(gains, name)
+        each = isinstance(own, tuple)
+        acts = _acts(replace(gained, gains=_single_gain(name, own if each else 1.0)))
+        label, stated = (f"{symbol} of each agent, times", 1.0) if each else (symbol, float(own))
+        parts.append(Contribution(name, label, text, stated, acts))
     return tuple(parts)
 
 
@@ -66,17 +63,11 @@ def _other_terms(law: Any) -> dict[str, Any]:
 
 
 def _used_gains(law: Any) -> list[str]:
-    """Gains that a law uses."""
-    used = []
-    if law.pair is not None:
-        used.append("c1_alpha")
-    if law.pair is not None or getattr(law, "net", None) is not None:
-        used.append("c2_alpha")
-    if law.obstacles:
-        used += ["c1_beta", "c2_beta"]
-    if law.target is not None:
-        used += ["c1_gamma", "c2_gamma"]
-    return used
+    paired = law.pair is not None
+    used = {"c1_alpha": paired, "c2_alpha": paired or getattr(law, "net", None) is not None}
+    used |= dict.fromkeys(("c1_beta", "c2_beta"), bool(law.obstacles))
+    used |= dict.fromkeys(("c1_gamma", "c2_gamma"), law.target is not None)
+    return [name for name, is_used in used.items() if is_used]
 
 
 def _single_gain(name: str, value: Any) -> Gains:
@@ -84,11 +75,7 @@ def _single_gain(name: str, value: Any) -> Gains:
 
 
 def _acts(law: Any) -> Part:
-    def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
-        u: FloatArray = law.flow(t, q, p)[0]
-        return u
-
-    return acts
+    return lambda t, q, p: law.flow(t, q, p)[0]
 
 
 def over_samples(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> FloatArray:

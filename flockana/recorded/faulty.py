@@ -30,14 +30,12 @@ def intended_law() -> Algorithm2:
     return Algorithm2(target=StaticTarget(GOAL))
 
 
-def _sigma_norm(s: FloatArray) -> FloatArray:
-    norm: FloatArray = (np.sqrt(1.0 + EPS * s**2) - 1.0) / EPS
-    return norm
+def _sigma_norm(s: FloatArray) -> Any:
+    return (np.sqrt(1.0 + EPS * s**2) - 1.0) / EPS
 
 
-def _phi(z: FloatArray) -> FloatArray:
-    bent: FloatArray = 0.5 * ((A + B) * z / np.sqrt(1.0 + z**2) + (A - B))
-    return bent
+def _phi(z: FloatArray) -> Any:
+    return 0.5 * ((A + B) * z / np.sqrt(1.0 + z**2) + (A - B))
 
 
 def _bump(z: FloatArray) -> FloatArray:
@@ -55,41 +53,26 @@ def _pairs(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     return x, s, weight, weight * _phi(_sigma_norm(s) - d_alpha)
 
 
-def _summed(action: FloatArray, n: FloatArray, weight: FloatArray, p: FloatArray, c2: float) -> Any:
-    total: Any = C1A * (action[:, :, None] * n).sum(axis=1)
-    return total + c2 * (weight[:, :, None] * (p[None] - p[:, None])).sum(axis=1)
+def _code(*, per_axis: bool = False, consensus: float = C2A, bounded: bool = False) -> Acceleration:
+    def code(q: FloatArray, p: FloatArray) -> Any:
+        x, s, weight, action = _pairs(q)
+        n = x / np.sqrt(1.0 + EPS * (x**2 if per_axis else s[:, :, None] ** 2))
+        e = q - np.array(GOAL)
+        pull = e / np.sqrt(1.0 + e**2) if bounded else e
+        total: Any = C1A * (action[:, :, None] * n).sum(axis=1)
+        total = total + consensus * (weight[:, :, None] * (p[None] - p[:, None])).sum(axis=1)
+        return total - C1G * pull - C2G * p
+
+    return code
 
 
-def code_a(q: FloatArray, p: FloatArray) -> Any:
-    """Return the accelerations of implementation A."""
-    x, s, weight, action = _pairs(q)
-    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
-    e = q - np.array(GOAL)
-    return _summed(action, n, weight, p, C2A) - C1G * e / np.sqrt(1.0 + e**2) - C2G * p
-
-
-def code_b(q: FloatArray, p: FloatArray) -> Any:
-    """Return the accelerations of implementation B."""
-    x, s, weight, action = _pairs(q)
-    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
-    return _summed(action, n, weight, p, C1A) - C1G * (q - np.array(GOAL)) - C2G * p
-
-
-def code_c(q: FloatArray, p: FloatArray) -> Any:
-    """Return the accelerations of implementation C."""
-    x, _, weight, action = _pairs(q)
-    n = x / np.sqrt(1.0 + EPS * x**2)
-    return _summed(action, n, weight, p, C2A) - C1G * (q - np.array(GOAL)) - C2G * p
-
-
-def code_d(q: FloatArray, p: FloatArray) -> Any:
-    """Return the accelerations of implementation D."""
-    x, s, weight, action = _pairs(q)
-    n = x / np.sqrt(1.0 + EPS * s**2)[:, :, None]
-    return _summed(action, n, weight, p, C2A) - C1G * (q - np.array(GOAL)) - C2G * p
-
-
-CODES: Mapping[str, Acceleration] = {"A": code_a, "B": code_b, "C": code_c, "D": code_d}
+# D has no fault of its own: it is stepped wrongly
+CODES: Mapping[str, Acceleration] = {
+    "A": _code(bounded=True),
+    "B": _code(consensus=C1A),
+    "C": _code(per_axis=True),
+    "D": _code(),
+}
 
 
 def faulty_recording(name: str) -> Recording:
@@ -100,12 +83,12 @@ def faulty_recording(name: str) -> Recording:
     q, p = q + rng.normal(0.0, 0.6, (_AGENTS, 2)), rng.normal(0.0, 1.0, (_AGENTS, 2))
     t: Any = _STEP * np.arange(_SAMPLES, dtype=np.float64)
     if name == "D":
-        places, speeds = [q], [p]
+        steps = [(q, p)]
         for _ in t[1:]:
             q, p = q + _STEP * p, p + _STEP * code(q, p)
-            places.append(q)
-            speeds.append(p)
-        return Recording(t, np.array(places), np.array(speeds), bound=1e-9, p_bound=1e-9, source="implementation D")
+            steps.append((q, p))
+        places, speeds = np.array(steps).swapaxes(0, 1)
+        return Recording(t, places, speeds, bound=1e-9, p_bound=1e-9, source="implementation D")
     from scipy.integrate import solve_ivp
 
     def rate(_: float, y: FloatArray) -> FloatArray:

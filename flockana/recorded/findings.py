@@ -73,10 +73,8 @@ class Regression:
         """Return the gains of some parts; residuals of one agent count as dependent."""
         root = np.sqrt(self.weights)[:, :, None]
         matrix = np.stack([(root * column).ravel() for column in columns], axis=1)
-        y = root * self.target
-        norms = np.linalg.norm(matrix, axis=0)
-        used = norms > 0.0
-        gains, errors = np.zeros(len(columns)), np.zeros(len(columns))
+        y, norms = root * self.target, np.linalg.norm(matrix, axis=0)
+        used, (gains, errors) = norms > 0.0, np.zeros((2, len(columns)))
         if not used.any():
             return Solution(gains, errors, float(np.sum(y**2)), y.size)
         a = matrix[:, used] / norms[used]

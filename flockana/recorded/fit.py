@@ -116,8 +116,7 @@ def fit(rec: Recording, law: Any, *, free: Sequence[str] | None = None, window: 
     own.check_dimension(rec.m)
     own.check_agents(rec.n)
     parameters = FreeParameters.of(law, free)
-    noisy = rec.p is None or (rec.sd is not None and bool(np.max(rec.sd) > 0.0))
-    if noisy:
+    if rec.p is None or (rec.sd is not None and np.max(rec.sd) > 0.0):
         return _matched(rec, parameters, window)
     return _stepped(rec, parameters)
 
@@ -198,22 +197,15 @@ def _result(
     scale = np.where(errors > 0.0, errors, 1.0)
     errors = np.where(identifiable, errors, inf)
     correlation = covariance / np.outer(scale, scale)
-    unidentifiable = [
+    given, known = (dict(zip(names, x.tolist(), strict=True)) for x in (values, errors))
+    untold = [
         f"the data do not tell {name}: {value:.3g} ± {2.0 * error:.2g}"
         for name, value, error in zip(names, values, errors, strict=True)
         if error > _UNKNOWN * abs(value)
     ]
-    pairs = np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
-    unidentifiable += [
-        f"the data tell {names[i]} and {names[j]} only together: correlation {correlation[i, j]:.4f}" for i, j in pairs
+    untold += [
+        f"the data tell {names[i]} and {names[j]} only together: correlation {correlation[i, j]:.4f}"
+        for i, j in np.argwhere(np.triu(np.abs(correlation), 1) > _TIED)
     ]
-    return Fit(
-        parameters.with_values(values),
-        dict(zip(names, values.tolist(), strict=True)),
-        dict(zip(names, errors.tolist(), strict=True)),
-        correlation,
-        misfit,
-        freedom,
-        tuple(unidentifiable),
-        message,
-    )
+    law = parameters.with_values(values)
+    return Fit(law, given, known, correlation, misfit, freedom, tuple(untold), message)

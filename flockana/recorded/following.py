@@ -69,7 +69,10 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
     )
     known = bool(np.isfinite(place).all())
     worst: list[tuple[float, float, str, float, int]] = []
-    for samples in _strides(rec, law):
+    strides, scales = [slice(None)], law.scales
+    if scales is not None and (wide := int(scales.time / rec.interval)) > 1 and len(rec.t) > wide:
+        strides.append(slice(None, None, wide))  # dense samples are compared one law time apart too
+    for samples in strides:
         times, q, p = rec.t[samples], rec.q[samples], rec.p[samples]
         widths = [x[samples] if known else np.zeros(q.shape[:2]) for x in (place, speed)]
         off, allowed = _differences(law, times, q, p, *widths)
@@ -92,15 +95,6 @@ def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
         text = f"within {largest['q']:.3g} in q and {largest['p']:.3g} in p from sample to sample ({where})"
         status = "met" if rec.accuracy.decides else "assumed"
     return Following(status, 1.0 - excess, f"{text}, {rec.accuracy}", rec.q[0], rec.p[0], rec.p, speed)
-
-
-def _strides(rec: Recording, law: Any) -> list[Any]:
-    """Return slices of the samples: all of them, and if they are dense, samples one law time apart."""
-    strides = [slice(None)]
-    scales = law.scales
-    if scales is not None and (wide := int(scales.time / rec.interval)) > 1 and len(rec.t) > wide:
-        strides.append(slice(None, None, wide))
-    return strides
 
 
 def _differences(
@@ -138,26 +132,24 @@ def _over_windows(rec: Recording, law: Any) -> Following:
         )
     duration, smooth = usual_window(rec, law), rec.with_velocities()
     assert smooth.p is not None
-    parts = windows(rec, duration)
+    parts, largest = windows(rec, duration), (0.0, 0.0, 0)
     try:
         found = matched(parts, lambda _: law, np.empty(0))
     except FlockanaError as error:
         raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
-    squares, freedom, largest = found.squares, found.freedom, (0.0, 0.0, 0)
     for part, residual in zip(parts, found.residuals, strict=True):
         size = np.abs(residual).reshape(len(part.t), rec.n, rec.m).max(axis=2)
         k, i = np.unravel_index(int(np.argmax(size)), size.shape)
         largest = max(largest, (float(size[k, i]), float(part.t[k]), int(i)))
-    misfit = float(np.sqrt(squares / freedom))
-    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, freedom) / freedom))
+    misfit = float(np.sqrt(found.variance))
+    most = float(np.sqrt(chi2.isf((1.0 - CONFIDENCE) / 2.0, found.freedom) / found.freedom))
     band = float(norm.isf((1.0 - CONFIDENCE) / 4.0 / rec.q.size))
     size, t, agent = largest
     ratio = max(misfit / most, size / band)
     where = f"worst: {size:.3g} deviations, agent {rec.ids[agent]} at t = {t:.6g}"
     q0, p0 = found.starts[0].reshape(2, rec.n, rec.m)
-    stated = rec.sd is not None and not rec.estimated
     status: Literal["met", "unmet", "assumed"] = "assumed"
-    if stated:
+    if rec.sd is not None and not rec.estimated:
         status = "met" if ratio <= 1.0 else "unmet"
         text = f"solutions of the law over {duration:.3g} each are off by {misfit:.4g} times the stated noise ({where})"
         if ratio > 1.0:

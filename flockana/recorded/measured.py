@@ -28,56 +28,33 @@ def measured(rec: Recording, d: float, r: float) -> xarray.Dataset:
 
     if rec.p is None:
         rec = rec.with_velocities()
-    law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)
-    names = [name for name, it in measures().items() if it.over_time is not None and it.defined(law)]
-    values = {name: np.full(len(rec.t), np.nan) for name in names}
-    errors = {name: np.full(len(rec.t), np.nan) for name in names}
     assert rec.p is not None
-    moving = rec.present & ~np.isnan(rec.p[:, :, 0])
-    for seen, samples in _alike(rec.present):
-        _fill(names, values, errors, law, rec, samples, seen, velocities=False)
-    for seen, samples in _alike(moving):
-        _fill(names, values, errors, law, rec, samples, seen, velocities=True)
+    p, shape = rec.p, rec.q.shape[:2]
+    law = UnknownLaw(scaled_alpha(d, r), 1.0, rec.interval)
+    used = {name: it for name, it in measures().items() if it.over_time is not None and it.defined(law)}
+    values, errors = ({name: np.full(len(rec.t), np.nan) for name in used} for _ in range(2))
+    widths = [np.broadcast_to(np.asarray(x, dtype=np.float64), shape) for x in (rec.accuracy.place, rec.accuracy.speed)]
+    moving = rec.present & ~np.isnan(p[:, :, 0])
+    for of_velocities, seen in ((False, rec.present), (True, moving)):
+        for agents, samples in _alike(seen):
+            at = np.ix_(samples, agents)
+            flock, off = Flock(law, rec.q[at], np.nan_to_num(p[at])), [x[at].max(axis=1) for x in widths]
+            for name, it in used.items():
+                if (name in _OF_VELOCITIES) == of_velocities:
+                    values[name][samples] = series = it.over_time(flock)  # type: ignore[misc]
+                    errors[name][samples] = _error(name, flock, series, *off)
     data: dict[str, Any] = {"agents": ("time", rec.present.sum(axis=1), {"long_name": "agents seen"})}
-    for name in names:
-        it = measures()[name]
+    for name, it in used.items():
         data[name] = ("time", values[name], {"long_name": it.text, "units": it.unit})
         data[f"{name}_error"] = ("time", errors[name], {"long_name": f"error of: {it.text}", "units": it.unit})
     return xarray.Dataset(data, coords={"time": rec.t}, attrs={"accuracy": str(rec.accuracy), "d": d, "r": r})
 
 
 def _alike(seen: npt.NDArray[np.bool_]) -> list[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]]:
-    """Yield sets of agents, each with the samples at which exactly these were seen; never the empty set."""
+    """Return sets of agents, each with the samples at which exactly these were seen; never the empty set."""
     sets, which = np.unique(seen, axis=0, return_inverse=True)
     found = [(np.flatnonzero(one), np.flatnonzero(which.ravel() == k)) for k, one in enumerate(sets)]
     return [(agents, samples) for agents, samples in found if agents.size]
-
-
-def _fill(
-    names: list[str],
-    values: dict[str, FloatArray],
-    errors: dict[str, FloatArray],
-    law: UnknownLaw,
-    rec: Recording,
-    samples: npt.NDArray[np.intp],
-    agents: npt.NDArray[np.intp],
-    *,
-    velocities: bool,
-) -> None:
-    """Write measures of some agents at some samples, with errors."""
-    at = np.ix_(samples, agents)
-    assert rec.p is not None
-    q, p = rec.q[at], np.nan_to_num(rec.p[at])
-    off_q, off_p = (
-        np.broadcast_to(np.asarray(each, dtype=np.float64), rec.q.shape[:2])[at].max(axis=1)
-        for each in (rec.accuracy.place, rec.accuracy.speed)
-    )
-    flock = Flock(law, q, p)
-    for name in names:
-        if (name in _OF_VELOCITIES) == velocities:
-            series = measures()[name].over_time(flock)  # type: ignore[misc]
-            values[name][samples] = series
-            errors[name][samples] = _error(name, flock, series, off_q, off_p)
 
 
 def _error(name: str, flock: Flock, values: FloatArray, off_q: FloatArray, off_p: FloatArray) -> FloatArray:

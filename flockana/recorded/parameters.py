@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -43,9 +44,7 @@ class FreeParameters:
         """Values in the law."""
         found = []
         for name, path in zip(self.names, self.paths, strict=True):
-            value = self.law
-            for part in path:
-                value = getattr(value, part)
+            value = reduce(getattr, path, self.law)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
                 raise ArgumentError(f"{name} = {format_value(value)}: expected a parameter that is one number")
             found.append(float(value))
@@ -60,9 +59,8 @@ class FreeParameters:
 
 
 def _replaced(item: Any, path: tuple[str, ...], value: float) -> Any:
-    if len(path) > 1:
-        return replace(item, **{path[0]: _replaced(getattr(item, path[0]), path[1:], value)})
-    return replace(item, **{path[0]: value})
+    first, *rest = path
+    return replace(item, **{first: _replaced(getattr(item, first), tuple(rest), value) if rest else value})
 
 
 def _path(law: Any, name: str) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray, ensure_flag, ensure_positive
+from flockana.base.checks import FloatArray, ensure_flag, ensure_positive, normalise
 from flockana.base.errors import ArgumentError, FileError, format_value
 from flockana.base.files import atomic_write, ensure_path
 from flockana.base.memory import ResultCache
@@ -19,20 +19,17 @@ from flockana.base.units import times
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.recorded.accuracy import Accuracy, band, ensure_error
+from flockana.recorded.accuracy import Accuracy, Kind, band, ensure_error
 from flockana.recorded.unknown import UnknownLaw
+from flockana.recorded.velocities import filled, with_velocities
 
 if TYPE_CHECKING:
     import xarray
 
 _FARTHEST = 1e50  # size of a number whose fifth power, as smoothing takes it, is finite
 _ERRORS = ("bound", "sd", "p_bound", "p_sd")
-_UNITS = {"t": (0, 1), "q": (1, 0), "p": (1, -1), "u": (1, -2)} | {
-    "bound": (1, 0),
-    "sd": (1, 0),
-    "p_bound": (1, -1),
-    "p_sd": (1, -1),
-}
+_UNITS = dict.fromkeys(("q", "bound", "sd"), (1, 0)) | dict.fromkeys(("p", "p_bound", "p_sd"), (1, -1))
+_UNITS |= {"t": (0, 1), "u": (1, -2)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,13 +99,13 @@ class Recording(ResultCache):
             k = int(np.argmax(~(np.diff(t) > 0.0)))
             raise ArgumentError(f"t[{k}] = {t[k]:g} and t[{k + 1}] = {t[k + 1]:g}: expected rising times; sort them")
         object.__setattr__(self, "t", _frozen(t))
-        object.__setattr__(self, "q", _frozen(_whole_vectors(q)))
+        object.__setattr__(self, "q", _frozen(q))
         for name in ("p", "u"):
             if (value := getattr(self, name)) is not None:
                 array = _with_gaps(name, value)
                 if array.shape != q.shape:
                     raise ArgumentError(f"{name} has shape {array.shape}: expected {q.shape}, as q has")
-                object.__setattr__(self, name, _frozen(_whole_vectors(array)))
+                object.__setattr__(self, name, _frozen(array))
         unseen = np.flatnonzero(~self.present.any(axis=0))
         if unseen.size:
             raise ArgumentError(f"q[:, {unseen[0]}] is NaN throughout: expected agents that are seen; leave it out")
@@ -119,15 +116,15 @@ class Recording(ResultCache):
 
     def _check_accuracy(self) -> None:
         ensure_flag("estimated", self.estimated)
+        given = {name for name in _ERRORS if getattr(self, name) is not None}
         for one, other in (("bound", "sd"), ("p_bound", "p_sd")):
-            if getattr(self, one) is not None and getattr(self, other) is not None:
+            if {one, other} <= given:
                 raise ArgumentError(f"{one} and {other} are both given: expected one of them")
-        for name in _ERRORS:
-            object.__setattr__(self, name, ensure_error(name, getattr(self, name), self.q.shape[:2]))
-        if self.p_bound is not None and self.sd is not None:
-            raise ArgumentError("sd and p_bound are given: expected p_sd, as a recording has one kind of accuracy")
-        if self.p_sd is not None and self.bound is not None:
-            raise ArgumentError("bound and p_sd are given: expected p_bound, as a recording has one kind of accuracy")
+        normalise(self, lambda name, value: ensure_error(name, value, self.q.shape[:2]), *_ERRORS)
+        for one, other, wanted in (("sd", "p_bound", "p_sd"), ("bound", "p_sd", "p_bound")):
+            if {one, other} <= given:
+                kind = "as a recording has one kind of accuracy"
+                raise ArgumentError(f"{one} and {other} are given: expected {wanted}, {kind}")
 
     def __repr__(self) -> str:
         gaps = f", {self.gaps} gaps" if self.gaps else ""
@@ -164,16 +161,12 @@ class Recording(ResultCache):
         """Half widths of positions and velocities, and how they are known."""
         if self.bound is None and self.sd is None:
             return Accuracy(np.inf, np.inf, "unknown")
-        speed: Any
-        if self.bound is not None:
-            place, speed = self.bound, self.p_bound
-            kind = "estimated" if self.estimated else "bound"
-        else:
+        kind: Kind = "estimated" if self.estimated else "sd" if self.bound is None else "bound"
+        place, speed = self.bound, self.p_bound
+        if self.bound is None:
             width = band(2 * self.q.shape[0] * self.n, self.m)
-            place = width * self.sd
-            speed = None if self.p_sd is None else width * self.p_sd
-            kind = "estimated" if self.estimated else "sd"
-        return Accuracy(place, place / self.interval if speed is None else speed, kind)  # type: ignore[arg-type]
+            place, speed = times(self.sd, width), times(self.p_sd, width)
+        return Accuracy(place, place / self.interval if speed is None else speed, kind)
 
     def window(self, start: float, end: float) -> Recording:
         """Return the samples between two times.
@@ -240,14 +233,10 @@ class Recording(ResultCache):
         longest : float, optional
             Longest gap that is filled, in time; by default what the data carry.
         """
-        from flockana.recorded.velocities import filled
-
         return filled(self, longest)
 
     def with_velocities(self) -> Recording:
         """Return the recording with velocities and accelerations from its positions, by smoothing splines."""
-        from flockana.recorded.velocities import with_velocities
-
         return with_velocities(self)
 
     def metrics(self, *, d: float, r: float) -> xarray.Dataset:
@@ -357,13 +346,10 @@ def _with_gaps(name: str, values: Any) -> FloatArray:
     return array
 
 
-def _whole_vectors(x: FloatArray) -> FloatArray:
-    """Return the vectors, all components NaN where one is missing."""
-    x[np.isnan(x).any(axis=2)] = np.nan
-    return x
-
-
 def _frozen(array: FloatArray) -> FloatArray:
+    """Return an array that nobody can write to; vectors are NaN as a whole where a component is."""
     array = np.ascontiguousarray(array)
+    if array.ndim == 3:
+        array[np.isnan(array).any(axis=2)] = np.nan
     array.setflags(write=False)
     return array

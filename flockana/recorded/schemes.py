@@ -17,11 +17,10 @@ _BETTER = 0.02  # of the error of the law's flow, which a scheme's must be below
 
 
 class Found(NamedTuple):
-    """Scheme found: its name, its step, and whether positions and velocities alone determine it."""
+    """Scheme found: its name and its step."""
 
     name: str
     dt: float
-    by_kinematics: bool
 
 
 def _even(rec: Recording) -> bool:
@@ -39,16 +38,12 @@ def kinematic_scheme(rec: Recording) -> Found | None:
         return None
     h, p = rec.interval, rec.p
     moved = np.diff(rec.q, axis=0)
-    forms = {
-        "explicit Euler": p[:-1],
-        "semi-implicit Euler": p[1:],
-        "Taylor steps": 0.5 * (p[:-1] + p[1:]),
-    }
+    forms = {"explicit Euler": p[:-1], "semi-implicit Euler": p[1:], "Taylor steps": 0.5 * (p[:-1] + p[1:])}
     size = float(np.abs(rec.q).max()) * 1e-14 + _EXACT * float(np.abs(moved).max())
     turned = float(np.abs(np.diff(p, axis=0)).max()) * h
     for name, mean in forms.items():
         if turned > 100.0 * size and float(np.abs(moved - h * mean).max()) <= size:
-            return Found(name, h, True)
+            return Found(name, h)
     return None
 
 
@@ -65,4 +60,4 @@ def scheme_by_law(rec: Recording, law: Any) -> Found | None:
     exact = off(predicted(law, t, q, p))
     steps = [rk4(law, float(t[k]), h, q[k], p[k]) for k in range(len(t) - 1)]
     by_rk4 = off((np.array([a for a, _ in steps]), np.array([b for _, b in steps])))
-    return Found("Runge-Kutta steps (RK4)", h, False) if by_rk4 < _BETTER * exact else None
+    return Found("Runge-Kutta steps (RK4)", h) if by_rk4 < _BETTER * exact else None

@@ -7,7 +7,7 @@ by at most x standard errors; the steps are chosen by it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -35,6 +35,9 @@ _LEAST = 1e-6  # of its first value, below which no positive parameter goes
 _FELT = 1e-6  # least change of the squared residuals by doubling a parameter that makes it identifiable
 _DAMPED = 1e8  # damping beyond which nothing is left to try
 _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; else they are computed anew
+
+
+_Neighbour = tuple[Any, Any, float]  # laws with a parameter increased and decreased, and by how much
 
 
 class MatchResult(NamedTuple):
@@ -82,7 +85,7 @@ class Window:
         off = np.nan_to_num(self.q - self.solution(law, start, finer)[0])
         return (self.root * off.reshape(self.root.shape)).ravel()
 
-    def slopes(self, law: Any, nearby: Sequence[_Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
+    def slopes(self, law: Any, nearby: list[_Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
         """Return the slopes of the law's solution over deviations in start and parameters, (K n m, 2 n m + P)."""
         q, p = self.solution(law, start, finer)
         size, (count, width) = start.size // 2, self.root.shape
@@ -95,51 +98,37 @@ class Window:
             b = min(a + step, count - 1)
             t, middle = 0.5 * float(self.t[a] + self.t[b]), (a + b) // 2
             state = [0.5 * (x[middle] + x[a + b - middle]) for x in (q, p)]
-            rate = _Linearised.at(law, nearby, t, *state)
+            propagate = _propagator(law, nearby, t, *state)
             for k in range(a, b):
-                now = rate.propagate(now, float(self.t[k + 1] - self.t[k]))
+                now = propagate(now, float(self.t[k + 1] - self.t[k]))
                 found[k + 1] = now[:size]
         found *= self.root[:, :, None]
         return found.reshape(count * width, -1)
 
 
-class _Neighbour(NamedTuple):
-    """Laws with a parameter increased and decreased, and the difference between the two values."""
+def _propagator(
+    law: Any, nearby: list[_Neighbour], t: float, q: FloatArray, p: FloatArray
+) -> Callable[[FloatArray, float], FloatArray]:
+    """Return the function that carries slopes over a step, to its third order, by the law's linearisation."""
+    size = q.size
+    by_q, by_p = _derivatives(law, t, q, p)
+    forced = np.zeros((size, 2 * size + len(nearby)))
+    for k, (more, less, by) in enumerate(nearby):
+        forced[:, 2 * size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
 
-    more: Any
-    less: Any
-    by: float
+    def rate(x: FloatArray) -> FloatArray:
+        return np.concatenate([x[size:], by_q @ x[:size] + by_p @ x[size:]])
 
-
-@dataclass(frozen=True, eq=False)
-class _Linearised:
-    """A law's linearisation: ∂u/∂q, ∂u/∂p, and ∂u by parameters."""
-
-    by_q: FloatArray
-    by_p: FloatArray
-    forced: FloatArray
-
-    @classmethod
-    def at(cls, law: Any, nearby: Sequence[_Neighbour], t: float, q: FloatArray, p: FloatArray) -> _Linearised:
-        forced = np.zeros((q.size, 2 * q.size + len(nearby)))
-        for k, (more, less, by) in enumerate(nearby):
-            forced[:, 2 * q.size + k] = (more.flow(t, q, p)[0] - less.flow(t, q, p)[0]).ravel() / by
-        return cls(*_derivatives(law, t, q, p), forced)
-
-    def propagate(self, slope: FloatArray, h: float) -> FloatArray:
-        """Return slopes after a step, to its third order."""
-        size = len(self.by_q)
-
-        def rate(x: FloatArray) -> FloatArray:
-            return np.concatenate([x[size:], self.by_q @ x[:size] + self.by_p @ x[size:]])
-
+    def propagate(slope: FloatArray, h: float) -> FloatArray:
         term = h * rate(slope)
-        term[size:] += h * self.forced
+        term[size:] += h * forced
         total = slope + term
         for order in (2.0, 3.0):
             term = h / order * rate(term)
             total += term
         return total
+
+    return propagate
 
 
 def _within(t: FloatArray, time: float) -> int:
@@ -202,16 +191,16 @@ class _NormalEquations:
 
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
         """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
+        count, starts, gained = len(self.reduced), [], 0.0
         downhill = [each.T @ off for each, off in zip(self.slopes, residuals, strict=True)]
-        sizes = [len(corner) for corner in self.corners]
-        slope, gained = np.zeros(len(self.reduced)), 0.0
-        for down, size, corner, across in zip(downhill, sizes, self.corners, self.across, strict=True):
-            slope += down[size:] - across.T @ (corner @ down[:size])
-        moved = self.covariance @ slope
-        starts = []
-        for down, size, corner, across in zip(downhill, sizes, self.corners, self.across, strict=True):
-            starts.append(corner @ (down[:size] - across @ moved))
-            gained += float(down[:size] @ starts[-1]) + float(down[size:] @ moved)
+        parts = [(x[: x.size - count], x[x.size - count :]) for x in downhill]
+        blocks = list(zip(parts, self.corners, self.across, strict=True))
+        moved = self.covariance @ sum(
+            (own - across.T @ (corner @ start) for (start, own), corner, across in blocks), np.zeros(count)
+        )
+        for (start, own), corner, across in blocks:
+            starts.append(corner @ (start - across @ moved))
+            gained += float(start @ starts[-1]) + float(own @ moved)
         return moved, starts, gained
 
 
@@ -337,5 +326,5 @@ def _neighbouring_laws(with_values: Callable[[FloatArray], Any], values: FloatAr
         more, less = values.copy(), values.copy()
         by = _NUDGE * (abs(value) or 1.0)
         more[k], less[k] = value + by, value - by if value != 0.0 else 0.0
-        found.append(_Neighbour(with_values(more), with_values(less), float(more[k] - less[k])))
+        found.append((with_values(more), with_values(less), float(more[k] - less[k])))
     return found

@@ -21,6 +21,8 @@ _JERKS = 12  # intensities that are tried, each a factor of e from the next
 _WINDOW = 6  # samples to each side over which a likelihood is local
 _DROP = 2.0  # of a log-likelihood that is not rejected: the largest jerk that the samples allow counts
 
+_Filtered = tuple[FloatArray, FloatArray, FloatArray]  # means and deviations (T, K, 3), log-likelihoods (T, K)
+
 
 class Smoothed(NamedTuple):
     """Means (T, K, 3) of position, velocity and acceleration, their standard deviations, and the noise."""
@@ -28,14 +30,6 @@ class Smoothed(NamedTuple):
     mean: FloatArray
     sd: FloatArray
     noise: float
-
-
-class _Filtered(NamedTuple):
-    """Means, standard deviations and log-likelihoods (T, K) of a Kalman filter, or of a smoother."""
-
-    mean: FloatArray
-    sd: FloatArray
-    likelihood: FloatArray
 
 
 def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: int = 1) -> Smoothed:
@@ -46,11 +40,11 @@ def smoothed(t: FloatArray, y: FloatArray, noise: FloatArray | None, *, groups: 
     x, clock = (y - middle) / spread, (t - t[0]) / unit
     sd = _likeliest_noise(clock, x) if noise is None else noise / spread
     sd = np.maximum(np.broadcast_to(sd, x.shape), _FINEST)
-    fit = _filtered(clock, x, sd, _local_jerk(clock, x, sd, groups), backwards=True)
+    mean, deviations, _ = _filtered(clock, x, sd, _local_jerk(clock, x, sd, groups), backwards=True)
     factors = spread * unit ** -np.arange(3.0)
-    mean = fit.mean * factors
+    mean = mean * factors
     mean[:, :, 0] += middle
-    return Smoothed(mean, fit.sd * factors, float(sd.max()) * spread)
+    return Smoothed(mean, deviations * factors, float(sd.max()) * spread)
 
 
 def _steepest(x: FloatArray) -> float:
@@ -67,7 +61,7 @@ def _local_jerk(t: FloatArray, x: FloatArray, sd: FloatArray, groups: int) -> Fl
     weights = np.minimum(np.arange(1.0, 2 * _WINDOW + 2), np.arange(2 * _WINDOW + 1.0, 0.0, -1.0)) / (_WINDOW + 1.0)
     local = np.empty((_JERKS, count, series // groups))
     for g, jerk in enumerate(tried):
-        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), backwards=False).likelihood
+        own = _filtered(t, x, sd, np.full((count, series), np.exp(jerk)), backwards=False)[2]
         own = own.reshape(count, -1, groups).sum(axis=2)
         local[g] = np.apply_along_axis(np.convolve, 0, own, weights, "full")[_WINDOW : _WINDOW + count]
     largest = tried[np.argmax(local >= local.max(axis=0) - _DROP, axis=0)]
@@ -80,7 +74,7 @@ def _likeliest_noise(t: FloatArray, x: FloatArray) -> FloatArray:
 
     def cost(z: FloatArray) -> float:
         sd = np.full(x.shape, max(float(np.exp(z[1])), _FINEST))
-        return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), backwards=False).likelihood.sum())
+        return -float(_filtered(t, x, sd, np.full(x.shape, np.exp(z[0])), backwards=False)[2].sum())
 
     start = np.array([_steepest(x) - 4.0, _steepest(x) - 3.0])
     best = minimize(cost, start, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.02, "maxfev": 120})
@@ -88,7 +82,7 @@ def _likeliest_noise(t: FloatArray, x: FloatArray) -> FloatArray:
 
 
 def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *, backwards: bool) -> _Filtered:
-    """Means and deviations of the state by a Kalman filter, given all samples if it goes backwards too."""
+    """Means, deviations, likelihoods of a Kalman filter; of a state given all samples if it goes backwards too."""
     count, series = y.shape
     seen: npt.NDArray[np.bool_] = ~np.isnan(y)
     alike = all(bool((one == one[:, :1]).all()) for one in (seen, sd, jerk))  # then all have the same covariances
@@ -119,7 +113,7 @@ def _filtered(t: FloatArray, y: FloatArray, sd: FloatArray, jerk: FloatArray, *,
         means[k] += np.einsum("kij,kj->ki", np.broadcast_to(way, (series, 3, 3)), means[k + 1] - before[k + 1])
         covs[k] += way @ (covs[k + 1] - cov_before[k + 1]) @ way.swapaxes(1, 2)
     deviations = np.sqrt(np.maximum(np.diagonal(covs, axis1=2, axis2=3), 0.0))
-    return _Filtered(means, np.broadcast_to(deviations, means.shape).copy(), likelihood)
+    return means, np.broadcast_to(deviations, means.shape).copy(), likelihood
 
 
 def _initial_variance(y: FloatArray, sd: FloatArray) -> FloatArray:

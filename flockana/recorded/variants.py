@@ -49,23 +49,15 @@ def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
     def counted(x: FloatArray, s: FloatArray, v: FloatArray) -> FloatArray:
         return v * (s < alpha.r)[:, None]
 
-    return [
-        Variant(
-            "c1_alpha",
-            "the pair force's direction n_ij is taken coordinate by coordinate, x_k/√(1 + ε x_k²), "
-            "not of the vector, x/√(1 + ε‖x‖²)",
-            _pair_sum(alpha.r, per_axis),
-        ),
-        Variant(
-            "c1_alpha",
-            "φ_α is given the distance, not its σ-norm",
-            _pair_sum(max(alpha.r, alpha.r_alpha), euclidean),
-        ),
-        Variant("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", _pair_sum(alpha.r, unit)),
-        Variant(
-            "c2_alpha", "all neighbours within r count alike in the consensus, not by a_ij", _pair_sum(alpha.r, counted)
-        ),
+    direction = "the pair force's direction n_ij is taken coordinate by coordinate, x_k/√(1 + ε x_k²)"
+    farthest = max(alpha.r, alpha.r_alpha)
+    forms = [
+        ("c1_alpha", f"{direction}, not of the vector, x/√(1 + ε‖x‖²)", alpha.r, per_axis),
+        ("c1_alpha", "φ_α is given the distance, not its σ-norm", farthest, euclidean),
+        ("c1_alpha", "n_ij is the unit vector x/‖x‖, not x/√(1 + ε‖x‖²)", alpha.r, unit),
+        ("c2_alpha", "all neighbours within r count alike in the consensus, not by a_ij", alpha.r, counted),
     ]
+    return [Variant(gain, text, _pair_sum(r, force)) for gain, text, r, force in forms]
 
 
 def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]) -> Part:
@@ -94,22 +86,11 @@ def _of_pull(law: Any) -> list[Variant]:
 
         return acts
 
-    return [
-        Variant(
-            "c1_gamma",
-            "the pull to the γ-agent is proportional to each coordinate's σ₁, not to the vector"
-            + ("'s" if _is_bounded(law) else ""),
-            pull(lambda x: np.sqrt(1.0 + x**2)),
-        ),
-        Variant(
-            "c1_gamma",
-            "the pull to the γ-agent is linear, not bounded by σ₁"
-            if _is_bounded(law)
-            else "the pull to the γ-agent is bounded by σ₁ of the vector, not linear",
-            pull(np.ones_like if _is_bounded(law) else lambda x: np.sqrt(1.0 + np.sum(x**2, axis=1))[:, None]),
-        ),
-    ]
-
-
-def _is_bounded(law: Any) -> bool:
-    return any(getattr(term, "target", None) is law.target and getattr(term, "unit", None) for term in law.terms)
+    bounded = any(getattr(term, "target", None) is law.target and getattr(term, "unit", None) for term in law.terms)
+    text, whole = "the pull to the γ-agent is", "'s" if bounded else ""
+    per_axis = f"{text} proportional to each coordinate's σ₁, not to the vector{whole}"
+    other = Variant("c1_gamma", f"{text} linear, not bounded by σ₁", pull(np.ones_like))
+    if not bounded:
+        bend = pull(lambda x: np.sqrt(1.0 + np.sum(x**2, axis=1))[:, None])
+        other = Variant("c1_gamma", f"{text} bounded by σ₁ of the vector, not linear", bend)
+    return [Variant("c1_gamma", per_axis, pull(lambda x: np.sqrt(1.0 + x**2))), other]

@@ -70,12 +70,15 @@ def _motions(rec: Recording) -> Motions:
 def with_velocities(rec: Recording) -> Recording:
     """See `Recording.with_velocities`: what rests on splines holds in a 0.99 band, so a bound turns into `sd`."""
     fit, seen = motions(rec), rec.present
-    p = np.where(seen[:, :, None], fit.p, np.nan)
-    u = np.where(seen[:, :, None], fit.u, np.nan)
+    p, u = (np.where(seen[:, :, None], x, np.nan) for x in (fit.p, fit.u))
     p_sd = np.where(seen, fit.p_sd, 0.0)
+    return replace(rec, p=p, u=u, p_sd=p_sd, p_bound=None, **_in_band(rec, fit))
+
+
+def _in_band(rec: Recording, fit: Motions) -> dict[str, Any]:
+    """Return the accuracy of a recording as a standard deviation: a bound counts as one, else the noise."""
     sd = rec.sd if rec.sd is not None else fit.noise if rec.bound is None else rec.bound
-    unknown = rec.bound is None and rec.sd is None
-    return replace(rec, p=p, u=u, sd=sd, bound=None, p_sd=p_sd, p_bound=None, estimated=rec.estimated or unknown)
+    return {"sd": sd, "bound": None, "estimated": rec.estimated or (rec.bound is None and rec.sd is None)}
 
 
 def filled(rec: Recording, longest: float | None) -> Recording:
@@ -86,22 +89,15 @@ def filled(rec: Recording, longest: float | None) -> Recording:
     fill = ~rec.present & fit.carried
     if longest is not None:
         fill &= _gap_lengths(rec) <= ensure_positive("longest", longest)
-    q = np.where(fill[:, :, None], fit.q, rec.q)
-    shape = rec.present.shape
-    sd = rec.sd if rec.sd is not None else fit.noise if rec.bound is None else rec.bound
-    sd = np.where(fill, np.nan_to_num(fit.q_sd), np.broadcast_to(np.asarray(sd, dtype=np.float64), shape))
-    unknown = rec.bound is None and rec.sd is None
-    change: dict[str, Any] = {"q": q, "sd": sd, "bound": None, "estimated": rec.estimated or unknown}
+    change = _in_band(rec, fit)
+    change["sd"] = sd = np.where(fill, np.nan_to_num(fit.q_sd), change["sd"])
     if rec.p is not None:
         own = rec.p_sd if rec.p_sd is not None else rec.p_bound
-        base = sd / rec.interval if own is None else np.broadcast_to(np.asarray(own, dtype=np.float64), shape)
-        change |= {
-            "p": np.where(fill[:, :, None], fit.p, rec.p),
-            "p_sd": np.where(fill, np.nan_to_num(fit.p_sd), base),
-            "p_bound": None,
-        }
-    if rec.u is not None:
-        change["u"] = np.where(fill[:, :, None], fit.u, rec.u)
+        change["p_sd"] = np.where(fill, np.nan_to_num(fit.p_sd), sd / rec.interval if own is None else own)
+        change["p_bound"] = None
+    for name in ("q", "p", "u"):
+        if (known := getattr(rec, name)) is not None:
+            change[name] = np.where(fill[:, :, None], getattr(fit, name), known)
     return replace(rec, **change)
 
 

@@ -21,19 +21,14 @@ def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) ->
         generator = np.random.default_rng(seed)
         q, p = generator.uniform(-0.4, 0.4, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))
         p -= p.mean(axis=0)
-        return Scenario(
-            name,
-            f"Twelve agents that match velocities alone, β = {beta:g}",
+        p = p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5)
+        title = f"Twelve agents that match velocities alone, β = {beta:g}"
+        source = (
             f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
-            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}².",
-            CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True),
-            q,
-            p * (speed / np.sqrt(np.sum(p * p))) + (1.0, 0.5),
-            (0.0, 4.0),
-            seed,
-            expected,
-            references=_REFERENCES,
+            f"uniform in a square of side 0.8, velocities uniform, then scaled to Σ‖p_i − p_c‖² = {speed:g}²."
         )
+        law = CuckerSmale(RationalWeight(strength=2.0, decay=beta), mean=True)
+        return Scenario(name, title, source, law, q, p, (0.0, 4.0), seed, expected, references=_REFERENCES)
 
     return build
 
@@ -42,40 +37,26 @@ def _pair(name: str, speed: float, expected: dict[str, Status]) -> Callable[[int
     """Return two agents on a line, 1 apart; π/4 is the critical relative speed."""
 
     def build(seed: int = 0) -> Scenario:
-        return Scenario(
-            name,
-            f"Two agents that separate at {speed:g}; the critical speed is π/4",
+        title = f"Two agents that separate at {speed:g}; the critical speed is π/4"
+        source = (
             "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "
-            f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed.",
-            CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True),
-            np.array([[0.0], [1.0]]),
-            np.array([[0.0], [speed]]),
-            (0.0, 20.0),
-            seed,
-            expected,
-            references=_REFERENCES,
+            f"K = ℓ = β = 1, relative speed {speed:g}. ∫ds/(1 + s²) from 1 on is π/4. The start is fixed."
         )
+        law = CuckerSmale(RationalWeight(strength=1.0, decay=1.0), mean=True)
+        q, p = np.array([[0.0], [1.0]]), np.array([[0.0], [speed]])
+        return Scenario(name, title, source, law, q, p, (0.0, 20.0), seed, expected, references=_REFERENCES)
 
     return build
 
 
 _ALL = verified("ha-liu", "ha-liu-sharp")
+_BELOW = vacuous("ha-liu") | verified("ha-liu-sharp", "cucker-smale-pair", "cucker-smale-pair:bounded")
+_BELOW |= vacuous("cucker-smale-pair:parts")
+_ABOVE = vacuous("ha-liu", "ha-liu-sharp", "cucker-smale-pair:bounded")
+_ABOVE |= verified("cucker-smale-pair", "cucker-smale-pair:parts")
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "cucker-smale": _flock("cucker-smale", 0.25, 8.0, verified("cucker-smale") | _ALL),
     "cucker-smale-steep": _flock("cucker-smale-steep", 1.0, 0.1, vacuous("cucker-smale") | _ALL),
-    "cucker-smale-critical-below": _pair(
-        "cucker-smale-critical-below",
-        0.76,
-        vacuous("ha-liu")
-        | verified("ha-liu-sharp", "cucker-smale-pair", "cucker-smale-pair:bounded")
-        | vacuous("cucker-smale-pair:parts"),
-    ),
-    "cucker-smale-critical-above": _pair(
-        "cucker-smale-critical-above",
-        0.81,
-        vacuous("ha-liu", "ha-liu-sharp")
-        | verified("cucker-smale-pair")
-        | vacuous("cucker-smale-pair:bounded")
-        | verified("cucker-smale-pair:parts"),
-    ),
+    "cucker-smale-critical-below": _pair("cucker-smale-critical-below", 0.76, _BELOW),
+    "cucker-smale-critical-above": _pair("cucker-smale-critical-above", 0.81, _ABOVE),
 }

@@ -8,6 +8,7 @@ a flock passes one that the conventional method, which wraps obstacles in discs,
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,7 @@ from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import diameters
 from flockana.measures.nets import components, links
 from flockana.scenarios.expected import refuted, verified
-from flockana.scenarios.findings import component_counts, finding, in_source_units
+from flockana.scenarios.findings import component_counts, finding, in_source_units, report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.scenarios.start import lazy_state
 from flockana.theorems import Claim, Tolerances
@@ -49,40 +50,46 @@ def _late(run: Trajectory, values: FloatArray, since: float) -> FloatArray:
     return kept if kept.size else np.array([np.nan])
 
 
-def _distances(run: Trajectory, tolerances: Tolerances) -> Claim:
+@report("distances", "the agents stay more than 1.5 m apart throughout")
+def distances(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that no two agents come nearer than 1.5 m."""
     least = run.metric("min_distance")
     k = int(np.argmin(least))
     text = f"the least distance is {least[0]:.3g} at the start and {least[k]:.3g} at worst, at t = {run.t[k]:.3g}"
-    return finding(
-        "distances", least[k] - SAFE, text, computed=float(least[k]), stated="> 1.5", witness=float(run.t[k])
-    )
+    return finding(least[k] - SAFE, text, computed=float(least[k]), stated="> 1.5", witness=float(run.t[k]))
 
 
+@report("coordination", "perfect order of the directions within 2 s, and kept")
 def _coordination(run: Trajectory, tolerances: Tolerances) -> Claim:
     c = _late(run, run.metric("coordination"), 2.0)
     text = f"from t = 2 on C is {c.min():.4f} or more, and {c[-1]:.4f} at the end"
-    return finding("coordination", c.min() - IN_ORDER, text, computed=float(c.min()), stated="1, that is >= 0.99")
+    return finding(c.min() - IN_ORDER, text, computed=float(c.min()), stated="1, that is >= 0.99")
 
 
+@report("radius", "the cohesive radius is stable from about 5 s on")
 def _radius(run: Trajectory, tolerances: Tolerances) -> Claim:
     r = _late(run, run.metric("cohesion_radius"), 5.0)
     ratio = float(r.max() / r.min())
     text = f"from t = 5 on the cohesive radius lies between {r.min():.3g} and {r.max():.3g}"
     stated = f"stable (by a factor of {tolerances.cohesion:g})"
-    return finding("radius", tolerances.cohesion - ratio, text, computed=ratio, stated=stated)
+    return finding(tolerances.cohesion - ratio, text, computed=ratio, stated=stated)
 
 
-def _speed(run: Trajectory, tolerances: Tolerances) -> Claim:
+@report("speed", "the mean speed is close to the desired 3 m/s")
+def keeps_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that the mean speed is the desired one."""
     mean = float(_late(run, lengths(run.p).mean(axis=1), 5.0).mean())
     text = f"the mean speed from t = 5 on is {mean:.3f}"
-    return finding("speed", _NEAR * SPEED - abs(mean - SPEED), text, computed=mean, stated="about 3")
+    return finding(_NEAR * SPEED - abs(mean - SPEED), text, computed=mean, stated="about 3")
 
 
-def _bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
+@report("bounds", "speeds and inputs keep within their bounds")
+def bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that speeds and inputs keep their bounds."""
     speed, force = (float(lengths(x).max()) for x in (run.p, run.u))
     margin = min(1.0 + _KEPT - x / bound for x, bound in ((speed, run.law.v_max), (force, run.law.u_max)))
     text = f"the largest speed is {speed:.4g} of {run.law.v_max:g}, the largest input {force:.4g} of {run.law.u_max:g}"
-    return finding("bounds", margin, text, computed=(speed, force), stated=(run.law.v_max, run.law.u_max))
+    return finding(margin, text, computed=(speed, force), stated=(run.law.v_max, run.law.u_max))
 
 
 def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
@@ -93,37 +100,42 @@ def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
     return counts, int(together[0] + apart[0]) if apart.size else -1
 
 
+@report("fragments", "the alien breaks the flock up for a while")
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     counts, k = _apart_after_together(run)
     when = "never apart after having been together" if k < 0 else f"together, then apart from t = {run.t[k]:.3g} on"
     text = f"{when}; up to {counts.max()} components, together at {np.mean(counts == 1):.0%} of the samples"
-    return finding("fragments", -0.5 if k < 0 else 0.5, text, computed=int(counts.max()), stated="apart for a while")
+    return finding(-0.5 if k < 0 else 0.5, text, computed=int(counts.max()), stated="apart for a while")
 
 
+@report("reunites", "the flock reunites")
 def _reunites(run: Trajectory, tolerances: Tolerances) -> Claim:
     counts, k = _apart_after_together(run)
     again = k >= 0 and bool((counts[k:] == 1).any())
     text = f"{'one component again' if again else 'not one component'} after it fell apart; {counts[-1]} at the end"
-    return finding("reunites", 0.5 if again else -0.5, text, computed=int(counts[-1]), stated="one flock again")
+    return finding(0.5 if again else -0.5, text, computed=int(counts[-1]), stated="one flock again")
 
 
+@report("range", "distances reach up to 10 m when the flock is cohesive")
 def _range(run: Trajectory, tolerances: Tolerances) -> Claim:
     whole = component_counts(run) == 1
     if not whole.any():
-        return finding("range", float("nan"), "the flock is never cohesive", stated="up to 10 when cohesive")
+        return finding(float("nan"), "the flock is never cohesive", stated="up to 10 when cohesive")
     spans = diameters(run.q[whole])
     text = f"while the flock is one component its largest distance is {spans.min():.3g} to {spans.max():.3g}"
     most = float(spans.max())
-    return finding("range", 10.0 - most, text, computed=most, stated="up to 10 when cohesive")
+    return finding(10.0 - most, text, computed=most, stated="up to 10 when cohesive")
 
 
-def _contained(run: Trajectory, tolerances: Tolerances) -> Claim:
+@report("contained", "the agents stay in the box and off the obstacle")
+def contained(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that no agent leaves the box or enters the obstacle."""
     wall, solid = (float(run.metric(name).min()) for name in ("wall_distance", "obstacle_clearance_bound"))
     text = (
         f"the least distance from a wall is {wall:.3g}, from the obstacle {solid:.3g} "
         "(negative: beyond a wall, or inside the obstacle)"
     )
-    return finding("contained", min(wall, solid), text, computed=(wall, solid), stated="> 0, between the steps too")
+    return finding(min(wall, solid), text, computed=(wall, solid), stated="> 0, between the steps too")
 
 
 def passed(run: Trajectory) -> int:
@@ -135,39 +147,23 @@ def passed(run: Trajectory) -> int:
     return sum(bool((y[k:, i] > corners[:, 1].max()).any()) for i, k in enumerate(first))
 
 
+@report("passes", "the flock passes a narrow gap beside the obstacle")
 def _passes(run: Trajectory, tolerances: Tolerances) -> Claim:
     count = passed(run)
     text = f"{count} of {run.n} agents pass between the obstacle and the wall"
-    return finding("passes", count - run.n + 0.5, text, computed=count, stated=f"all {run.n}")
+    return finding(count - run.n + 0.5, text, computed=count, stated=f"all {run.n}")
 
 
+@report("blocked", "with circular buffer zones none passes")
 def _blocked(run: Trajectory, tolerances: Tolerances) -> Claim:
     count = passed(run)
-    return finding("blocked", 0.5 - count, f"{count} of {run.n} agents pass", computed=count, stated="none")
+    return finding(0.5 - count, f"{count} of {run.n} agents pass", computed=count, stated="none")
 
 
-DISTANCES = Report("distances", "the agents stay more than 1.5 m apart throughout", _distances)
-KEEPS_SPEED = Report("speed", "the mean speed is close to the desired 3 m/s", _speed)
-BOUNDS = Report("bounds", "speeds and inputs keep within their bounds", _bounds)
-CONTAINED = Report("contained", "the agents stay in the box and off the obstacle", _contained)
-OPEN = (
-    DISTANCES,
-    Report("coordination", "perfect order of the directions within 2 s, and kept", _coordination),
-    Report("radius", "the cohesive radius is stable from about 5 s on", _radius),
-    KEEPS_SPEED,
-    BOUNDS,
-)
-_CLOSED = (
-    Report("fragments", "the alien breaks the flock up for a while", _fragments),
-    Report("reunites", "the flock reunites", _reunites),
-    Report("range", "distances reach up to 10 m when the flock is cohesive", _range),
-    DISTANCES,
-    KEEPS_SPEED,
-    BOUNDS,
-    CONTAINED,
-)
-THROUGH = (Report("passes", "the flock passes a narrow gap beside the obstacle", _passes), BOUNDS, CONTAINED)
-_BARRED = (Report("blocked", "with circular buffer zones none passes", _blocked), BOUNDS, CONTAINED)
+OPEN = (distances, _coordination, _radius, keeps_speed, bounds)
+_CLOSED = (_fragments, _reunites, _range, distances, keeps_speed, bounds, contained)
+THROUGH = (_passes, bounds, contained)
+_BARRED = (_blocked, bounds, contained)
 
 
 def apart(seed: int) -> tuple[FloatArray, FloatArray]:
@@ -204,119 +200,114 @@ _CHARITABLE = (
     "The charitable reading of the same: all agents at once, a plain clip of the speed, the true velocity, aliens at "
     "0 < d <= s, the whole triangle, min(0, d - c), pushed out of obstacles, each wall counts; gains 1, as printed. "
 )
-_UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
-_FIGURE_8 = (0.1, 12.5, 25.0, 37.5, 50.0, 75.0, 87.5, 100.0)
-_FIGURE_5 = (0.1, 7.5, 15.0, 20.0)
 _OWN = "Gains, plain clips and starts more than 2 m apart and connected are ours. "
 _PLACE = "Obstacle, the alien's speed and triangle, and the half base 0.5 c of the obstacle zone are ours. "
-_Start = Callable[[int], tuple[FloatArray, FloatArray]]
-_ENTRIES: dict[str, tuple[str, str, ZoneFlocking, _Start, float, tuple[Report, ...]]] = {
-    "zone-51-printed": (
-        "section 5.1, open plane, by the letter",
-        PRINTED + "a = 5, u^max = 2. " + _LETTER,
-        ZoneFlocking.printed(FREE),
-        zone_start,
-        20.0,
-        OPEN,
-    ),
-    "zone-51-charitable": (
-        "section 5.1, open plane, charitably read",
-        PRINTED + "a = 5, u^max = 2. " + _CHARITABLE,
-        ZoneFlocking(FREE, _UNITS),
-        zone_start,
-        20.0,
-        OPEN,
-    ),
-    "zone-51": (
-        "section 5.1, open plane, as recommended",
-        PRINTED + "a = 5, u^max = 2, gains 0.25 and 8. " + _OWN,
-        ZoneFlocking(FREE),
-        apart,
-        20.0,
-        OPEN,
-    ),
-    "zone-52-printed": (
-        "section 5.2, obstacle, box and alien, by the letter",
-        PRINTED + "a = 5, s = 6, w^ss = w^oa = 5, u^max = 2. " + _LETTER + _PLACE,
-        ZoneFlocking.printed(WATCHFUL, world=_WORLD),
-        zone_start,
-        100.0,
-        _CLOSED,
-    ),
-    "zone-52-charitable": (
-        "section 5.2, obstacle, box and alien, charitably read",
-        PRINTED + "a = 5, s = 6, w^ss = w^oa = 5, u^max = 2. " + _CHARITABLE + _PLACE,
-        ZoneFlocking(WATCHFUL, _UNITS, _WORLD),
-        zone_start,
-        100.0,
-        _CLOSED,
-    ),
-    "zone-52": (
-        "section 5.2, obstacle, box and alien, as recommended",
-        PRINTED + "a = 5, s = 6, w^ss = 5; w^ls = w^oa = 20, u^max = 10, gains 0.5 and 4. " + _OWN + _PLACE,
-        ZoneFlocking(WATCHFUL, STRONG, _WORLD, u_max=10.0),
-        apart,
-        100.0,
-        _CLOSED,
-    ),
-    "zone-gap": (
-        "a gap of 4.5 m, directed obstacle zones",
-        "Section 5.2's claim in a place of our own: 5 agents as in zone-52, a slab beside the wall.",
-        ZoneFlocking(FREE, STRONG, GAP, u_max=10.0),
-        in_column,
-        30.0,
-        THROUGH,
-    ),
-    "zone-gap-buffer": (
-        "the same gap, circular buffer zones",
-        "The method that section 5.2 compares with: zone-gap, with the slab in its smallest disc.",
-        ZoneFlocking(FREE, STRONG, GAP, u_max=10.0, obstacle_zone="buffer"),
-        in_column,
-        30.0,
-        _BARRED,
-    ),
+_FIGURE_5, _FIGURE_8 = (0.1, 7.5, 15.0, 20.0), (0.1, 12.5, 25.0, 37.5, 50.0, 75.0, 87.5, 100.0)
+_SECTIONS = {  # title, place, end, reports, instants
+    "51": ("section 5.1, open plane", "", 20.0, OPEN, _FIGURE_5),
+    "52": ("section 5.2, obstacle, box and alien", _PLACE, 100.0, _CLOSED, _FIGURE_8),
 }
-# what holds at every seed (all of 400); for the others the report gives shares of seeds
-_EXPECTED: dict[str, dict[str, Status]] = {
-    "zone-51-printed": refuted("source", "source:distances", "source:coordination", "source:radius", "source:speed")
-    | verified("source:bounds"),
-    "zone-51-charitable": refuted("source", "source:coordination") | verified("source:speed", "source:bounds"),
-    "zone-52-charitable": refuted("source", "source:range", "source:distances")
-    | verified("source:bounds")
-    | refuted("source:contained"),
-    "zone-51": verified("source:distances", "source:speed", "source:bounds"),
-    "zone-52-printed": refuted("source", "source:speed") | verified("source:bounds") | refuted("source:contained"),
-    "zone-52": refuted("source", "source:range") | verified("source:bounds"),
-    "zone-gap": verified("source"),
-    "zone-gap-buffer": verified("source"),
+_READINGS = {  # title, text, start, seeds, settings
+    "-printed": ("by the letter", _LETTER, zone_start, 200, "printed settings"),
+    "-charitable": ("charitably read", _CHARITABLE, zone_start, 25, "printed settings, charitably read"),
+    "": ("as recommended", _OWN, apart, 200, "recommended settings"),
 }
-_SETTINGS = {"printed": "printed settings", "charitable": "printed settings, charitably read"}
-_INSTANTS = {20.0: _FIGURE_5, 100.0: _FIGURE_8}  # by the end of a run: those of Fig. 5 and of Fig. 8
 
 
-def _build(name: str) -> Callable[..., Scenario]:
-    title, source, law, start, end, reports = _ENTRIES[name]
+def entry(
+    name: str,
+    title: str,
+    source: str,
+    law: ZoneFlocking,
+    start: tuple[FloatArray, FloatArray],
+    end: float,
+    seed: int,
+    reports: tuple[Report, ...],
+    expected: dict[str, Status],
+    *,
+    as_it_is: tuple[Report, ...] = (),
+    settings: str = "recommended settings",
+    seeds: int = 25,
+    **fields: Any,
+) -> Scenario:
+    """Return a scenario of the paper with its reports, those judged in the run's units first."""
+    title, source = f"Bearing-distance flocking: {title}", f"Jond, bearing-distance flocking: {source}"
+    judged = as_it_is + in_source_units(lambda: law.scales, reports)
+    fields |= {"references": ("jond-2025",), "settings": settings, "seeds": seeds if settings else 0}
+    return Scenario(name, title, source, law, *start, (0.0, end), seed, expected, judged, **fields)
+
+
+def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Callable[[int], Scenario]:
+    """Return the run of a section in a reading, both by its name."""
+    where, place, end, reports, instants = _SECTIONS[name[5:7]]
+    how, text, start, seeds, settings = _READINGS[name[7:]]
+    title, source = f"{where}, {how}", f"{PRINTED}{parameters}. {text}{place}"
+    more: dict[str, Any] = {"seeds": seeds, "settings": settings, "instants": instants}
 
     def build(seed: int = 0) -> Scenario:
-        q, p = start(seed)
-        return Scenario(
-            name,
-            f"Bearing-distance flocking: {title}",
-            f"Jond, bearing-distance flocking: {source}",
-            law,
-            q,
-            p,
-            (0.0, end),
-            seed,
-            _EXPECTED[name],
-            in_source_units(lambda: law.scales, reports),
-            references=("jond-2025",),
-            seeds=25 if name.endswith("charitable") else 200,
-            settings=next((said for end, said in _SETTINGS.items() if name.endswith(end)), "recommended settings"),
-            instants=_INSTANTS.get(end, ()),
-        )
+        return entry(name, title, source, law, start(seed), end, seed, reports, expected, **more)
 
     return build
 
 
-SCENARIOS: dict[str, Callable[..., Scenario]] = {name: _build(name) for name in _ENTRIES}
+def _gap(
+    name: str, title: str, source: str, law: ZoneFlocking, reports: tuple[Report, ...]
+) -> Callable[[int], Scenario]:
+    def build(seed: int = 0) -> Scenario:
+        return entry(name, title, source, law, in_column(seed), 30.0, seed, reports, verified("source"), seeds=200)
+
+    return build
+
+
+_UNITS = ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0)
+_AS_PRINTED = "a = 5, s = 6, w^ss = w^oa = 5, u^max = 2"
+# statuses that hold at every seed (all of 400); for the others the report gives shares of seeds
+_CASES: dict[str, tuple[str, ZoneFlocking, dict[str, Status]]] = {
+    "zone-51-printed": (
+        "a = 5, u^max = 2",
+        ZoneFlocking.printed(FREE),
+        refuted("source", "source:distances", "source:coordination", "source:radius", "source:speed")
+        | verified("source:bounds"),
+    ),
+    "zone-51-charitable": (
+        "a = 5, u^max = 2",
+        ZoneFlocking(FREE, _UNITS),
+        refuted("source", "source:coordination") | verified("source:speed", "source:bounds"),
+    ),
+    "zone-51": (
+        "a = 5, u^max = 2, gains 0.25 and 8",
+        ZoneFlocking(FREE),
+        verified("source:distances", "source:speed", "source:bounds"),
+    ),
+    "zone-52-printed": (
+        _AS_PRINTED,
+        ZoneFlocking.printed(WATCHFUL, world=_WORLD),
+        refuted("source", "source:speed") | verified("source:bounds") | refuted("source:contained"),
+    ),
+    "zone-52-charitable": (
+        _AS_PRINTED,
+        ZoneFlocking(WATCHFUL, _UNITS, _WORLD),
+        refuted("source", "source:range", "source:distances") | verified("source:bounds") | refuted("source:contained"),
+    ),
+    "zone-52": (
+        "a = 5, s = 6, w^ss = 5; w^ls = w^oa = 20, u^max = 10, gains 0.5 and 4",
+        ZoneFlocking(WATCHFUL, STRONG, _WORLD, u_max=10.0),
+        refuted("source", "source:range") | verified("source:bounds"),
+    ),
+}
+SCENARIOS: dict[str, Callable[..., Scenario]] = {name: _read(name, *case) for name, case in _CASES.items()} | {
+    "zone-gap": _gap(
+        "zone-gap",
+        "a gap of 4.5 m, directed obstacle zones",
+        "Section 5.2's claim in a place of our own: 5 agents as in zone-52, a slab beside the wall.",
+        ZoneFlocking(FREE, STRONG, GAP, u_max=10.0),
+        THROUGH,
+    ),
+    "zone-gap-buffer": _gap(
+        "zone-gap-buffer",
+        "the same gap, circular buffer zones",
+        "The method that section 5.2 compares with: zone-gap, with the slab in its smallest disc.",
+        ZoneFlocking(FREE, STRONG, GAP, u_max=10.0, obstacle_zone="buffer"),
+        _BARRED,
+    ),
+}

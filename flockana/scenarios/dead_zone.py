@@ -1,5 +1,6 @@
 """Dead-zone paper's simulation with the missing parameters chosen, and runs at the limits of its claims."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,8 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.scenarios.expected import inconclusive, refuted, verified
-from flockana.scenarios.findings import finding
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import finding, report
+from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.dead_zone.case import dead_zone_law, final_components, velocities_match
 from flockana.theorems.dead_zone.range_limits import thinned
@@ -51,12 +52,14 @@ def _law(run: Trajectory) -> DeadZoneFlocking:
     return law
 
 
+@report("consensus", "speeds converge to the same value")
 def _consensus(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that all velocities agree in the limit."""
     seen = Observed.alone(run)
     return velocities_match(seen, final_components(seen, _law(run)), [], name="consensus")
 
 
+@report("together", "the agents swarm together")
 def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the net is connected at the end of the run."""
     from scipy.sparse.csgraph import minimum_spanning_tree
@@ -66,11 +69,10 @@ def _together(run: Trajectory, tolerances: Tolerances) -> Claim:
     longest = float(minimum_spanning_tree(squareform(pdist(run.q[-1]))).max()) if run.n > 1 else 0.0
     detail = f"{count} component(s) at t = {run.t[-1]:g}: to join all takes links of up to {longest:.4g}, and r = {r:g}"
     error = _rounding(run, r)
-    return finding(
-        "together", 1.0 - longest / r, detail, computed=count, stated="one component at the end", error=error
-    )
+    return finding(1.0 - longest / r, detail, computed=count, stated="one component at the end", error=error)
 
 
+@report("safe", "agents hold safe distances all the time")
 def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that distances stay above half of the distance below which agents repel."""
     d1, at = _law(run).interaction.d1, float(run.metric("min_distance").min())
@@ -79,29 +81,21 @@ def _safe(run: Trajectory, tolerances: Tolerances) -> Claim:
     margin = ever / d1 - 0.5 if seen else at / d1 - 0.5 if at < 0.5 * d1 else float("nan")
     detail = f"agents come as near as {ever:.3g}, where repulsion begins at d1 = {d1:g}"
     stated = "safe distances all the time (over d1/2)"
-    return finding("safe", margin, detail, computed=ever, stated=stated, error=_rounding(run, d1))
+    return finding(margin, detail, computed=ever, stated=stated, error=_rounding(run, d1))
 
 
+@report("lattice", "the agents form an α-lattice")
 def _lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the end is an α-lattice within a quasi-lattice's tolerance."""
     from scipy.spatial import KDTree
 
     if run.n == 1:
-        return finding("lattice", float("nan"), "one agent has no neighbour", stated="a lattice")
+        return finding(float("nan"), "one agent has no neighbour", stated="a lattice")
     nearest = np.asarray(KDTree(run.q[-1]).query(run.q[-1], k=2)[0])[:, 1]
     d1 = _law(run).interaction.d1
-    spread = float(np.abs(nearest / d1 - 1.0).max())
-    detail = (
-        f"nearest neighbours are {nearest.min():.4g} to {nearest.max():.4g} apart, {nearest.mean():.4g} in the mean"
-    )
-    return finding(
-        "lattice",
-        tolerances.quasi - spread,
-        detail,
-        computed=float(nearest.mean()),
-        stated=f"d1 = {d1:g}",
-        error=_rounding(run, d1),
-    )
+    margin, mean = tolerances.quasi - float(np.abs(nearest / d1 - 1.0).max()), float(nearest.mean())
+    detail = f"nearest neighbours are {nearest.min():.4g} to {nearest.max():.4g} apart, {mean:.4g} in the mean"
+    return finding(margin, detail, computed=mean, stated=f"d1 = {d1:g}", error=_rounding(run, d1))
 
 
 def _rounding(run: Trajectory, length: float) -> float:
@@ -109,119 +103,96 @@ def _rounding(run: Trajectory, length: float) -> float:
     return 8.0 * EPS * (float(np.abs(run.q).max()) / length + 1.0)
 
 
-_REPORTS = (
-    Report("consensus", "speeds converge to the same value", _consensus),
-    Report("together", "the agents swarm together", _together),
-    Report("safe", "agents hold safe distances all the time", _safe),
-    Report("lattice", "the agents form an α-lattice", _lattice),
+_REPORTS = (_consensus, _together, _safe, _lattice)
+
+
+# what holds from every start; cohesion, the lattice and how parts of a wide start end differ from seed to seed, and the
+# report gives shares of seeds
+_ALWAYS = verified("dead-zone-1-printed:collision", "dead-zone-1-corrected:rate", "dead-zone-1-corrected:distance")
+_CONTRACTS = refuted("dead-zone-1-printed", "dead-zone-1-printed:energy")
+_SWARMS = _CONTRACTS | verified(
+    "dead-zone-1-printed:velocity", "dead-zone-1-corrected", "source:consensus", "source:together"
 )
 
 
-def _scenario(
+def _case(
     name: str,
     title: str,
     source: str,
-    interaction: DeadZoneInteraction,
-    seed: int,
-    n: int,
-    box: float,
     expected: dict[str, Status],
     *,
+    own: tuple[int, float, float] = (50, 40.0, 0.25),
+    end: float = 200.0,
     flow: bool = False,
-    t_end: float = 200.0,
-    seeds: int = 0,
     settings: str = "",
-) -> Scenario:
-    generator = np.random.default_rng(seed)
-    box, law = ensure_positive("box", box), DeadZoneFlocking(interaction)
-    notes = f"{source} {describe_choices(law, box, t_end, flow=flow)}" + (
-        "" if flow else " The eight instants shown are ours."
-    )
-    options: dict[str, Any] = {} if flow else {"t_eval": np.linspace(0.0, t_end, _SAMPLES)}
-    return Scenario(
-        name,
-        title,
-        notes,
-        law if flow else SemiImplicitEuler(law, DT),
-        generator.uniform(0.0, box, (n, 2)),
-        generator.uniform(-1.0, 1.0, (n, 2)),
-        (0.0, t_end),
-        seed,
-        expected,
-        _REPORTS,
-        options,
-        ("li-dead-zone",),
-        seeds,
-        settings,
-        instants=() if flow else tuple(share * t_end for share in _FIGURE_3),
-    )
+    **parameters: float,
+) -> Callable[..., Scenario]:
+    """Return the builder of a run in a box; `expected` holds at every seed of its own n, box and ramp."""
 
+    def build(seed: int = 0, n: int = own[0], box: float = own[1], ramp: float = own[2]) -> Scenario:
+        generator, box = np.random.default_rng(seed), ensure_positive("box", box)
+        law = DeadZoneFlocking(DeadZoneInteraction(ramp=ramp, **parameters))
+        text = f"{source.format(n=n)} {describe_choices(law, box, end, flow=flow)}"
+        q, p = generator.uniform(0.0, box, (n, 2)), generator.uniform(-1.0, 1.0, (n, 2))
+        statuses = _ALWAYS | (expected if (n, box, ramp) == own else {})
+        fields: dict[str, Any] = {"references": ("li-dead-zone",), "seeds": 200 * bool(settings), "settings": settings}
+        if not flow:
+            text += " The eight instants shown are ours."
+            fields["options"] = {"t_eval": np.linspace(0.0, end, _SAMPLES)}
+            fields["instants"] = tuple(share * end for share in _FIGURE_3)
+        steps = law if flow else SemiImplicitEuler(law, DT)
+        return Scenario(name, title, text, steps, q, p, (0.0, end), seed, statuses, _REPORTS, **fields)
 
-# what holds from every start, and what holds at every seed of these settings; cohesion, the lattice and how parts of a
-# wide start end differ from seed to seed; the report gives shares of seeds
-_ALWAYS = verified("dead-zone-1-printed:collision", "dead-zone-1-corrected:rate", "dead-zone-1-corrected:distance")
-_CONTRACTS = refuted("dead-zone-1-printed", "dead-zone-1-printed:energy")
-
-
-def _default(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
-    expected = dict(_ALWAYS)
-    if (n, box, ramp) == (50, 40.0, 0.25):  # of 100 seeds 100, 84, 18, 0 become one flock at 40, 60, 80, 150 (L4)
-        expected |= _CONTRACTS | verified(
-            "dead-zone-1-printed:velocity", "dead-zone-1-corrected", "source:consensus", "source:together"
-        )
-    title = "Dead zone: 50 agents contract to a lattice of contacts"
-    source = _PRINTED + " r_b is chosen so that the flock fits within r."
-    many: dict[str, Any] = {"seeds": 200, "settings": "recommended settings: force ramped"}
-    return _scenario("dead-zone", title, source, DeadZoneInteraction(ramp=ramp), seed, n, box, expected, **many)
-
-
-def _wide_lattice(seed: int = 0, n: int = 50, box: float = 40.0, ramp: float = 0.25) -> Scenario:
-    expected = dict(_ALWAYS)  # k1 is all that attracts: velocities settle over 1/k1 and longer
-    if (n, box, ramp) == (50, 40.0, 0.25):
-        expected |= _CONTRACTS | verified("source:together")
-    interaction = DeadZoneInteraction(r_b=12.0, k_r=60.0, k1=0.02, ramp=ramp)
-    source = _PRINTED + " Here the dead zone ends beyond r, and only k1 attracts."
-    title = "Dead zone, large spacing: only k1 attracts, and the flock is wider than r"
-    return _scenario("dead-zone-wide-lattice", title, source, interaction, seed, n, box, expected)
-
-
-def _wide_start(seed: int = 0, n: int = 50, box: float = 150.0, ramp: float = 0.25) -> Scenario:
-    expected = dict(_ALWAYS)
-    if (n, box, ramp) == (50, 150.0, 0.25):
-        expected |= _CONTRACTS | refuted("source:together")
-    title = "Dead zone, wide start: the flock stays in pieces"
-    source = _PRINTED + " Here the start is wide."
-    interaction = DeadZoneInteraction(ramp=ramp)
-    return _scenario("dead-zone-wide-start", title, source, interaction, seed, n, box, expected, t_end=800.0)
+    return build
 
 
 def _hard(seed: int = 0, n: int = 50, box: float = 40.0) -> Scenario:
-    expected = dict(_ALWAYS)
-    if (n, box) == (50, 40.0):
-        names = "dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus"
-        expected |= _CONTRACTS | inconclusive(*names) | verified("source:together")  # contacts keep chattering
-    title = "Dead zone with the printed jumps: contacts chatter"
-    source = _PRINTED + " Here the jumps are as printed."
-    many: dict[str, Any] = {"seeds": 200, "settings": "printed settings: force jumps"}
-    return _scenario("dead-zone-hard", title, source, DeadZoneInteraction(ramp=0.0), seed, n, box, expected, **many)
-
-
-def _flow(seed: int = 0, n: int = 16, box: float = 20.0, ramp: float = 0.25) -> Scenario:
-    expected = dict(_ALWAYS)
-    if (n, box, ramp) == (16, 20.0, 0.25):
-        expected |= _CONTRACTS | verified(
-            "dead-zone-1-printed:velocity", "dead-zone-1-corrected", "source:consensus", "source:together"
-        )
-    title = "Dead zone, the flow itself: 16 agents, energy balance and distances between samples"
-    source = f"The continuous law that the other dead-zone runs step: n = {n}; r = 15, δ = 4.5, k_δ = 1.3 as printed."
-    interaction = DeadZoneInteraction(ramp=ramp)
-    return _scenario("dead-zone-flow", title, source, interaction, seed, n, box, expected, flow=True, t_end=120.0)
+    build = _case(
+        "dead-zone-hard",
+        "Dead zone with the printed jumps: contacts chatter",
+        f"{_PRINTED} Here the jumps are as printed.",
+        _CONTRACTS
+        | inconclusive("dead-zone-1-printed:velocity", "dead-zone-1-corrected:components", "source:consensus")
+        | verified("source:together"),
+        own=(50, 40.0, 0.0),
+        settings="printed settings: force jumps",
+    )
+    return build(seed, n, box)
 
 
 SCENARIOS = {
-    "dead-zone": _default,
-    "dead-zone-wide-lattice": _wide_lattice,
-    "dead-zone-wide-start": _wide_start,
+    "dead-zone": _case(
+        "dead-zone",
+        "Dead zone: 50 agents contract to a lattice of contacts",
+        f"{_PRINTED} r_b is chosen so that the flock fits within r.",
+        _SWARMS,  # of 100 seeds 100, 84, 18, 0 become one flock in boxes of 40, 60, 80, 150 (L4)
+        settings="recommended settings: force ramped",
+    ),
+    "dead-zone-wide-lattice": _case(
+        "dead-zone-wide-lattice",
+        "Dead zone, large spacing: only k1 attracts, and the flock is wider than r",
+        f"{_PRINTED} Here the dead zone ends beyond r, and only k1 attracts.",
+        _CONTRACTS | verified("source:together"),  # velocities settle over 1/k1 and longer
+        r_b=12.0,
+        k_r=60.0,
+        k1=0.02,
+    ),
+    "dead-zone-wide-start": _case(
+        "dead-zone-wide-start",
+        "Dead zone, wide start: the flock stays in pieces",
+        f"{_PRINTED} Here the start is wide.",
+        _CONTRACTS | refuted("source:together"),
+        own=(50, 150.0, 0.25),
+        end=800.0,
+    ),
     "dead-zone-hard": _hard,
-    "dead-zone-flow": _flow,
+    "dead-zone-flow": _case(
+        "dead-zone-flow",
+        "Dead zone, the flow itself: 16 agents, energy balance and distances between samples",
+        "The continuous law that the other dead-zone runs step: n = {n}; r = 15, δ = 4.5, k_δ = 1.3 as printed.",
+        _SWARMS,
+        own=(16, 20.0, 0.25),
+        end=120.0,
+        flow=True,
+    ),
 }

@@ -10,54 +10,50 @@ from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import finding
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import finding, report
+from flockana.scenarios.scenario import OURS, Scenario
 from flockana.theorems import Claim, Tolerances
 
 _N = 12
 _WORTH = 1e-3  # of what there is at the start: a change that counts, far above the error of the run
 
 
+@report("momentum", "momentum is not conserved")
 def _momentum_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
     total = run.p.sum(axis=1)
     change = float(np.linalg.norm(total - total[0], axis=1).max() / np.linalg.norm(total[0]))
     detail = f"momentum is not kept: Σ p_i changes by up to {change:.3g} of its size at the start"
-    return finding("momentum", change - _WORTH, detail, computed=change, stated=f"> {_WORTH:g}", error=1e-9)
+    return finding(change - _WORTH, detail, computed=change, stated=f"> {_WORTH:g}", error=1e-9)
 
 
+@report("energy-rises", "the energy rises on the way")
 def _energy_rises(run: Trajectory, tolerances: Tolerances) -> Claim:
     energy = run.metric("undirected_energy")
     rise = float((energy - np.minimum.accumulate(energy)).max() / energy[0])
     detail = f"H of the undirected law rises by up to {rise:.3g} of its value at the start"
-    return finding("energy-rises", rise - _WORTH, detail, computed=rise, stated=f"> {_WORTH:g}", error=1e-9)
+    return finding(rise - _WORTH, detail, computed=rise, stated=f"> {_WORTH:g}", error=1e-9)
 
 
+@report("directed", "most edges are one-way")
 def _one_way(run: Trajectory, tolerances: Tolerances) -> Claim:
     share = float(run.metric("one_way")[0])
     detail = f"{share:.0%} of the edges at the start are one-way"
-    return finding("directed", share - 0.5, detail, computed=share, stated="more than half")
+    return finding(share - 0.5, detail, computed=share, stated="more than half")
 
 
 def _cone(seed: int = 0) -> Scenario:
     generator, d = np.random.default_rng(seed), AlphaInteraction().d
     q = hexagonal_spiral(_N, d) + generator.uniform(-0.3, 0.3, (_N, 2))
-    return Scenario(
-        "directed-cone",
-        "Twelve agents that look ahead only: momentum is not kept, energy rises",
+    title = "Twelve agents that look ahead only: momentum is not kept, energy rises"
+    source = (
         "Ours, on the slides' remark on directed nets: Algorithm 1 with the default gains, an angle of view of 120°, "
-        "twelve agents near a lattice, each coordinate displaced by up to 0.3, velocities uniform in [1, 3] × [-1, 1].",
-        DirectedNet(Algorithm1(), view=2.0 * pi / 3.0),
-        q,
-        generator.uniform((1.0, -1.0), (3.0, 1.0), (_N, 2)),
-        (0.0, 3.0),
-        seed,
-        verified("source"),
-        (
-            Report("directed", "most edges are one-way", _one_way),
-            Report("momentum", "momentum is not conserved", _momentum_changes),
-            Report("energy-rises", "the energy rises on the way", _energy_rises),
-        ),
-        references=("olfati-saber-2006", "flockana"),
+        "twelve agents near a lattice, each coordinate displaced by up to 0.3, velocities uniform in [1, 3] × [-1, 1]."
+    )
+    law = DirectedNet(Algorithm1(), view=2.0 * pi / 3.0)
+    p = generator.uniform((1.0, -1.0), (3.0, 1.0), (_N, 2))
+    reports = (_one_way, _momentum_changes, _energy_rises)
+    return Scenario(
+        "directed-cone", title, source, law, q, p, (0.0, 3.0), seed, verified("source"), reports, references=OURS
     )
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from flockana.base.errors import UnknownNameError
 from flockana.base.scales import Scales
 from flockana.base.units import rescale
+from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import components, links
 from flockana.scenarios.scenario import Report
@@ -23,32 +24,29 @@ ROUNDING = 1e-12  # relative, of what a report measures
 PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "normalised_velocity_mismatch")
 
 
-def finding(
-    name: str,
-    margin: float,
-    detail: str,
-    *,
-    computed: Any = None,
-    stated: Any = None,
-    error: float | None = None,
-    witness: Any = None,
-) -> Claim:
-    """Return a claim judged by its margin alone."""
+def report(name: str, text: str) -> Callable[[Check], Report]:
+    """Return a decorator that turns a check of a run into a report; the claim takes the report's name."""
+
+    def made(check: Check) -> Report:
+        return Report(name, text, lambda run, tolerances: replace(check(run, tolerances), name=name))
+
+    return made
+
+
+def finding(margin: float, detail: str, *, error: float | None = None, **fields: Any) -> Claim:
+    """Return the claim of a report, judged by its margin alone."""
     # A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
     if error is None:
         counted = margin != 0.0 and float(2.0 * margin).is_integer()
+        computed = fields.get("computed")
         size = abs(computed) if isinstance(computed, float | int) else 0.0
         error = 0.0 if counted else ROUNDING * max(abs(margin), size)
-    return judged(
-        name, Enclosure.around(margin, error), computed=computed, stated=stated, witness=witness, detail=detail
-    )
+    return judged("", Enclosure.around(margin, error), detail=detail, **fields)
 
 
-def limit_report(
-    name: str, certificate: Certificate, detail: str, *, computed: Any = None, stated: str = "", witness: Any = None
-) -> Claim:
-    """Return a report on a limit: verified by a certificate, else open, never refuted."""
-    return limit_claim(name, [], [certificate], computed=computed, stated=stated, witness=witness, detail=detail)
+def limit_report(certificate: Certificate, detail: str, *, stated: str = "", **fields: Any) -> Claim:
+    """Return the claim of a report on a limit: verified by a certificate, else open, never refuted."""
+    return limit_claim("", [], [certificate], stated=stated, detail=detail, **fields)
 
 
 def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> tuple[Report, ...]:
@@ -66,6 +64,11 @@ def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> 
     return tuple(replace(report, check=converted(report.check)) for report in reports)
 
 
+def rerun(run: Trajectory, law: Any, **options: Any) -> Trajectory:
+    """Return the run of another law from the same start over the same time."""
+    return simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **options)
+
+
 def same_accuracy(run: Trajectory) -> dict[str, Any]:
     """Return options of `simulate` that integrate a second run as accurately as the first."""
     return {name: run.stats[name] for name in ("rtol", "atol", "max_step") if run.stats.get(name) is not None}
@@ -76,6 +79,12 @@ def component_count(run: Trajectory, k: int = -1) -> int:
     pair = run.law.pair
     assert pair is not None
     return int(components(run.n, links(run.q[k], pair.range)).max()) + 1
+
+
+def connected(run: Trajectory, tolerances: Tolerances) -> Claim:
+    """Claim that the net is connected at the end of a run."""
+    count = component_count(run)
+    return finding(1.5 - count, f"{count} component(s) at t = {run.t[-1]:g}", computed=count, stated=1)
 
 
 def component_counts(run: Trajectory) -> npt.NDArray[np.int64]:

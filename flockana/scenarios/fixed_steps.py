@@ -4,36 +4,36 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.measures.metrics import velocity_mismatch
 from flockana.scenarios.expected import refuted, verified
-from flockana.scenarios.findings import component_count, finding
+from flockana.scenarios.findings import component_count, finding, report, rerun
 from flockana.scenarios.olfati_saber import random_start
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Claim, Tolerances
 
 _N, _END = 40, 40.0
 _SETTLED = 1e-6  # of K̃ at the start
 
 
+@report("connected", "the net ends connected")
 def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
     components = component_count(run)
-    return finding("connected", 1.5 - components, f"{components} component(s)", computed=components, stated=1)
+    return finding(1.5 - components, f"{components} component(s)", computed=components, stated=1)
 
 
+@report("settles", "velocities match")
 def _settles(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that K̃ falls as much as that of the continuous flow from the same start."""
     start, end = (velocity_mismatch(run.p[k]) / run.n for k in (0, -1))
     law = run.law.continuous
     assert law is not None
-    flow = simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), t_eval=run.t[[0, -1]])
-    true = velocity_mismatch(flow.p[-1]) / run.n
+    true = velocity_mismatch(rerun(run, law, t_eval=run.t[[0, -1]]).p[-1]) / run.n
     detail = f"K̃ goes from {start:.3g} to {end:.3g} by steps of {run.law.dt:g}, to {true:.2g} by the flow"
-    return finding("settles", _SETTLED - end / start, detail, computed=end / start, stated=f"K̃ <= {_SETTLED:g} K̃(0)")
+    return finding(_SETTLED - end / start, detail, computed=end / start, stated=f"K̃ <= {_SETTLED:g} K̃(0)")
 
 
 def _stepped(name: str, dt: float, *, settles: bool) -> Callable[[int], Scenario]:
@@ -41,23 +41,15 @@ def _stepped(name: str, dt: float, *, settles: bool) -> Callable[[int], Scenario
     statuses = verified("source:connected") | (verified if settles else refuted)("source:settles")
 
     def build(seed: int = 0) -> Scenario:
-        return Scenario(
-            name,
-            f"{_N} agents of Algorithm 2 by steps of {dt:g}, as printed",
+        title = f"{_N} agents of Algorithm 2 by steps of {dt:g}, as printed"
+        source = (
             "Olfati-Saber 2006 prints a step of 0.01 to 0.03 s and no scheme. Here q + p dt + ½ u dt², p + u dt, all "
             f"agents at once, dt = {dt:g}; parameters, start and γ-agent of Fig. 10 with n = {_N}; the gains, on "
-            "which the largest stable step depends, are ours. The other scenarios of the paper integrate the flow.",
-            law,
-            *random_start(seed, _N, 2),
-            (0.0, dt * np.ceil(_END / dt)),
-            seed,
-            {},
-            (
-                Report("connected", "the net ends connected", _one_flock),
-                Report("settles", "velocities match", _settles),
-            ),
-            shipped=statuses,
+            "which the largest stable step depends, are ours. The other scenarios of the paper integrate the flow."
         )
+        span = (0.0, dt * np.ceil(_END / dt))
+        reports = (_one_flock, _settles)
+        return Scenario(name, title, source, law, *random_start(seed, _N, 2), span, seed, {}, reports, shipped=statuses)
 
     return build
 

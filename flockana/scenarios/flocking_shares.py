@@ -1,6 +1,7 @@
 """Shares of seeds in which Algorithms 1 and 2 flock, from the paper's start of 40 agents."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from flockana.environment.targets import LinearTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import velocity_mismatch
 from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import ROUNDING, component_count, finding
+from flockana.scenarios.findings import ROUNDING, component_count, finding, report
 from flockana.scenarios.olfati_saber import random_start
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
@@ -17,6 +18,7 @@ from flockana.theorems import Claim, Tolerances
 _N, _SEEDS = 40, 200  # a tenth of a second each
 
 
+@report("flocks", "the run ends as one flock with matched velocities")
 def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Return whether the run ends connected, with matching velocities."""
     components = component_count(run)
@@ -24,59 +26,40 @@ def _flocks(run: Trajectory, tolerances: Tolerances) -> Claim:
     text = f"{components} component(s) at t = {run.t[-1]:g}, K̃ = {mismatch:.2g} of the square of the law's speed"
     stated = f"one component, K̃ <= {tolerances.mismatch:g}"
     if components > 1:
-        return finding("flocks", 1.5 - components, text, computed=components, stated=stated)
-    return finding("flocks", tolerances.mismatch - mismatch, text, computed=components, stated=stated, error=ROUNDING)
+        return finding(1.5 - components, text, computed=components, stated=stated)
+    return finding(tolerances.mismatch - mismatch, text, computed=components, stated=stated, error=ROUNDING)
 
 
+@report("fragments", "it rarely flocks: the run does not end as one flock")
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Return whether the run ends in several components, or with velocities that differ: not as one flock."""
-    flock = _flocks(run, tolerances)
+    flock = _flocks.check(run, tolerances)
     assert flock.margin is not None
     stated = f"several components, or K̃ > {tolerances.mismatch:g}"
-    return finding("fragments", -flock.margin, flock.detail, computed=flock.computed, stated=stated, error=flock.error)
-
-
-_FLOCKS = Report("flocks", "the run ends as one flock with matched velocities", _flocks)
-_FRAGMENTS = Report("fragments", "it rarely flocks: the run does not end as one flock", _fragments)
+    return finding(-flock.margin, flock.detail, computed=flock.computed, stated=stated, error=flock.error)
 
 
 def _share(
-    name: str, law: Algorithm1 | Algorithm2, text: str, *, end: float, report: Report
+    name: str, law: Algorithm1 | Algorithm2, claim: str, *, end: float, report: Report
 ) -> Callable[[int], Scenario]:
+    title = f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?"
+    source = (
+        f"Olfati-Saber 2006 says that {claim}; nothing is printed of how often. The start is that of Fig. 12 (n = "
+        f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours."
+    )
+    more: dict[str, Any] = {"seeds": _SEEDS, "settings": "printed parameters of Fig. 12, gains ours"}
+    more |= {"options": {"t_eval": np.array([0.0, end])}, "shipped": verified(f"source:{report.name}")}
+
     def build(seed: int = 0) -> Scenario:
-        return Scenario(
-            name,
-            f"{_N} agents, {type(law).__name__[:-1]} {type(law).__name__[-1]}: in how many seeds do they flock?",
-            f"Olfati-Saber 2006 says that {text}; nothing is printed of how often. The start is that of Fig. 12 (n = "
-            f"40, q normal with variance 2500, p uniform in [-2, -1]²), {end:g} time units; gains and seeds are ours.",
-            law,
-            *random_start(seed, _N, 2),
-            (0.0, end),
-            seed,
-            {},
-            (report,),
-            {"t_eval": np.array([0.0, end])},
-            seeds=_SEEDS,
-            settings="printed parameters of Fig. 12, gains ours",
-            shipped=verified(f"source:{report.name}"),
-        )
+        start, span = random_start(seed, _N, 2), (0.0, end)
+        return Scenario(name, title, source, law, *start, span, seed, {}, (report,), **more)
 
     return build
 
 
+_FOLLOWING = Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0)))
+_RARELY = "Algorithm 1 rarely flocks and often fragments"
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
-    "algorithm1-flocks": _share(
-        "algorithm1-flocks",
-        Algorithm1(),
-        "Algorithm 1 rarely flocks and often fragments",
-        end=15.0,
-        report=_FRAGMENTS,
-    ),
-    "algorithm2-flocks": _share(
-        "algorithm2-flocks",
-        Algorithm2(target=LinearTarget((200.0, 30.0), (5.0, 0.0))),
-        "Algorithm 2 flocks",
-        end=40.0,
-        report=_FLOCKS,
-    ),
+    "algorithm1-flocks": _share("algorithm1-flocks", Algorithm1(), _RARELY, end=15.0, report=_fragments),
+    "algorithm2-flocks": _share("algorithm2-flocks", _FOLLOWING, "Algorithm 2 flocks", end=40.0, report=_flocks),
 }

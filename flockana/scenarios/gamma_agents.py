@@ -14,25 +14,26 @@ from flockana.lattice.builders import hexagonal_spiral
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.peer_to_peer import PeerToPeer
 from flockana.scenarios.expected import verified
-from flockana.scenarios.findings import ROUNDING, component_count, finding
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import ROUNDING, component_count, connected, finding, report
+from flockana.scenarios.scenario import OURS, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.olfati_saber.gamma_agent import consistent
 
 _N = 8
-_REFERENCES = ("olfati-saber-2006", "flockana")
 _DRIFT = 4.0  # by which the copies of the two halves differ from the true velocity, across the way
 
 
+@report("consistent", "p_r is the true velocity of q_r")
 def _velocity_is_true(run: Trajectory, tolerances: Tolerances) -> Claim:
     found = consistent(run)
     margin = 0.5 if found.status == "met" else -0.5
     off = -float(found.margin or 0.0)
-    return finding("consistent", margin, f"mean dq_r/dt is p_r to {off:.2g}", computed=off, stated="dq_r/dt = p_r")
+    return finding(margin, f"mean dq_r/dt is p_r to {off:.2g}", computed=off, stated="dq_r/dt = p_r")
 
 
+@report("predicted", "copies part, or meet, as the linear theory says")
 def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Compare the copies with d'' = −(k + k₁) d − (b + k₂) d' for the distance d from their mean."""
     copies, t = run.law.copies, float(run.t[-1] - run.t[0])
@@ -46,24 +47,17 @@ def _copies_as_predicted(run: Trajectory, tolerances: Tolerances) -> Claim:
     off, size = float(np.abs(found - predicted).max()), run.scales.length
     apart = float(np.linalg.norm(found, axis=1).max())
     detail = f"copies end up to {apart:.3g} from their mean, as the linear theory says to {off:.1g}"
-    return finding(
-        "predicted", 1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d", error=ROUNDING
-    )
+    return finding(1e-6 - off / size, detail, computed=apart, stated="the linear theory's, to 1e-6 d", error=ROUNDING)
 
 
+@report("apart", "the flock falls into two halves")
 def _two_halves(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the flock has split into halves, as its copies have."""
     components = component_count(run)
     detail = f"{components} component(s) at t = {run.t[-1]:g}"
-    return finding("apart", components - 1.5, detail, computed=components, stated="more than 1")
+    return finding(components - 1.5, detail, computed=components, stated="more than 1")
 
 
-def _one_flock(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components = component_count(run)
-    detail = f"{components} component(s) at t = {run.t[-1]:g}"
-    return finding("together", 1.5 - components, detail, computed=components, stated=1)
-
-
+@report("centre", "the centre of mass follows the mean of the copies")
 def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the centre of mass follows the mean of the copies as a critically damped system."""
     law = run.law
@@ -78,10 +72,11 @@ def _centre_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"damped follower does to {off:.1g} d"
     )
     return finding(
-        "centre", 1e-4 - off, detail, computed=off, stated="q_c'' = −c1γ (q_c − q̄_r) − c2γ (p_c − p̄_r)", error=ROUNDING
+        1e-4 - off, detail, computed=off, stated="q_c'' = −c1γ (q_c − q̄_r) − c2γ (p_c − p̄_r)", error=ROUNDING
     )
 
 
+@report("balance", "H with the true velocities of the copies balances")
 def _balanced(run: Trajectory, tolerances: Tolerances) -> Claim:
     return balance(Observed.alone(run), [], tolerances)
 
@@ -94,67 +89,37 @@ def _start(seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _system(seed: int = 0) -> Scenario:
-    target = SystemTarget((30.0, 0.0), (0.0, 6.0), Spring((0.0, 0.0), 1.0, reach=8.0))
-    return Scenario(
-        "gamma-system",
-        "A γ-agent that is a system of its own leads eight agents round",
+    law = Algorithm2(target=SystemTarget((30.0, 0.0), (0.0, 6.0), Spring((0.0, 0.0), 1.0, reach=8.0)))
+    title = "A γ-agent that is a system of its own leads eight agents round"
+    source = (
         "Ours, on the γ-agent q_r' = p_r, p_r' = f_r(q_r, p_r): f_r = −x/√(1 + ‖x‖²/64), a spring whose pull is "
         "bounded, from (30, 0) at (0, 6); Algorithm 2 with the default gains, eight agents near a lattice about the "
-        "origin, each coordinate displaced by up to 0.2, velocities up to 0.3.",
-        Algorithm2(target=target),
-        *_start(seed),
-        (0.0, 30.0),
-        seed,
-        verified("energy", "os-3:i", "source"),
-        (Report("consistent", "p_r is the true velocity of q_r", _velocity_is_true),),
-        references=_REFERENCES,
+        "origin, each coordinate displaced by up to 0.2, velocities up to 0.3."
     )
+    expected, reports = verified("energy", "os-3:i", "source"), (_velocity_is_true,)
+    span = (0.0, 30.0)
+    return Scenario("gamma-system", title, source, law, *_start(seed), span, seed, expected, reports, references=OURS)
 
 
 def _peers(name: str, title: str, *, coupling: float) -> Callable[[int], Scenario]:
     """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
-    parted = coupling == 0.0
+    damping = 2.0 * np.sqrt(coupling)
+    coupled = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
+    source = (
+        "Ours, on Fig. 7 (a virtual leader against peer-to-peer copies of the γ-agent): eight agents near a "
+        "lattice, each with a copy of the γ-agent of its own, f_r = 0, all copies from (10, 0) at (2, 0), but for "
+        "-4 across the way in one half of the flock and +4 in the other; default gains. "
+        + (coupled if coupling else "The copies are not coupled, and part.")
+    )
+    end = report("together", "the flock stays one")(connected) if coupling else _two_halves
+    expected, reports = verified("source"), (_copies_as_predicted, end, _centre_follows, _balanced)
+    place, speed = np.tile([10.0, 0.0], (_N, 1)), np.repeat([[2.0, -_DRIFT], [2.0, _DRIFT]], _N // 2, axis=0)
+    couplings = {"position_coupling": coupling, "velocity_coupling": damping}
+    law = PeerToPeer(Copies(place, speed, Spring((0.0, 0.0), 0.0), **couplings))
 
     def build(seed: int = 0) -> Scenario:
-        q, p = _start(seed)
-        sides = np.where(np.arange(_N) < _N // 2, -_DRIFT, _DRIFT)
-        copies = Copies(
-            np.tile([10.0, 0.0], (_N, 1)),
-            np.column_stack([np.full(_N, 2.0), sides]),
-            Spring((0.0, 0.0), 0.0),
-            position_coupling=coupling,
-            velocity_coupling=2.0 * np.sqrt(coupling),
-        )
-        report = (
-            Report("apart", "the flock falls into two halves", _two_halves)
-            if parted
-            else Report("together", "the flock stays one", _one_flock)
-        )
-        return Scenario(
-            name,
-            title,
-            "Ours, on Fig. 7 (a virtual leader against peer-to-peer copies of the γ-agent): eight agents near a "
-            "lattice, each with a copy of the γ-agent of its own, f_r = 0, all copies from (10, 0) at (2, 0), but for "
-            "-4 across the way in one half of the flock and +4 in the other; default gains. "
-            + (
-                "The copies are not coupled, and part."
-                if parted
-                else f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {2.0 * np.sqrt(coupling):g}."
-            ),
-            PeerToPeer(copies),
-            q,
-            p,
-            (0.0, 25.0),
-            seed,
-            verified("source"),
-            (
-                Report("predicted", "copies part, or meet, as the linear theory says", _copies_as_predicted),
-                report,
-                Report("centre", "the centre of mass follows the mean of the copies", _centre_follows),
-                Report("balance", "H with the true velocities of the copies balances", _balanced),
-            ),
-            references=_REFERENCES,
-        )
+        start, span = _start(seed), (0.0, 25.0)
+        return Scenario(name, title, source, law, *start, span, seed, expected, reports, references=OURS)
 
     return build
 

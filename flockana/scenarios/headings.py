@@ -8,7 +8,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.scenarios.expected import vacuous, verified
-from flockana.scenarios.findings import finding, limit_report
+from flockana.scenarios.findings import finding, limit_report, report
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.classics.averaging import permanently_connected, permanently_separated
@@ -37,75 +37,48 @@ def _last(run: Trajectory) -> tuple[HeadingAveraging, FloatArray, FloatArray]:
     return run.law, run.q[-1], run.extra["heading"][-1]
 
 
+@report("apart-at-first", "the net is not connected at every instant")
 def _apart_at_first(run: Trajectory, tolerances: Tolerances) -> Claim:
     steps = int(np.sum(run.metric("connectivity") < 1.0))
     text = f"the net is not connected at {steps} of {len(run.t)} instants"
-    return finding("apart-at-first", steps - 0.5, text, computed=steps, stated="at some")
+    return finding(steps - 0.5, text, computed=steps, stated="at some")
 
 
+@report("one-flock", "all headings agree in the end")
 def _agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     end = float(np.ptp(run.extra["heading"][-1]))
     text = f"headings differ by {end:.2g} at the end"
-    return limit_report("one-flock", permanently_connected(*_last(run)), text, computed=end, stated="one heading")
+    return limit_report(permanently_connected(*_last(run)), text, computed=end, stated="one heading")
 
 
+@report("two-flocks", "the groups never meet again, their headings never agree")
 def _never_agrees(run: Trajectory, tolerances: Tolerances) -> Claim:
     heading = run.extra["heading"][-1]
     text = f"headings differ by {np.ptp(heading):.3g} radians at the end"
-    return limit_report("two-flocks", permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
+    return limit_report(permanently_separated(*_last(run)), text, computed=float(np.ptp(heading)))
 
 
 def _build(
-    name: str,
-    title: str,
-    heading: float,
-    steps: int,
-    expected: dict[str, Status],
-    reports: tuple[Report, ...],
+    name: str, title: str, heading: float, steps: int, expected: dict[str, Status], *reports: Report
 ) -> Callable[..., Scenario]:
+    source = (
+        "Ours, on Jadbabaie, Lin and Morse's model: two groups of two by three agents, 0.7 r apart within a group, "
+        "3 r between the centres, headings mirrored, each coordinate and heading shaken by up to 0.05."
+    )
+
     def build(seed: int = 0) -> Scenario:
-        law, q, p = _two_groups(heading, seed)
-        return Scenario(
-            name,
-            title,
-            "Ours, on Jadbabaie, Lin and Morse's model: two groups of two by three agents, 0.7 r apart within a group, "
-            "3 r between the centres, headings mirrored, each coordinate and heading shaken by up to 0.05.",
-            law,
-            q,
-            p,
-            (0.0, float(steps)),
-            seed,
-            expected,
-            reports,
-            references=_REFERENCES,
-        )
+        parts, span = _two_groups(heading, seed), (0.0, float(steps))
+        return Scenario(name, title, source, *parts, span, seed, expected, reports, references=_REFERENCES)
 
     return build
 
 
-_TOGETHER = verified("jlm-headings", "jlm-headings:contraction", "jlm-headings:agreement", "source")
-_PARTED = (
-    verified("jlm-headings:hull") | vacuous("jlm-headings:contraction", "jlm-headings:agreement") | verified("source")
-)
-
+_MEET, _PART = verified("jlm-headings"), verified("jlm-headings:hull")
+_MEET |= verified("jlm-headings:contraction", "jlm-headings:agreement", "source")
+_PART |= vacuous("jlm-headings:contraction", "jlm-headings:agreement") | verified("source")
+_MEETING = "Two groups meet: linked together over a long window, then at every step"
+_PARTING = "Two groups separate: never linked together, two headings permanently"
 SCENARIOS = {
-    "headings-meet": _build(
-        "headings-meet",
-        "Two groups meet: linked together over a long window, then at every step",
-        1.2,
-        400,
-        _TOGETHER,
-        (
-            Report("apart-at-first", "the net is not connected at every instant", _apart_at_first),
-            Report("one-flock", "all headings agree in the end", _agrees),
-        ),
-    ),
-    "headings-part": _build(
-        "headings-part",
-        "Two groups separate: never linked together, two headings permanently",
-        2.0,
-        100,
-        _PARTED,
-        (Report("two-flocks", "the groups never meet again, their headings never agree", _never_agrees),),
-    ),
+    "headings-meet": _build("headings-meet", _MEETING, 1.2, 400, _MEET, _apart_at_first, _agrees),
+    "headings-part": _build("headings-part", _PARTING, 2.0, 100, _PART, _never_agrees),
 }

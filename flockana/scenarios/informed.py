@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import pi
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from flockana.laws.composition import compose
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.measures.followers import following
 from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, finding
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import ROUNDING, finding, report
+from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Claim, Tolerances
 
 _C_STAR = 523838.11786644866  # ψ_α(0) for a = b = 5e4; to compute it would load the compiler
@@ -35,40 +36,36 @@ def _near_lattice(seed: int, n: int, noise: float) -> tuple[FloatArray, FloatArr
     return q, generator.uniform(-0.3, 0.3, (n, 2))
 
 
+@report("others", "an agent that is never linked to an informed agent goes its own way")
 def _others_drift(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the four isolated agents keep their mean velocity."""
     mean = run.p[:, -4:].mean(axis=1)
     change = float(np.abs(mean[-1] - mean[0]).max()) / run.scales.speed
     text = f"the mean velocity of the four agents out of reach changes by {change:.2g} of the law's speed"
-    return finding("others", 1e-6 - change, text, computed=change, stated="no change", error=ROUNDING)
+    return finding(1e-6 - change, text, computed=change, stated="no change", error=ROUNDING)
 
 
 def _few(seed: int = 0) -> Scenario:
     q, p = _near_lattice(seed, 7, 0.2)
     others = hexagonal_spiral(4, AlphaInteraction().d) + np.array([_APART, 0.0])
     law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=(0, 2), agents=len(q) + 4)
-    return Scenario(
-        "informed-few",
-        "Two of eleven agents know the leader: those linked to them follow, the others drift on",
+    title = "Two of eleven agents know the leader: those linked to them follow, the others drift on"
+    source = (
         "Ours, on Su, Wang and Lin 2009: Algorithm 2 with default gains, seven agents near a patch of the lattice of "
-        "which two feel a leader of constant velocity (1, ½), and four more out of everybody's reach.",
-        law,
-        np.vstack([q, others]),
-        np.vstack([p, np.tile([0.1, -0.2], (4, 1))]),
-        (0.0, 90.0),
-        seed,
+        "which two feel a leader of constant velocity (1, ½), and four more out of everybody's reach."
+    )
+    q, p = np.vstack([q, others]), np.vstack([p, np.tile([0.1, -0.2], (4, 1))])
+    expected = (
         verified("su-informed:energy", "su-informed:distance", "su-informed:informed")
         | inconclusive("su-informed:linked")  # a run does not show that links last
         | verified("su-informed:pairs", "su-informed:one-instant", "su-informed:no-collision", "energy:balance")
         | vacuous("energy:rate")
-        | verified("source"),
-        (Report("others", "an agent that is never linked to an informed agent goes its own way", _others_drift),),
-        {
-            "t_eval": np.linspace(0.0, 90.0, 241),
-            "rtol": 1e-11,
-        },  # so tightly that the decay is seen through many constants
-        references=_REFERENCES,
+        | verified("source")
     )
+    # so tightly that the decay is seen through many constants
+    options = {"t_eval": np.linspace(0.0, 90.0, 241), "rtol": 1e-11}
+    reports, span = (_others_drift,), (0.0, 90.0)
+    return Scenario("informed-few", title, source, law, q, p, span, seed, expected, reports, options, _REFERENCES)
 
 
 def _one_informed(seed: int = 0) -> Scenario:
@@ -76,23 +73,19 @@ def _one_informed(seed: int = 0) -> Scenario:
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
     gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
-    return Scenario(
-        "informed-through",
-        "One agent runs through two others: two pairs collide, with the energy of one",
+    title = "One agent runs through two others: two pairs collide, with the energy of one"
+    source = (
         "Ours, on Su, Wang and Lin 2009 and erratum E13: the start of E13 on a line; of three agents the fast one is "
-        "informed, and the leader moves at a third of its speed.",
-        Algorithm2(alpha, gains, LinearTarget((0.0,), (speed / 3.0,))),
-        np.array([[-12.0], [0.0], [30.0]]),
-        np.array([[speed], [0.0], [0.0]]),
-        (0.0, 0.03),
-        seed,
-        refuted("su-informed", "su-informed:pairs")
-        | verified("su-informed:one-instant", "su-informed:energy", "su-informed:distance")
-        | vacuous("su-informed:no-collision"),
-        references=_REFERENCES,
+        "informed, and the leader moves at a third of its speed."
     )
+    law = Algorithm2(alpha, gains, LinearTarget((0.0,), (speed / 3.0,)))
+    q, p = np.array([[-12.0], [0.0], [30.0]]), np.array([[speed], [0.0], [0.0]])
+    expected = refuted("su-informed", "su-informed:pairs") | vacuous("su-informed:no-collision")
+    expected |= verified("su-informed:one-instant", "su-informed:energy", "su-informed:distance")
+    return Scenario("informed-through", title, source, law, q, p, (0.0, 0.03), seed, expected, references=_REFERENCES)
 
 
+@report("lag", "the centre of mass does not come to the leader")
 def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Compare the centre's lag behind a circling leader with |a_r|/|c1 − ω² + iωc2|."""
     gains, path = run.law.gains, run.law.target
@@ -101,47 +94,34 @@ def _lag(run: Trajectory, tolerances: Tolerances) -> Claim:
     found = float(np.linalg.norm(run.q[-1].mean(axis=0) - path.position(float(run.t[-1]))))
     off = abs(found / lag - 1.0)
     detail = f"the centre of mass ends {found:.6g} from the leader, where the transfer function says {lag:.6g}"
-    return finding("lag", 1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
+    return finding(1e-6 - off, detail, computed=found, stated=lag, error=ROUNDING)
 
 
 def _varying(name: str, title: str, *, feedforward: bool) -> Callable[[int], Scenario]:
     expected = verified("energy", "cohesion")
+    law: Any = Algorithm2(target=_CIRCLE)
+    told = "; its acceleration is not told."
     if feedforward:
         expected |= verified("su-varying", "su-varying:centre", "su-varying:velocities", "su-varying:distance")
         expected |= verified("collision-energy:below")
+        law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, feedforward=True)
+        told = " and are told its acceleration."
     else:
         expected |= vacuous("su-varying") | verified("source")
+    source = (
+        "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
+        f"radius 20{told}"
+    )
+    reports, span = () if feedforward else (_lag,), (0.0, 40.0)
 
     def build(seed: int = 0) -> Scenario:
-        q, p = _near_lattice(seed, 12, 0.2)
-        plain = Algorithm2(target=_CIRCLE)
-        law = (
-            compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_CIRCLE, feedforward=True)
-            if feedforward
-            else plain
-        )
-        return Scenario(
-            name,
-            title,
-            "Ours, on Su, Wang and Lin 2009: twelve agents near a lattice, all of which feel a leader on a circle of "
-            + (
-                "radius 20 and are told its acceleration."
-                if feedforward
-                else "radius 20; its acceleration is not told."
-            ),
-            law,
-            q,
-            p,
-            (0.0, 40.0),
-            seed,
-            expected,
-            () if feedforward else (Report("lag", "the centre of mass does not come to the leader", _lag),),
-            references=_REFERENCES,
-        )
+        start = _near_lattice(seed, 12, 0.2)
+        return Scenario(name, title, source, law, *start, span, seed, expected, reports, references=_REFERENCES)
 
     return build
 
 
+@report("informed-follow", "all informed agents adopt the leader's velocity")
 def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that all informed agents follow at the end."""
     who = np.asarray(run.law.gains.c1_gamma) > 0.0
@@ -149,14 +129,15 @@ def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
     text = (
         f"{count} of {of} informed agents, and {int(following(run).sum())} of {run.n} in all, move as the leader does"
     )
-    return finding("informed-follow", count - of + 0.5, text, computed=count, stated=of)
+    return finding(count - of + 0.5, text, computed=count, stated=of)
 
 
+@report("most-follow", "more than half of all agents follow")
 def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that more than half of all agents follow at the end."""
     count = int(following(run).sum())
     text = f"{count} of {run.n} agents move as the leader does"
-    return finding("most-follow", count - run.n // 2 - 0.5, text, computed=count, stated=f"more than {run.n // 2}")
+    return finding(count - run.n // 2 - 0.5, text, computed=count, stated=f"more than {run.n // 2}")
 
 
 def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenario:
@@ -165,40 +146,26 @@ def informed_survey(seed: int = 0, *, informed: int = 12, n: int = 60) -> Scenar
         raise ArgumentError(f"informed = {informed}: expected 1 to {n}, the number of agents")
     generator, who = np.random.default_rng(seed), range(informed)
     law = compose(pair=AlphaInteraction(), consensus=_CONSENSUS, navigation=_LEADER, informed=who, agents=n)
-    return Scenario(
-        "informed-survey",
-        f"{informed} of {n} agents, spread over a square, know the leader: how many follow?",
+    title = f"{informed} of {n} agents, spread over a square, know the leader: how many follow?"
+    source = (
         "Su, Wang and Lin 2009 say that few informed agents lead most of a flock, and that more of them lead a "
         f"larger share. Ours: n = {n}, q uniform in a square of side {_BOX:g}, p uniform in [-1, 1]², leader from (6, "
-        "0) at (1, ½), 80 time units; an option of the scenario says how many are informed.",
-        law,
-        generator.uniform(-0.5 * _BOX, 0.5 * _BOX, (n, 2)),
-        generator.uniform(-_SPEED, _SPEED, (n, 2)),
-        (0.0, 80.0),
-        seed,
-        verified("su-informed:energy", "su-informed:distance"),
-        (
-            Report("informed-follow", "all informed agents adopt the leader's velocity", _some_follow),
-            Report("most-follow", "more than half of all agents follow", _most_follow),
-        ),
-        {"t_eval": np.linspace(0.0, 80.0, 81)},
-        references=_REFERENCES,
-        shipped=verified("source"),
+        "0) at (1, ½), 80 time units; an option of the scenario says how many are informed."
     )
+    q, p = generator.uniform(-0.5 * _BOX, 0.5 * _BOX, (n, 2)), generator.uniform(-_SPEED, _SPEED, (n, 2))
+    expected = verified("su-informed:energy", "su-informed:distance")
+    more: dict[str, Any] = {"references": _REFERENCES, "shipped": verified("source")}
+    more["options"] = {"t_eval": np.linspace(0.0, 80.0, 81)}
+    reports = (_some_follow, _most_follow)
+    return Scenario("informed-survey", title, source, law, q, p, (0.0, 80.0), seed, expected, reports, **more)
 
 
+_KNOWN = "A circling leader whose acceleration all agents know: the centre of mass converges to it"
+_UNKNOWN = "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind"
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "informed-few": _few,
     "informed-survey": informed_survey,
     "informed-through": _one_informed,
-    "leader-known": _varying(
-        "leader-known",
-        "A circling leader whose acceleration all agents know: the centre of mass converges to it",
-        feedforward=True,
-    ),
-    "leader-unknown": _varying(
-        "leader-unknown",
-        "A circling leader whose acceleration nobody knows: Algorithm 2 lags behind",
-        feedforward=False,
-    ),
+    "leader-known": _varying("leader-known", _KNOWN, feedforward=True),
+    "leader-unknown": _varying("leader-unknown", _UNKNOWN, feedforward=False),
 }

@@ -6,6 +6,7 @@ averaged: then forces are mutual, momentum is kept, and H falls but where percep
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,8 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.metrics import coordination
 from flockana.measures.perception import both_ways, random_out_tree
 from flockana.scenarios.expected import refuted, vacuous, verified
-from flockana.scenarios.findings import finding, in_source_units
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import finding, in_source_units, report
+from flockana.scenarios.scenario import Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.bearing_distance.j11 import ALIGNED, DT, DURATION, LONGER, RECOMMENDED, minimal_start
 
@@ -23,6 +24,7 @@ _SETTLED = 0.1  # largest relative change of a distance over the last tenth of t
 _REFERENCES = ("jond-2025",)
 
 
+@report("cohesive", "the flock is cohesive")
 def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
     share = float(run.window(run.t[-1], run.t[-1]).metric("giant_share")[-1])  # of the end alone: it is costly
     radius = run.metric("cohesion_radius")
@@ -30,37 +32,35 @@ def _cohesive(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"{share:.0%} of the agents are in one component at the end; R goes from {radius[0]:.3g} to {radius[-1]:.3g}"
     )
     missing = run.n - round(share * run.n)
-    return finding("cohesive", 0.5 - missing, detail, computed=share, stated="one component")
+    return finding(0.5 - missing, detail, computed=share, stated="one component")
 
 
+@report("aligned", "the agents are aligned")
 def _aligned(run: Trajectory, tolerances: Tolerances) -> Claim:
     C = coordination(run.p[-1])
     detail = f"the mean cosine between two velocities goes from {coordination(run.p[0]):.2f} to {C:.4f}"
-    return finding("aligned", C - ALIGNED, detail, computed=C, stated=f">= {ALIGNED:g}")
+    return finding(C - ALIGNED, detail, computed=C, stated=f">= {ALIGNED:g}")
 
 
+@report("collision-free", "no two agents collide")
 def _collision_free(run: Trajectory, tolerances: Tolerances) -> Claim:
     D = run.metric("min_distance")
     k = int(np.argmin(D))
     detail = f"the least distance at the steps is {D[k]:.3g} m, at t = {run.t[k]:.3g} s; {D[-1]:.3g} m at the end"
-    return finding("collision-free", float(D[k]), detail, computed=float(D[k]), stated="> 0")
+    return finding(float(D[k]), detail, computed=float(D[k]), stated="> 0")
 
 
+@report("stable", "distances between agents come to rest")
 def _stable(run: Trajectory, tolerances: Tolerances) -> Claim:
     before = int(np.searchsorted(run.t, run.t[-1] - 0.1 * (run.t[-1] - run.t[0])))
     i, j = np.triu_indices(run.n, 1)
     old, new = (np.linalg.norm(run.q[k, i] - run.q[k, j], axis=1) for k in (before, -1))
     change = float(np.abs(new / old - 1.0).max())
     detail = f"from t = {run.t[before]:.3g} s on, a distance between two agents still changes by {change:.2g} of itself"
-    return finding("stable", _SETTLED - change, detail, computed=change, stated=f"<= {_SETTLED:g}")
+    return finding(_SETTLED - change, detail, computed=change, stated=f"<= {_SETTLED:g}")
 
 
-_REPORTS = (
-    Report("cohesive", "the flock is cohesive", _cohesive),
-    Report("collision-free", "no two agents collide", _collision_free),
-    Report("aligned", "the agents are aligned", _aligned),
-    Report("stable", "distances between agents come to rest", _stable),
-)
+_REPORTS = (_cohesive, _collision_free, _aligned, _stable)
 
 
 def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
@@ -80,24 +80,18 @@ def _flock(m: int, *, printed: bool) -> Callable[[int], Scenario]:
     if m == 3:
         expected |= (refuted if printed else verified)("source:stable")
 
+    kind = "printed" if printed else "recommended"
+    name = f"minimal-{m}d{'-printed' if printed else ''}"
+    title = f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}"
+    source = (
+        f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {how}. "
+        "Velocity first, then position, all agents at once; the seed is ours."
+    )
+    reports, steps, span = in_source_units(lambda: law.scales, _REPORTS), law.discrete(DT), (0.0, duration)
+    more: dict[str, Any] = {"references": _REFERENCES, "seeds": 200, "settings": f"{kind} settings"}
+
     def build(seed: int = 0) -> Scenario:
-        q, p = minimal_start(m, seed)
-        return Scenario(
-            f"minimal-{m}d{'-printed' if printed else ''}",
-            f"Minimal bearing-distance model, 60 agents in {m} dimensions{'' if printed else ', recommended settings'}",
-            f"Bearing-distance paper, Fig. 10, n = 60, q uniform in [0, 30]^{m} m, p in [-1, 1]^{m} m/s. {how}. "
-            "Velocity first, then position, all agents at once; the seed is ours.",
-            law.discrete(DT),
-            q,
-            p,
-            (0.0, duration),
-            seed,
-            expected,
-            in_source_units(lambda: law.scales, _REPORTS),
-            references=_REFERENCES,
-            seeds=200,
-            settings=f"{'printed' if printed else 'recommended'} settings",
-        )
+        return Scenario(name, title, source, steps, *minimal_start(m, seed), span, seed, expected, reports, **more)
 
     return build
 
@@ -108,19 +102,13 @@ def _zone_tree(seed: int = 0, n: int = 8, m: int = 2) -> Scenario:
     expected = refuted("zone-1-printed", "zone-1-printed:equilibrium") | verified(
         "zone-1-printed:velocities", "zone-1-corrected", "zone-1-corrected:lengths", "zone-1-corrected:spectrum"
     )
-    return Scenario(
-        "zone-tree",
-        f"Theorem 1 of the bearing-distance paper on a directed tree of {n} agents",
+    title = f"Theorem 1 of the bearing-distance paper on a directed tree of {n} agents"
+    source = (
         "Ours: a random rooted out-tree that never changes, α_i r_i = 2 m for all, σ = μ = 1, q uniform in a box of "
-        "6 m, p in [-1, 1] m/s.",
-        law,
-        rng.uniform(0.0, 6.0, (n, m)),
-        rng.uniform(-1.0, 1.0, (n, m)),
-        (0.0, 100.0),
-        seed,
-        expected,
-        references=_REFERENCES,
+        "6 m, p in [-1, 1] m/s."
     )
+    q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
+    return Scenario("zone-tree", title, source, law, q, p, (0.0, 100.0), seed, expected, references=_REFERENCES)
 
 
 def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
@@ -129,19 +117,14 @@ def _zone_path(seed: int = 0, n: int = 6, m: int = 2) -> Scenario:
     expected = vacuous("zone-1-printed") | verified(
         "zone-1-corrected", "zone-1-corrected:energy", "zone-1-corrected:lengths", "zone-1-corrected:spectrum"
     )
-    return Scenario(
-        "zone-path",
-        f"The corrected Theorem 1 of the bearing-distance paper on an undirected path of {n} agents",
+    title = f"The corrected Theorem 1 of the bearing-distance paper on an undirected path of {n} agents"
+    source = (
         "Ours: a path that never changes, mutual forces (velocity differences summed), α_i r_i = 2 m for all, "
-        "σ = μ = 1, q uniform in a box of 6 m, p in [-1, 1] m/s.",
-        MinimalFlocking(edges=path, spacing=2.0, normalised=False),
-        rng.uniform(0.0, 6.0, (n, m)),
-        rng.uniform(-1.0, 1.0, (n, m)),
-        (0.0, 200.0),
-        seed,
-        expected,
-        references=_REFERENCES,
+        "σ = μ = 1, q uniform in a box of 6 m, p in [-1, 1] m/s."
     )
+    law = MinimalFlocking(edges=path, spacing=2.0, normalised=False)
+    q, p = rng.uniform(0.0, 6.0, (n, m)), rng.uniform(-1.0, 1.0, (n, m))
+    return Scenario("zone-path", title, source, law, q, p, (0.0, 200.0), seed, expected, references=_REFERENCES)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {

@@ -6,6 +6,7 @@ rate (erratum E12). What the project reports (`msn_reports`) is judged on one ra
 
 from collections.abc import Callable
 from math import sqrt
+from typing import Any
 
 import numpy as np
 
@@ -45,6 +46,11 @@ _SOURCE = {
 }
 
 
+# statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3
+_SHIPPED = {2: verified("source"), 3: refuted("source:width")}
+_REFERENCES = ("isola-2024", "olfati-saber-2006")
+
+
 def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
     if case == 1:
         return Algorithm1(_ALPHA, Gains(c1_alpha=50.0, c2_alpha=2.0 * sqrt(50.0)))
@@ -76,15 +82,10 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
     source = refuted("source") | of_the_map("source:spikes") | verified("source:connected")
     source |= verified("source:less-connected") if case == 3 else {}
     source |= verified("source:amplitude" if case == 3 else "source:circle") | refuted("source:separated")
-    theorems = (
-        inconclusive("os-3")  # 4.851 time units are too short for a limit; nothing that can be refuted is
-        | verified("os-3:i")
-        | inconclusive("os-3:ii")
-        | verified("os-3:iii", "os-3:iv-printed")  # (iii) by its proof
-        | refuted("E12")
-        | verified("E12:predicted", "E12:consistent")
-        | refuted("E12:printed")
-    )
+    # 4.851 time units are too short for a limit; nothing that can be refuted is; (iii) holds by its proof
+    theorems = inconclusive("os-3") | verified("os-3:i") | inconclusive("os-3:ii")
+    theorems |= verified("os-3:iii", "os-3:iv-printed") | refuted("E12")
+    theorems |= verified("E12:predicted", "E12:consistent") | refuted("E12:printed")
     return none | ({} if printed else theorems) | source
 
 
@@ -103,27 +104,17 @@ def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: flo
     )
     own = (speed, away) == (1.0, 0.0)
     changed = "" if own else f" Ours: the γ-agent at {speed:g} times its speed, the flock {away:g} radii to the right."
-    return Scenario(
-        f"msn-case{case}{'-printed' if printed else ''}",
-        f"MSN project, case {case}. {_TITLES[case]}{' (its own discretisation)' if printed else ''}",
+    name = f"msn-case{case}{'-printed' if printed else ''}"
+    title = f"MSN project, case {case}. {_TITLES[case]}{' (its own discretisation)' if printed else ''}"
+    source = (
         f"MSN project, case {case}, {how}. n = 100 in an area of {side:g} by {side:g} at rest, d = 15, r = 18, "
-        f"ε = 0.1, h = 0.1, a = b = 3. {_SOURCE[case]} The seed is ours.{changed}",
-        law,
-        q,
-        np.zeros_like(q),
-        (0.0, end),
-        seed,
-        _expected(case, printed=printed) if own else verified("source:circle"),
-        in_source_units(lambda: continuous.scales, REPORTS[case]),
-        references=("isola-2024", "olfati-saber-2006"),
-        shipped=_shipped(case) if own else {},
-        instants=tuple(i * DT for i in CAPTURES),
+        f"ε = 0.1, h = 0.1, a = b = 3. {_SOURCE[case]} The seed is ours.{changed}"
     )
-
-
-def _shipped(case: int) -> dict[str, Status]:
-    """Return statuses that differ for other starts: the swing of case 2, and sometimes the width of case 3."""
-    return {2: verified("source"), 3: refuted("source:width")}.get(case, {})
+    expected = _expected(case, printed=printed) if own else verified("source:circle")
+    reports = in_source_units(lambda: continuous.scales, REPORTS[case])
+    more: dict[str, Any] = {"references": _REFERENCES, "shipped": _SHIPPED.get(case, {}) if own else {}}
+    more["instants"] = tuple(i * DT for i in CAPTURES)
+    return Scenario(name, title, source, law, q, np.zeros_like(q), (0.0, end), seed, expected, reports, **more)
 
 
 def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
@@ -139,21 +130,16 @@ def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
 def _static(seed: int = 0) -> Scenario:
     """Build erratum E16 on the project's flock: α gains above those of γ, and a target at rest."""
     law = Algorithm2(_ALPHA, _STRONG, StaticTarget((75.0, 75.0)))
-    start = np.random.default_rng(seed).uniform(0.0, 150.0, (_N, 2))
-    return Scenario(
-        "msn-static",
-        "MSN project's gains, 100 : 70, target at rest: pairs of agents coincide",
+    q = np.random.default_rng(seed).uniform(0.0, 150.0, (_N, 2))
+    title = "MSN project's gains, 100 : 70, target at rest: pairs of agents coincide"
+    source = (
         "Ours, on the MSN project's sentence that α coefficients must exceed the γ coefficients (E16): n, area, "
-        " start, pair law and gains of its cases 3 and 4, a γ-agent at rest at (75, 75), for 60 time units.",
-        law,
-        start,
-        np.zeros_like(start),
-        (0.0, 60.0),
-        seed,
-        verified("source", "source:coincide"),
-        in_source_units(lambda: law.scales, STATIC),
-        references=("isola-2024", "olfati-saber-2006"),
+        " start, pair law and gains of its cases 3 and 4, a γ-agent at rest at (75, 75), for 60 time units."
     )
+    start = q, np.zeros_like(q)
+    expected, reports = verified("source", "source:coincide"), in_source_units(lambda: law.scales, STATIC)
+    span = (0.0, 60.0)
+    return Scenario("msn-static", title, source, law, *start, span, seed, expected, reports, references=_REFERENCES)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {

@@ -3,20 +3,18 @@
 Where it gives a figure, the spread from start to start was measured over twenty starts of the map and is allowed for.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from flockana.base.vectors import lengths
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import Gains
 from flockana.laws.msn import MSNDiscretisation
 from flockana.measures.metrics import coincident_pairs, connectivity, giant_share
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.scenarios.findings import component_count, finding, same_accuracy
+from flockana.scenarios.findings import component_count, finding, report, rerun, same_accuracy
 from flockana.scenarios.scenario import Report
 from flockana.theorems import Claim, Tolerances
 
@@ -33,40 +31,45 @@ def _rank(run: Trajectory, k: int = -1, *, typeset: bool = False) -> float:
     return printed_rank_connectivity(run.n, links(run.q[k], run.law.alpha.r), typeset=typeset)
 
 
+@report("fragments", "the net falls apart")
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     components, share = component_count(run), giant_share(run.q[-1], run.law.alpha.r)
     detail = f"{components} components at the end, the largest with {share:.0%} of the agents"
-    return finding("fragments", components - 1.5, detail, computed=components, stated="more than 1")
+    return finding(components - 1.5, detail, computed=components, stated="more than 1")
 
 
-def _agreement(name: str, measured: float, stated: float, scatter: float, text: str) -> Claim:
+def _agreement(measured: float, stated: float, scatter: float, text: str) -> Claim:
     """Return a report of agreement with a published figure from a run with another random start."""
     margin = 0.05 + scatter - abs(measured - stated)
-    return finding(name, margin, text, computed=measured, stated=f"about {stated:g}")
+    return finding(margin, text, computed=measured, stated=f"about {stated:g}")
 
 
+@report("connectivity", "rank(A)/n ends at about 0.4")
 def _final_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
     rank, true = _rank(run), connectivity(run.q[-1], run.law.alpha.r)
     text = f"rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.4; C = rank(L)/(n - 1) is {true:.2f}"
-    return _agreement("connectivity", rank, 0.4, _SCATTER[50.0], text)
+    return _agreement(rank, 0.4, _SCATTER[50.0], text)
 
 
+@report("connectivity-as-typeset", "rank(A)/n ends at about 0.4, by its code")
 def _final_rank_as_typeset(run: Trajectory, tolerances: Tolerances) -> Claim:
     rank = _rank(run, typeset=True)
     text = f"the code as typeset keeps a unit diagonal but for the last agent: rank(A)/n = {rank:.2f}, reported 0.4"
-    return _agreement("connectivity-as-typeset", rank, 0.4, _SCATTER[50.0], text)
+    return _agreement(rank, 0.4, _SCATTER[50.0], text)
 
 
+@report("unit-gains", "with unit gains it ends at about 0.7")
 def _unit_gains(run: Trajectory, tolerances: Tolerances) -> Claim:
     slow = Gains(c1_alpha=1.0, c2_alpha=1.0)
     was = run.law
     printed = isinstance(was, MSNDiscretisation)
     law = replace(was, law=replace(was.law, gains=slow)) if printed else replace(was, gains=slow)
-    rank = _rank(simulate(law, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **same_accuracy(run)))
+    rank = _rank(rerun(run, law, **same_accuracy(run)))
     text = f"with unit gains rank(A)/n with a zero diagonal is {rank:.2f}, reported 0.7"
-    return _agreement("unit-gains", rank, 0.7, _SCATTER[1.0], text)
+    return _agreement(rank, 0.7, _SCATTER[1.0], text)
 
 
+@report("top-speed", "some agents move at about 200, others hardly move")
 def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
     speed = np.linalg.norm(run.p[-1], axis=1)
     margin = 50.0 - abs(float(speed.max()) - 200.0)
@@ -74,7 +77,7 @@ def _top_speed(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"speeds at the end are {speed.min():.3g} to {speed.max():.3g} per time unit; reported 0 to about 200, there "
         "called per iteration"
     )
-    return finding("top-speed", margin, text, computed=float(speed.max()), stated="about 200, to one digit")
+    return finding(margin, text, computed=float(speed.max()), stated="about 200, to one digit")
 
 
 def _last_apart(run: Trajectory) -> float:
@@ -83,15 +86,17 @@ def _last_apart(run: Trajectory) -> float:
     return float(apart[-1]) / DT if apart.size else -1.0
 
 
-def _connected_from(name: str, iteration: float, stated: str) -> Callable[[Trajectory, Tolerances], Claim]:
+def _connected_from(text: str, iteration: float, stated: str) -> Report:
+    @report("connected", text)
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         last = _last_apart(run)
         when = "connected at every sample" if last < 0.0 else f"last not connected at iteration {last:.1f}"
-        return finding(name, iteration - last, when, computed=last, stated=stated)
+        return finding(iteration - last, when, computed=last, stated=stated)
 
     return check
 
 
+@report("swing", "the flock oscillates between (0, 0) and (300, 300)")
 def _swing(run: Trajectory, tolerances: Tolerances) -> Claim:
     low, high = float(run.q.min()), float(run.q.max())
     margin = tolerances.agreement * 300.0 - max(abs(low), abs(high - 300.0))
@@ -100,9 +105,10 @@ def _swing(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"coordinates reach from {low:.1f} to {high:.1f}; the centre of mass from {centre.min():.1f} to "
         f"{centre.max():.1f}. The run covers 0.77 of one period, 2π/√c1γ"
     )
-    return finding("swing", margin, text, computed=(low, high), stated=(0.0, 300.0))
+    return finding(margin, text, computed=(low, high), stated=(0.0, 300.0))
 
 
+@report("fastest", "it is fastest at the target")
 def _fastest_at_target(run: Trajectory, tolerances: Tolerances) -> Claim:
     k = int(np.argmax(lengths(run.p).mean(axis=1)))
     away = np.linalg.norm(run.q.mean(axis=1) - run.law.target.position(0.0), axis=1)
@@ -110,20 +116,22 @@ def _fastest_at_target(run: Trajectory, tolerances: Tolerances) -> Claim:
     text = (
         f"mean speed peaks at t = {run.t[k]:.3g}, with the centre of mass at {share:.2g} of its swing from the target"
     )
-    return finding("fastest", 0.1 - share, text, computed=share, stated="at the target (0.1 of the swing)")
+    return finding(0.1 - share, text, computed=share, stated="at the target (0.1 of the swing)")
 
 
-def _smaller(name: str) -> Callable[[Trajectory, Tolerances], Claim]:
+def _smaller(name: str, text: str) -> Report:
+    @report(name, text)
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         from flockana.stability.tracking import response_ratio
 
         ratio, error = response_ratio(run)
         text = f"the centre of mass describes {ratio:.3f} of the γ-agent's path; why: erratum E12"
-        return finding(name, 1.0 - ratio, text, computed=ratio, stated="< 1", error=error)
+        return finding(1.0 - ratio, text, computed=ratio, stated="< 1", error=error)
 
     return check
 
 
+@report("spikes", "velocities spike")
 def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report outliers in speed after iteration 50, when the net has long been connected."""
     late = run.window(50 * DT, float(run.t[-1]))
@@ -135,16 +143,17 @@ def _spikes(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"after iteration 50 the fastest agent reaches {ratio:.3g} times the flock's mean speed (t = {late.t[k]:.3g}); "
         f"the net is not connected at {apart:.0%} of those samples"
     )
-    return finding("spikes", ratio - _SPIKE, text, computed=ratio, stated="about 4")
+    return finding(ratio - _SPIKE, text, computed=ratio, stated="about 4")
 
 
+@report("anticlockwise", "it turns counterclockwise")
 def _anticlockwise(run: Trajectory, tolerances: Tolerances) -> Claim:
     late = run.window(0.5 * float(run.t[-1]), float(run.t[-1]))
     x, v = late.q.mean(axis=1) - np.array(CENTRE), late.p.mean(axis=1)
     turning = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1))
     worst = float(turning.min())
     text = f"sine of the angle from radius to velocity of the centre of mass is {worst:.2f} or more in the second half"
-    return finding("anticlockwise", worst, text, computed=worst, stated="> 0")
+    return finding(worst, text, computed=worst, stated="> 0")
 
 
 @lru_cache(maxsize=1)
@@ -157,6 +166,7 @@ def _ranks_at_start(r: float) -> dict[float, float]:
     return ranks
 
 
+@report("less-connected", "it starts less connected than cases 1 and 2")
 def _less_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the start in the wide square is less connected than those of cases 1 and 2 in the narrow one."""
     near, wide = _ranks_at_start(run.law.alpha.r).values()
@@ -164,29 +174,32 @@ def _less_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"rank(A)/n at iteration 0, in the mean over {_SEEDS} seeds: {wide:.3f} in the square of 150, {near:.3f} in "
         f"that of 50; {_rank(run, 0):.2f} in this run"
     )
-    return finding("less-connected", near - wide, text, computed=(wide, near), stated="less than in cases 1 and 2")
+    return finding(near - wide, text, computed=(wide, near), stated="less than in cases 1 and 2")
 
 
+@report("full-rank", "its own measure rank(A)/n is 1.00 throughout")
 def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the project's connectivity is 1 at every sample."""
     ranks = [_rank(run, k) for k in range(len(run.t))]
     below = sum(rank < _FULL for rank in ranks)
     text = f"rank(A)/n with a zero diagonal is {min(ranks):.3g} or more at all {len(ranks)} samples"
-    return finding("full-rank", 0.5 - below, text, computed=min(ranks), stated="1.00 throughout")
+    return finding(0.5 - below, text, computed=min(ranks), stated="1.00 throughout")
 
 
+@report("width", "the flock is about as wide as the sine's period")
 def _width(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the flock is about one period wide, 0.5 to 1.5."""
     late = run.window(50 * DT, float(run.t[-1]))
     width = float(np.ptp(late.q[:, :, 0], axis=1).mean())
     ratio = width / _PERIOD
     text = f"the flock is {width:.3g} wide in the mean, {ratio:.2f} of the sine's period of {_PERIOD:g}"
-    return finding("width", 0.5 - abs(ratio - 1.0), text, computed=ratio, stated="about 1 (0.5 to 1.5)")
+    return finding(0.5 - abs(ratio - 1.0), text, computed=ratio, stated="about 1 (0.5 to 1.5)")
 
 
-def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
+def _separated(iteration: int, text: str) -> Report:
     """Report that a fast agent was separated from the net."""
 
+    @report("separated", text)
     def check(run: Trajectory, tolerances: Tolerances) -> Claim:
         late = run.window(iteration * DT, float(run.t[-1]))
         apart = int((late.metric("connectivity") < 1.0).sum())
@@ -199,46 +212,36 @@ def _separated(iteration: int) -> Callable[[Trajectory, Tolerances], Claim]:
             f"agent of all (t = {late.t[k]:.3g}) has {mates} neighbours, {away[i]:.3g} from the γ-agent, where the "
             f"flock is {away.min():.3g} to {away.max():.3g} from it"
         )
-        return finding("separated", apart - 0.5, text, computed=apart, stated="an agent separates, and re-attaches")
+        return finding(apart - 0.5, text, computed=apart, stated="an agent separates, and re-attaches")
 
     return check
 
 
+@report("coincide", "ours: α coefficients above those of γ do not suffice, pairs coincide")
 def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that agents coincide at the end although c1α > c1γ."""
     pairs = coincident_pairs(run.q[-1], tolerances.contact * run.law.alpha.d)
     text = f"c1α : c1γ = 100 : 70, and {pairs} pairs of agents coincide at t = {run.t[-1]:g} (erratum E16)"
-    return finding("coincide", pairs - 0.5, text, computed=pairs, stated="at least one pair coincides")
+    return finding(pairs - 0.5, text, computed=pairs, stated="at least one pair coincides")
 
 
-REPORTS = {
-    1: (
-        Report("fragments", "the net falls apart", _fragments),
-        Report("connectivity", "rank(A)/n ends at about 0.4", _final_rank),
-        Report("connectivity-as-typeset", "rank(A)/n ends at about 0.4, by its code", _final_rank_as_typeset),
-        Report("unit-gains", "with unit gains it ends at about 0.7", _unit_gains),
-        Report("top-speed", "some agents move at about 200, others hardly move", _top_speed),
-    ),
-    2: (
-        Report("connected", "connectivity is 1 throughout", _connected_from("connected", -0.5, "never apart")),
-        Report("full-rank", "its own measure rank(A)/n is 1.00 throughout", _full_rank),
-        Report("swing", "the flock oscillates between (0, 0) and (300, 300)", _swing),
-        Report("fastest", "it is fastest at the target", _fastest_at_target),
-    ),
+REPORTS: dict[int, tuple[Report, ...]] = {
+    1: (_fragments, _final_rank, _final_rank_as_typeset, _unit_gains, _top_speed),
+    2: (_connected_from("connectivity is 1 throughout", -0.5, "never apart"), _full_rank, _swing, _fastest_at_target),
     3: (
-        Report("less-connected", "it starts less connected than cases 1 and 2", _less_connected),
-        Report("connected", "connected by iteration 50", _connected_from("connected", 50.5, "by iteration 50")),
-        Report("amplitude", "the flock's sine is smaller than the γ-agent's", _smaller("amplitude")),
-        Report("spikes", "velocities spike", _spikes),
-        Report("width", "the flock is about as wide as the sine's period", _width),
-        Report("separated", "velocities spike as an agent separates, and re-attaches", _separated(50)),
+        _less_connected,
+        _connected_from("connected by iteration 50", 50.5, "by iteration 50"),
+        _smaller("amplitude", "the flock's sine is smaller than the γ-agent's"),
+        _spikes,
+        _width,
+        _separated(50, "velocities spike as an agent separates, and re-attaches"),
     ),
     4: (
-        Report("connected", "connected from about iteration 20 on", _connected_from("connected", 25.5, "about 20")),
-        Report("circle", "the flock's circle is smaller than the γ-agent's", _smaller("circle")),
-        Report("anticlockwise", "it turns counterclockwise", _anticlockwise),
-        Report("spikes", "single agents reach four times the flock's velocity", _spikes),
-        Report("separated", "they reach it as they separate from the flock, and re-attach", _separated(25)),
+        _connected_from("connected from about iteration 20 on", 25.5, "about 20"),
+        _smaller("circle", "the flock's circle is smaller than the γ-agent's"),
+        _anticlockwise,
+        replace(_spikes, text="single agents reach four times the flock's velocity"),
+        _separated(25, "they reach it as they separate from the flock, and re-attach"),
     ),
 }
-STATIC = (Report("coincide", "ours: α coefficients above those of γ do not suffice, pairs coincide", _coincide),)
+STATIC = (_coincide,)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from flockana.base.vectors import lengths
-from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
@@ -17,22 +16,28 @@ from flockana.laws.taylor_step import TaylorStep
 from flockana.measures.nets import link_lengths, links
 from flockana.measures.path_bounds import contacts
 from flockana.scenarios.expected import refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, component_count, finding, in_source_units, limit_report, same_accuracy
+from flockana.scenarios.findings import (
+    ROUNDING,
+    component_count,
+    finding,
+    in_source_units,
+    limit_report,
+    report,
+    rerun,
+    same_accuracy,
+)
 from flockana.scenarios.scenario import Report, Scenario
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
+from flockana.theorems.theorem import Status
 
 _FOLLOWED = 0.01  # of d: how near to the flow steps are that follow it
 _RELAXED = 0.1  # of ‖u_α‖ at the start
 _UNIT_FORCE = {"stiffness": 1.0, "damping": 1.0}
 _FOLLOWS = 0.01  # ‖u_γ‖ in the notebook's units that counts as following
 _UNIT = {"c1_alpha": 1.0, "c2_alpha": 1.0}
-_SWITCH: dict[Any, Any] = {
-    PushedAlgorithm1: Algorithm1,
-    PushedAlgorithm2: Algorithm2,
-    Algorithm1: PushedAlgorithm1,
-    Algorithm2: PushedAlgorithm2,
-}
+_PUSHED: dict[Any, Any] = {Algorithm1: PushedAlgorithm1, Algorithm2: PushedAlgorithm2}
+_SWITCH = _PUSHED | {pushed: plain for plain, pushed in _PUSHED.items()}
 
 
 def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
@@ -45,10 +50,10 @@ def _other(run: Trajectory) -> Trajectory:
     law = run.law
     shared = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other = _SWITCH[type(law)](**shared)
-    how = _integrator(other) or same_accuracy(run)
-    return simulate(other, run.q[0], run.p[0], (float(run.t[0]), float(run.t[-1])), **how)
+    return rerun(run, other, **(_integrator(other) or same_accuracy(run)))
 
 
+@report("push", "a tenfold push below 0.05 keeps agents apart")
 def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the push keeps agents farther apart; vacuous where it never acts."""
     own = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
@@ -67,9 +72,10 @@ def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"{len(own)} pair(s) of this run come within {MIN_DISTANCE:g}; the closest approach is {plain:.3g} without the "
         f"push and {pushed:.3g} with it, and final positions differ by up to {apart:.3g}"
     )
-    return finding("push", pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
+    return finding(pushed - plain, detail, computed=pushed, stated=f"> {plain:.6g}", error=blur)
 
 
+@report("follows", "agents take on the γ-agent's velocity")
 def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report the printed fall of one agent's ‖u_γ‖ to below 0.001 by the last of 150 steps."""
     # With c1γ = 0 and c2γ > 0 the energy falls by all relative motion, and the mean velocity follows exponentially: in
@@ -78,9 +84,10 @@ def _velocity_follows(run: Trajectory, tolerances: Tolerances) -> Claim:
     middle = float(np.median(pull))
     certificate = Certificate(max(-1.0, 1.0 - middle / _FOLLOWS), "that is what counts as following")
     detail = f"‖u_γ‖ at the end is {middle:.2g} in the median and {pull.max():.2g} at most"
-    return limit_report("follows", certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
+    return limit_report(certificate, detail, computed=middle, stated=f"below {_FOLLOWS:g}")
 
 
+@report("unit-direction", "n_ij is a normalised direction")
 def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that n_ij is a unit vector: its length ‖Δ‖/√(1 + ε‖Δ‖²) is below 1/√ε."""
     alpha = run.law.alpha
@@ -91,9 +98,10 @@ def _unit_directions(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"‖n_ij‖ of the {n.size} links at the start is {n.min():.3g} to {n.max():.3g}; it is 0 at coincidence and "
         f"could come near 1/√ε = {1.0 / np.sqrt(alpha.eps):.3g}"
     )
-    return finding("unit-direction", -off, detail, computed=off, stated="‖n_ij‖ = 1")
+    return finding(-off, detail, computed=off, stated="‖n_ij‖ = 1")
 
 
+@report("goal", "agents move toward the common goal")
 def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that agents move toward a common goal; with c1γ = 0 the law does not contain q_r."""
     place = run.law.target.position(0.0)
@@ -102,9 +110,10 @@ def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"the centre of mass is {first:.3g} from q_r at the start and {last:.3g} at the end: with c1γ = 0 nothing "
         "draws it there, and it drifts away with p_r"
     )
-    return finding("goal", (first - last) / run.scales.length, detail, computed=last, stated=f"below {first:.4g}")
+    return finding((first - last) / run.scales.length, detail, computed=last, stated=f"below {first:.4g}")
 
 
+@report("relaxes", "‖u_α‖ shrinks to about a hundredth")
 def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report the printed fall of u_α from about 5 to about 0.03, as a mean over all agents."""
     law = run.law
@@ -113,22 +122,14 @@ def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
         for k in (0, -1)
     )
     detail = f"mean ‖u_α‖ falls from {first:.3g} to {last:.2g}"
-    return finding("relaxes", _RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
+    return finding(_RELAXED - last / first, detail, computed=last / first, stated=f"<= {_RELAXED:g}")
 
 
+@report("flow", "the notebook's own steps follow the flow")
 def _follows_flow(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the notebook's steps follow the flow of the same law to 1 % of d."""
-    law, flow = (
-        run.law.law,
-        simulate(
-            run.law.law,
-            run.q[0],
-            run.p[0],
-            (float(run.t[0]), float(run.t[-1])),
-            t_eval=run.t,
-            **_integrator(run.law.law),
-        ),
-    )
+    law = run.law.law
+    flow = rerun(run, law, t_eval=run.t, **_integrator(law))
     apart = lengths(run.q - flow.q).max(axis=1) / law.alpha.d
     beyond = np.flatnonzero(apart > _FOLLOWED)
     since = f"from t = {run.t[beyond[0]]:.3g} on" if beyond.size else "at no time"
@@ -139,92 +140,75 @@ def _follows_flow(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"{component_count(flow)}, at energies of {energy:.5g} and {true:.5g}"
     )
     worst = float(apart.max())
-    return finding("flow", _FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
+    return finding(_FOLLOWED - worst, detail, computed=worst, stated=f"within {_FOLLOWED:g} d of the flow")
 
 
-_UNIT_DIRECTIONS = Report("unit-direction", "n_ij is a normalised direction", _unit_directions)
-_GOAL = Report("goal", "agents move toward the common goal", _goal)
-_RELAXES = Report("relaxes", "‖u_α‖ shrinks to about a hundredth", _pairs_relax)
-_FLOW = Report("flow", "the notebook's own steps follow the flow", _follows_flow)
-_PUSHES = Report("push", "a tenfold push below 0.05 keeps agents apart", _push)
-_VELOCITY = Report("follows", "agents take on the γ-agent's velocity", _velocity_follows)
+def _scenario(
+    name: str,
+    text: tuple[str, str],
+    law: Algorithm1 | Algorithm2,
+    n: int,
+    end: float,
+    seed: int,
+    expected: dict[str, Status],
+    *reports: Report,
+    shipped: dict[str, Status],
+) -> Scenario:
+    generator, references = np.random.default_rng(seed), ("notebook-r2", "olfati-saber-2006")
+    q, p = generator.uniform(0.0, 13.0, (n, 2)), generator.standard_normal((n, 2))
+    judged, how, span = in_source_units(lambda: law.scales, reports), _integrator(law), (0.0, end)
+    return Scenario(name, *text, law, q, p, span, seed, expected, judged, how, references, shipped=shipped)
 
 
 def _algorithm1(seed: int = 0, push: bool = False) -> Scenario:
     alpha, gains = AlphaInteraction(d=1.9, r=2.8, eps=0.1, h=0.4, a=7.0, b=9.0), Gains(**_UNIT)
     law = PushedAlgorithm1(alpha, gains) if push else Algorithm1(alpha, gains)
-    generator = np.random.default_rng(seed)
     # the start is not connected, so Theorem 1 says nothing; whether the push ever acts differs from start to start
     expected = vacuous("os-1", "os-5-terminal:i") | refuted("source:unit-direction")
     if not push:
         expected |= verified("energy")
-    return Scenario(
-        "notebook-algorithm1",
+    shipped = refuted("alpha-flocking-strict", "alpha-flocking-strict:flock")
+    text = (
         "R² notebook: 27 agents, Algorithm 1, unequal attraction and repulsion",
         "R² notebook, Algorithm 1: n = 27, d = 1.9, r = 2.8, ε = 0.1, h = 0.4, a = 7, b = 9, no gains "
         "(unit), q uniform in [0, 13]², p standard normal, 5 time units. The notebook steps by 0.05; this is the flow.",
-        law,
-        generator.uniform(0.0, 13.0, (27, 2)),
-        generator.standard_normal((27, 2)),
-        (0.0, 5.0),
-        seed,
-        expected,
-        in_source_units(lambda: law.scales, (_PUSHES, _UNIT_DIRECTIONS)),
-        options=_integrator(law),
-        references=("notebook-r2", "olfati-saber-2006"),
-        shipped=refuted("alpha-flocking-strict", "alpha-flocking-strict:flock"),
     )
+    reports = _push, _unit_directions
+    return _scenario("notebook-algorithm1", text, law, 27, 5.0, seed, expected, *reports, shipped=shipped)
 
 
 def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
     alpha = AlphaInteraction(d=1.7, r=2.5, eps=0.01, h=0.2, a=7.0, b=15.0)
-    gains = Gains(**_UNIT, c1_gamma=0.0, c2_gamma=0.5)
-    target = StaticTarget((5.0, 5.0), (0.7, 0.1))
+    gains, target = Gains(**_UNIT, c1_gamma=0.0, c2_gamma=0.5), StaticTarget((5.0, 5.0), (0.7, 0.1))
     law = PushedAlgorithm2(alpha, gains, target) if push else Algorithm2(alpha, gains, target)
-    generator = np.random.default_rng(seed)
     # c1γ = 0: nothing draws the agents together, and of Theorem 3 only (iv) remains, which needs no c1γ
     expected = verified("alpha-flocking-strict:deviation") | vacuous("os-5-terminal:i") | refuted("source:goal")
     if not push:
         expected |= vacuous("os-3:i", "os-3:ii", "os-3:iii")
         expected |= verified("energy", "os-3", "os-3:iv-printed")
-    return Scenario(
-        "notebook-algorithm2",
+    shipped = verified("alpha-flocking-strict:mismatch", "source:follows", "source:relaxes")
+    text = (
         "R² notebook: 35 agents, Algorithm 2 with velocity feedback only",
         "R² notebook, Algorithm 2: n = 35, d = 1.7, r = 2.5, ε = 0.01, h = 0.2, a = 7, b = 15, unit gains, c1γ = 0, "
         "c2γ = 0.5, γ-agent fixed at (5, 5) with p_r = (0.7, 0.1), q uniform in [0, 13]², p standard normal, 15 time "
         "units. The notebook steps by 0.1; this is the continuous system.",
-        law,
-        generator.uniform(0.0, 13.0, (35, 2)),
-        generator.standard_normal((35, 2)),
-        (0.0, 15.0),
-        seed,
-        expected,
-        in_source_units(lambda: law.scales, (_PUSHES, _VELOCITY, _RELAXES, _GOAL)),
-        options=_integrator(law),
-        references=("notebook-r2", "olfati-saber-2006"),
-        shipped=verified("alpha-flocking-strict:mismatch", "source:follows", "source:relaxes"),
     )
+    reports = _push, _velocity_follows, _pairs_relax, _goal
+    return _scenario("notebook-algorithm2", text, law, 35, 15.0, seed, expected, *reports, shipped=shipped)
 
 
-def _map(number: int, dt: float) -> Callable[[int], Scenario]:
+def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
     """Build the notebook's run as published: its own steps, with its push."""
 
     def build(seed: int = 0) -> Scenario:
-        flow = (_algorithm1, _algorithm2)[number - 1](seed, push=True)
-        law = flow.law
-        assert isinstance(law, PushedAlgorithm1 | PushedAlgorithm2)
-        return replace(
-            flow,
-            name=f"{flow.name}-map",
-            title=f"{flow.title}, by the notebook's own steps",
-            source=flow.source.rpartition(". ")[0]
-            + f". As published: q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05.",
-            law=TaylorStep(law, dt),
-            expected=refuted("source:flow"),
-            shipped={},
-            reports=in_source_units(lambda: law.scales, (_FLOW,)),
-            options={},
-        )
+        item = flow(seed, push=True)
+        law: Any = item.law
+        name, title = f"{item.name}-map", f"{item.title}, by the notebook's own steps"
+        how = f"q + p dt + ½ u dt², p + u dt with dt = {dt:g}, and the tenfold push below 0.05."
+        source = f"{item.source.rpartition('. ')[0]}. As published: {how}"
+        item = replace(item, name=name, title=title, source=source, law=TaylorStep(law, dt), options={})
+        reports = in_source_units(lambda: law.scales, (_follows_flow,))
+        return replace(item, expected=refuted("source:flow"), shipped={}, reports=reports)
 
     return build
 
@@ -232,6 +216,6 @@ def _map(number: int, dt: float) -> Callable[[int], Scenario]:
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
     "notebook-algorithm1": _algorithm1,
     "notebook-algorithm2": _algorithm2,
-    "notebook-algorithm1-map": _map(1, 0.05),
-    "notebook-algorithm2-map": _map(2, 0.1),
+    "notebook-algorithm1-map": _map(_algorithm1, 0.05),
+    "notebook-algorithm2-map": _map(_algorithm2, 0.1),
 }

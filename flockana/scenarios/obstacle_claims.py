@@ -10,13 +10,14 @@ from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle
 from flockana.measures.clearance import ConstrainedLattice, constrained_lattice
-from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report
+from flockana.scenarios.findings import ROUNDING, component_counts, finding, limit_report, report
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
 
 _SEGMENT = 400  # points on the straight way to the γ-agent that are looked at
 
 
+@report("clear", "no agent enters an obstacle")
 def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that no agent enters an obstacle, by the lower bound of clearances; a point inside refutes it."""
     least = run.clearance()
@@ -28,23 +29,25 @@ def stays_clear(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"t = {least.time:.4g}; no agent is closer than {least.lower:.4g} to any at any time"
     )
     witness = {"agent": least.agent, "obstacle": least.obstacle, "time": least.time}
-    return finding("clear", margin, detail, computed=least.lower, stated="> 0", error=error, witness=witness)
+    return finding(margin, detail, computed=least.lower, stated="> 0", error=error, witness=witness)
 
 
+@report("splits", "the flock, connected before, splits around the obstacles")
 def splits(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the net is connected at first, and disconnected later."""
     counts = component_counts(run)
     whole = np.flatnonzero(counts == 1)
     if whole.size == 0:
-        return finding("splits", -1.0, f"the net is never connected: at least {counts.min()} components", stated=1)
+        return finding(-1.0, f"the net is never connected: at least {counts.min()} components", stated=1)
     after = counts[whole[0] :]
     most, apart = int(after.max()), run.t[whole[0] :][after > 1]
     detail = f"connected from t = {run.t[whole[0]]:.4g}" + (
         f"; in up to {most} components between t = {apart[0]:.4g} and {apart[-1]:.4g}" if most > 1 else " to the end"
     )
-    return finding("splits", min(most, 2) - 1.5, detail, computed=most, stated="1, then more than 1")
+    return finding(min(most, 2) - 1.5, detail, computed=most, stated="1, then more than 1")
 
 
+@report("rejoins", "behind the obstacles it is one flock again")
 def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the flock is connected at the end; open where this depends on rounding of the start."""
     counts = component_counts(run)
@@ -53,7 +56,7 @@ def rejoins(run: Trajectory, tolerances: Tolerances) -> Claim:
     if counts[-1] == 1 and apart.size:
         detail += f", connected again from t = {run.t[apart[-1] + 1]:.4g} on"
     certificate = Certificate(-1.0, "the net at one instant decides no limit")
-    return limit_report("rejoins", certificate, detail, computed=int(counts[-1]), stated="1")
+    return limit_report(certificate, detail, computed=int(counts[-1]), stated="1")
 
 
 def _passed_between(run: Trajectory) -> int:
@@ -67,20 +70,22 @@ def _passed_between(run: Trajectory) -> int:
     return int(np.sum((last >= 0) & (y > 55.0) & (y < 75.0)))
 
 
+@report("past", "all agents get past the obstacles")
 def gets_past(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that all agents are beyond both spheres of the gap at the end."""
     x = run.q[-1, :, 0]
     detail = f"{int((x > 175.0).sum())} of {run.n} agents are beyond both spheres, the last one at x = {x.min():.4g}"
     margin = float(np.clip(x.min() - 175.0, -25.0, 25.0))  # a sphere's radius is enough: how far agents get varies
-    return finding("past", margin, detail, computed=float(x.min()), stated="x > 175 for all")
+    return finding(margin, detail, computed=float(x.min()), stated="x > 175 for all")
 
 
+@report("squeezes", "the flock goes through the gap")
 def squeezes(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that more than half of the agents pass the gap between the two spheres."""
     through = _passed_between(run)
     detail = f"{through} of {run.n} agents go through the gap, of width 20; the others round the outside of the spheres"
     margin = float(np.clip(through - 0.5 * run.n, -0.1 * run.n, 0.1 * run.n))  # a tenth is enough: the number varies
-    return finding("squeezes", margin, detail, computed=through, stated="more than half")
+    return finding(margin, detail, computed=through, stated="more than half")
 
 
 def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) -> FloatArray:
@@ -92,6 +97,7 @@ def blocked(q: FloatArray, target: FloatArray, obstacles: Sequence[Obstacle]) ->
     return blocked_agents
 
 
+@report("trapped", "the obstacle holds agents back from the γ-agent (Fig. 9)")
 def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that agents stand still behind an obstacle at the end."""
     held = blocked(run.q[-1], run.law.target.position(float(run.t[-1])), run.law.obstacles)
@@ -104,9 +110,10 @@ def traps(run: Trajectory, tolerances: Tolerances) -> Claim:
         "the speed at which agents near the γ-agent) with an obstacle on the straight way to the γ-agent"
     )
     certificate = Certificate(1.0 if count else -1.0, "counted in this run" if count else "none so far")
-    return limit_report("trapped", certificate, detail, computed=count, stated="more than 0")
+    return limit_report(certificate, detail, computed=count, stated="more than 0")
 
 
+@report("rests", "the group comes to rest in an equilibrium among the obstacles")
 def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the flock comes to rest, with small speeds and small forces."""
     # With a γ-agent at rest and c2γ > 0 every motion dies out, as H falls by c2γ Σ‖p_i‖² at least; what is open is
@@ -125,7 +132,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
     none = Certificate(-1.0, "without damping by the γ-agent it may never come to rest")
     detail = f"at t = {t:g} the largest force is {force:.2g} of the law's, the largest speed {speed:.2g}"
     certificate = damped if law.gains.c2_gamma > 0.0 else none
-    return limit_report("rests", certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
+    return limit_report(certificate, detail, computed=force, stated=f"force <= {tolerances.force:g} at rest")
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
@@ -140,15 +147,17 @@ def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
     return end, strain, detail
 
 
+@report("in-touch", "it rests against obstacles; how near it is to a constrained α-lattice")
 def touches(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that an agent rests within the range of an obstacle, at distance d'."""
     end, _, detail = _measured(run)
-    return finding("in-touch", end.beta_links - 0.5, detail, computed=end.beta_links, stated="β-neighbours")
+    return finding(end.beta_links - 0.5, detail, computed=end.beta_links, stated="β-neighbours")
 
 
+@report("constrained-lattice", "it rests as a quasi constrained α-lattice")
 def constrained(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Claim that the end is a quasi constrained α-lattice."""
     _, strain, detail = _measured(run)
     margin = (tolerances.quasi - strain) / tolerances.quasi
     certificate = Certificate(float(np.clip(margin, -1.0, 1.0)), f"quasi is up to {tolerances.quasi:g}")
-    return limit_report("constrained-lattice", certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")
+    return limit_report(certificate, detail, computed=strain, stated=f"<= {tolerances.quasi:g}")

@@ -1,6 +1,7 @@
 """Scenarios of Olfati-Saber (2006), Figures 9 and 14 to 17, and more runs for Theorem 6."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -66,11 +67,6 @@ def free_start(
     return q, p
 
 
-_CLEAR = Report("clear", "no agent enters an obstacle", stays_clear)
-_RESTS = Report("rests", "the group comes to rest in an equilibrium among the obstacles", rests)
-_TOUCHES = Report("in-touch", "it rests against obstacles; how near it is to a constrained α-lattice", touches)
-_LATTICE = Report("constrained-lattice", "it rests as a quasi constrained α-lattice", constrained)
-_TRAPPED = Report("trapped", "the obstacle holds agents back from the γ-agent (Fig. 9)", traps)
 _DESCENDS = verified("energy", "os-6", "os-6:rate")
 _STATIC = _DESCENDS | verified("source")
 _MOVING = verified("energy") | vacuous("energy:rate", "os-6")
@@ -93,23 +89,20 @@ def _entry(
     *,
     obstacles: Sequence[Obstacle],
     target: Target,
-    centre: Sequence[float],
-    n: int,
+    flock: tuple[int, Sequence[float], float],
     end: float,
     expected: Mapping[str, Status],
     reports: tuple[Report, ...],
-    spread: float = 50.0,
     shipped: Mapping[str, Status] = MappingProxyType({}),
 ) -> tuple[str, Callable[[int], Scenario]]:
-    law = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles))
+    """Return the name and builder of a run with obstacles; the flock is n, its centre and its spread."""
+    law, (n, centre, spread) = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles)), flock
 
     def build(seed: int = 0) -> Scenario:
         room = BetaInteraction().d
         start = lazy_state((n, len(centre)), lambda: free_start(seed, n, centre, spread, law.obstacles, room=room))
-        text = f"{source} {_OURS}"
-        options = _large(end) if n > 100 else {}
-        in_units = in_source_units(lambda: law.scales, (_CLEAR, *reports))
-        span = (0.0, end)
+        text, span, options = f"{source} {_OURS}", (0.0, end), _large(end) if n > 100 else {}
+        in_units = in_source_units(lambda: law.scales, (stays_clear, *reports))
         return Scenario(name, title, text, law, *start, span, seed, expected, in_units, options, shipped=shipped)
 
     return name, build
@@ -125,14 +118,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "starts about the origin cannot gather before it is among the discs.",
             obstacles=_SPLIT,
             target=LinearTarget((-100.0, 30.0), (5.0, 0.0)),
-            centre=(-100.0, 30.0),
-            n=150,
+            flock=(150, (-100.0, 30.0), 50.0),
             end=80.0,
             expected=_MOVING | _reported("clear", "splits") | inconclusive("source:rejoins"),
-            reports=(
-                Report("splits", "the flock, connected before, splits around the obstacles", splits),
-                Report("rejoins", "behind the obstacles it is one flock again", rejoins),
-            ),
+            reports=(splits, rejoins),
         ),
         _entry(
             "paper-squeezing",
@@ -141,15 +130,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "The start and the γ-agent, through the middle of the gap and (230, 60) at 5 along x, are ours.",
             obstacles=_GAP,
             target=LinearTarget((-120.0, 81.875), (5.0, -0.3125)),
-            centre=(-120.0, 81.875),
-            n=150,
+            flock=(150, (-120.0, 81.875), 50.0),
             end=115.0,
             expected=_MOVING | _reported("clear", "squeezes", "past") | inconclusive("source:rejoins"),
-            reports=(
-                Report("squeezes", "the flock goes through the gap", squeezes),
-                Report("past", "all agents get past the obstacles", gets_past),
-                Report("rejoins", "behind the gap it is one flock again", rejoins),
-            ),
+            reports=(squeezes, gets_past, replace(rejoins, text="behind the gap it is one flock again")),
         ),
         _entry(
             "paper-trapped",
@@ -158,12 +142,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "γ-agent. The figure prints no numbers; all are ours.",
             obstacles=_CUP,
             target=StaticTarget((120.0, 0.0)),
-            centre=(-20.0, 0.0),
-            n=40,
-            spread=20.0,
+            flock=(40, (-20.0, 0.0), 20.0),
             end=100.0,
             expected=_STATIC,
-            reports=(_TRAPPED, _RESTS, _TOUCHES),
+            reports=(traps, rests, touches),
         ),
         _entry(
             "paper-trapped-convex",
@@ -172,12 +154,10 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "The figure prints no numbers; all are ours.",
             obstacles=_BAR,
             target=StaticTarget((120.0, 0.0)),
-            centre=(0.0, 0.0),
-            n=40,
-            spread=20.0,
+            flock=(40, (0.0, 0.0), 20.0),
             end=150.0,
             expected=_STATIC,
-            reports=(_TRAPPED, _RESTS, _TOUCHES, _LATTICE),
+            reports=(traps, rests, touches, constrained),
         ),
         _entry(
             "spheres-3d",
@@ -185,13 +165,11 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "Ours, on Olfati-Saber 2006, Theorem 6 with p_d = 0: m = 3, a static γ-agent beside a sphere.",
             obstacles=_BALLS,
             target=StaticTarget((110.0, 0.0, 0.0)),
-            centre=(0.0, 0.0, 0.0),
-            n=40,
-            spread=25.0,
+            flock=(40, (0.0, 0.0, 0.0), 25.0),
             end=150.0,
             expected={**_DESCENDS, **_reported("clear")},
             shipped=verified("source"),
-            reports=(_RESTS, _TOUCHES),
+            reports=(rests, touches),
         ),
         _entry(
             "declared-velocity-ahead",
@@ -199,9 +177,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "Ours, on Olfati-Saber 2006, Theorem 6 as printed, with q_r fixed at 0 although p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],
             target=StaticTarget((0.0, 0.0), (5.0, 0.0)),
-            centre=(80.0, 0.0),
-            n=30,
-            spread=15.0,
+            flock=(30, (80.0, 0.0), 15.0),
             end=100.0,
             expected=verified("energy") | _reported("clear"),
             shipped=verified("os-6", "os-6:rate"),  # of some starts condition (76) is broken
@@ -213,9 +189,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = dict(
             "Ours, on Olfati-Saber 2006, Theorem 6 as printed, q_r fixed at (80, 0) and p_r = p_d = (5, 0).",
             obstacles=[Sphere((40.0, 3.0), 8.0)],
             target=StaticTarget((80.0, 0.0), (5.0, 0.0)),
-            centre=(0.0, 0.0),
-            n=30,
-            spread=15.0,
+            flock=(30, (0.0, 0.0), 15.0),
             end=100.0,
             expected=verified("energy") | vacuous("energy:rate") | verified("source"),
             shipped=vacuous("os-6"),  # of some starts (76) is open

@@ -15,8 +15,8 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.metrics import coincident_pairs, deviation_energy, giant_share
 from flockana.measures.nets import components, link_lengths, links
 from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.findings import ROUNDING, component_count, finding, limit_report
-from flockana.scenarios.scenario import Report, Scenario
+from flockana.scenarios.findings import ROUNDING, component_count, connected, finding, limit_report, report
+from flockana.scenarios.scenario import OURS, Report, Scenario
 from flockana.scenarios.start import lazy_array
 from flockana.theorems import Claim, Tolerances
 from flockana.theorems.limits import Certificate
@@ -38,12 +38,7 @@ _FLOCKS = (
 _RESTS = ("os-3", "os-3:ii")  # what some starts have not settled by the end of the run
 
 
-def _ends_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
-    components = component_count(run)
-    detail = f"{components} component(s) at t = {run.t[-1]:g}"
-    return finding("connected", 1.5 - components, detail, computed=components, stated=1)
-
-
+@report("lattice-like", "the flock ends as a quasi-lattice (Fig. 18: Ẽ small)")
 def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
     d, r = run.law.alpha.d, run.law.alpha.r
     deviation = deviation_energy(run.q[-1], d, r) / d**2
@@ -54,15 +49,17 @@ def _ends_as_lattice(run: Trajectory, tolerances: Tolerances) -> Claim:
     )
     margin = tolerances.deviation - deviation
     stated = f"Ẽ <= {tolerances.deviation:g}"
-    return finding("lattice-like", margin, detail, computed=deviation, stated=stated, error=ROUNDING)
+    return finding(margin, detail, computed=deviation, stated=stated, error=ROUNDING)
 
 
+@report("matched", "velocities match (Fig. 18: K̃ goes to 0)")
 def _ends_matched(run: Trajectory, tolerances: Tolerances) -> Claim:
     series, basin = run.metric("normalised_velocity_mismatch"), attraction(run.law, run.q[-1], run.p[-1])
     detail = f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {run.t[-1]:g}"
-    return limit_report("matched", basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
+    return limit_report(basin.certificate, detail, computed=float(series[-1]), stated="K̃ -> 0")
 
 
+@report("topology", "the net changes on the way")
 def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
     nets = [{*map(tuple, links(q, run.law.alpha.r).tolist())} for q in run.q]
     changes = sum(a != b for a, b in pairwise(nets))
@@ -71,16 +68,18 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
         f"the net differs between {changes} pairs of successive samples; of {len(nets[0])} links at the start {kept} "
         f"are among the {len(nets[-1])} at the end"
     )
-    return finding("topology", changes - 0.5, detail, computed=changes, stated="> 0")
+    return finding(changes - 0.5, detail, computed=changes, stated="> 0")
 
 
+@report("fragments", "the net ends in several components")
 def _fragments(run: Trajectory, tolerances: Tolerances) -> Claim:
     components = component_count(run)
     share = giant_share(run.q[-1], run.law.alpha.r)
     detail = f"{components} components at t = {run.t[-1]:g}, the largest with {share:.0%} of the agents"
-    return finding("fragments", components - 1.5, detail, computed=components, stated="more than 1")
+    return finding(components - 1.5, detail, computed=components, stated="more than 1")
 
 
+@report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)")
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that K̃ never falls to a small share of its value in the second half."""
     series = run.metric("normalised_velocity_mismatch")
@@ -92,9 +91,10 @@ def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
     )
     stated = f"K̃ > {tolerances.agreement:g} K̃(0)"
     margin = share - tolerances.agreement
-    return finding("mismatched", margin, detail, computed=share, stated=stated, error=ROUNDING)
+    return finding(margin, detail, computed=share, stated=stated, error=ROUNDING)
 
 
+@report("expands", "the cohesion radius grows (Fig. 18(b): R)")
 def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that R grows throughout the second half."""
     radius = run.metric("cohesion_radius")
@@ -102,17 +102,19 @@ def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
     rise = float(np.diff(late).min() / run.scales.length)
     how = "rises" if rise > 0.0 else "does not rise"
     detail = f"R goes from {radius[0]:.4g} to {radius[-1]:.4g}, and {how} at every sample of the second half"
-    return finding("expands", rise, detail, computed=float(radius[-1]), stated="R rises")
+    return finding(rise, detail, computed=float(radius[-1]), stated="R rises")
 
 
+@report("links", "the deviation energy of the fragments is small (Fig. 18(b): Ẽ)")
 def _links_settle(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the links kept by fragments relax: each fragment is a lattice."""
     deviation = run.metric("normalised_deviation_energy")
     detail = f"Ẽ goes from {deviation[0]:.3g} to {deviation[-1]:.2g}: the fragments keep links of length d"
     margin, end = tolerances.deviation - float(deviation[-1]), float(deviation[-1])
-    return finding("links", margin, detail, computed=end, stated=f"Ẽ <= {tolerances.deviation:g}", error=ROUNDING)
+    return finding(margin, detail, computed=end, stated=f"Ẽ <= {tolerances.deviation:g}", error=ROUNDING)
 
 
+@report("meets", "the group meets at the γ-agent")
 def _centre_converges(run: Trajectory, tolerances: Tolerances) -> Claim:
     """Report that the centre of mass converges to the γ-agent, in the law's scales."""
     target = [run.law.target.state(float(t)) for t in run.t]
@@ -127,20 +129,19 @@ def _centre_converges(run: Trajectory, tolerances: Tolerances) -> Claim:
     certificate = Certificate(1.0, exact) if uniform and damped else Certificate(-1.0, "the γ-agent accelerates")
     detail = f"the centre of mass ends {away[-1]:.2g} d from the γ-agent, at {slip[-1]:.2g} of the law's speed"
     stated = "both -> 0"
-    return limit_report("meets", certificate, detail, computed=float(away[-1]), stated=stated)
+    return limit_report(certificate, detail, computed=float(away[-1]), stated=stated)
 
 
+@report("coincide", "pairs of agents end in the same place (erratum E11)")
 def _coincide(run: Trajectory, tolerances: Tolerances) -> Claim:
     tol = tolerances.contact * run.law.alpha.d
     pairs = coincident_pairs(run.q[-1], tol)
     clusters = np.bincount(components(run.n, links(run.q[-1], tol)))
     detail = f"{pairs} pairs coincide at t = {run.t[-1]:g}, in clusters of up to {clusters.max()} agents"
-    return finding("coincide", pairs - 0.5, detail, computed=pairs, stated="more than 0")
+    return finding(pairs - 0.5, detail, computed=pairs, stated="more than 0")
 
 
-_CONNECTED = Report("connected", "the net ends connected (Fig. 18: C = 1)", _ends_connected)
-_LATTICE = Report("lattice-like", "the flock ends as a quasi-lattice (Fig. 18: Ẽ small)", _ends_as_lattice)
-_MATCHED = Report("matched", "velocities match (Fig. 18: K̃ goes to 0)", _ends_matched)
+_CONNECTED = report("connected", "the net ends connected (Fig. 18: C = 1)")(connected)
 
 
 def random_start(seed: int, n: int, m: int) -> tuple[FloatArray, FloatArray]:
@@ -177,49 +178,32 @@ def _following(
 
 def _fragmentation(seed: int = 0) -> Scenario:
     """Build Fig. 12, whose run violates the hypothesis of Theorem 1."""
-    return Scenario(
-        "paper-fragmentation",
-        "Fig. 12: 40 agents without a γ-agent fall apart",
-        f"Olfati-Saber 2006, Fig. 12 and 18(b): n = 40, Algorithm 1, q and p as in Fig. 10. {_OURS}",
-        Algorithm1(),
-        *random_start(seed, 40, 2),
-        (0.0, 40.0),
-        seed,
-        verified("energy")
-        | vacuous("os-1")
-        | refuted("alpha-flocking", "alpha-flocking-strict", "alpha-flocking-strict:flock")
-        | verified("os-5-terminal:extension", "source:fragments"),
-        (
-            Report("fragments", "the net ends in several components", _fragments),
-            Report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)", _stays_mismatched),
-            Report("expands", "the cohesion radius grows (Fig. 18(b): R)", _expands),
-            Report("links", "the deviation energy of the fragments is small (Fig. 18(b): Ẽ)", _links_settle),
-        ),
-        shipped=verified("source:expands", "source:links"),
-    )
+    title = "Fig. 12: 40 agents without a γ-agent fall apart"
+    source = f"Olfati-Saber 2006, Fig. 12 and 18(b): n = 40, Algorithm 1, q and p as in Fig. 10. {_OURS}"
+    expected = verified("energy") | vacuous("os-1")
+    expected |= refuted("alpha-flocking", "alpha-flocking-strict", "alpha-flocking-strict:flock")
+    expected |= verified("os-5-terminal:extension", "source:fragments")
+    reports = (_fragments, _stays_mismatched, _expands, _links_settle)
+    law, start, span = Algorithm1(), random_start(seed, 40, 2), (0.0, 40.0)
+    shipped = verified("source:expands", "source:links")
+    return Scenario("paper-fragmentation", title, source, law, *start, span, seed, expected, reports, shipped=shipped)
 
 
 def _collapse(seed: int = 0) -> Scenario:
     """Build the collapse of erratum E11: Theorem 3 holds, but the limit is no lattice."""
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0)
-    return Scenario(
-        "collapse",
-        "Unit gains: 150 agents are squeezed until pairs coincide",
+    title = "Unit gains: 150 agents are squeezed until pairs coincide"
+    source = (
         "Ours, on the slides' summary that Algorithm 2 yields a lattice: parameters, q and p of Fig. 10, all gains 1, "
-        "a γ-agent at rest at the origin.",
-        Algorithm2(gains=gains, target=StaticTarget((0.0, 0.0))),
-        *random_start(seed, 150, 2),
-        (0.0, 180.0),
-        seed,
-        verified("energy", "os-3", "os-3:i", "os-3:ii", "os-3:iii")
-        | refuted("alpha-flocking", "alpha-flocking:deviation", "alpha-flocking-strict")
-        | verified("alpha-flocking-strict:flock")
-        | vacuous("os-5-terminal:i")
-        | refuted("E11", "E11:printed")
-        | verified("E11:minimum", "source"),
-        (Report("coincide", "pairs of agents end in the same place (erratum E11)", _coincide),),
-        references=("olfati-saber-2006", "flockana"),
+        "a γ-agent at rest at the origin."
     )
+    law, start = Algorithm2(gains=gains, target=StaticTarget((0.0, 0.0))), random_start(seed, 150, 2)
+    span = (0.0, 180.0)
+    expected = verified("energy", "os-3", "os-3:i", "os-3:ii", "os-3:iii")
+    expected |= refuted("alpha-flocking", "alpha-flocking:deviation", "alpha-flocking-strict")
+    expected |= verified("alpha-flocking-strict:flock") | vacuous("os-5-terminal:i")
+    expected |= refuted("E11", "E11:printed") | verified("E11:minimum", "source")
+    return Scenario("collapse", title, source, law, *start, span, seed, expected, (_coincide,), references=OURS)
 
 
 def _hexagon(seed: int = 0) -> Scenario:
@@ -227,31 +211,17 @@ def _hexagon(seed: int = 0) -> Scenario:
     alpha, generator = AlphaInteraction(), np.random.default_rng(seed)
     ring = [(cos(k * pi / 3.0), sin(k * pi / 3.0)) for k in range(6)]
     q = alpha.d * np.array([(0.0, 0.0), *ring]) + generator.uniform(-0.2, 0.2, (7, 2))
-    return Scenario(
-        "hexagon",
-        "Seven agents near a hexagon, with less energy than a collision costs",
+    title = "Seven agents near a hexagon, with less energy than a collision costs"
+    source = (
         "Ours: a hexagonal patch of side d = 7, each coordinate displaced by up to 0.2, velocities up to 0.3 per axis, "
         "Algorithm 1 with the default gains. H(x(0), v(0)) is below c* and below that of every disconnected "
-        "state that we know.",
-        Algorithm1(alpha=alpha),
-        q,
-        generator.uniform(-0.3, 0.3, (7, 2)),
-        (0.0, 30.0),
-        seed,
-        verified(
-            "energy",
-            "os-1",
-            "os-1:i",
-            "os-1:ii",
-            "os-1:iii",
-            "os-5-terminal",
-            "os-5-terminal:i",
-            "alpha-flocking",
-            "alpha-flocking-strict",
-            "linearised-decay-terminal",
-        ),
-        references=("olfati-saber-2006", "flockana"),
+        "state that we know."
     )
+    law = Algorithm1(alpha=alpha)
+    p = generator.uniform(-0.3, 0.3, (7, 2))
+    expected = verified("energy", "os-1", "os-1:i", "os-1:ii", "os-1:iii", "os-5-terminal", "os-5-terminal:i")
+    expected |= verified("alpha-flocking", "alpha-flocking-strict", "linearised-decay-terminal")
+    return Scenario("hexagon", title, source, law, q, p, (0.0, 30.0), seed, expected, references=OURS)
 
 
 def _three_agents(seed: int = 0) -> Scenario:
@@ -259,28 +229,18 @@ def _three_agents(seed: int = 0) -> Scenario:
     alpha = AlphaInteraction(a=5e4, b=5e4)
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     p0 = lazy_array((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))
-    return Scenario(
-        "three-agents-1d",
-        "Three agents on a line: one agent runs through both others",
+    title = "Three agents on a line: one agent runs through both others"
+    source = (
         "Ours, on Theorem 3(iv): q = (-12, 0, 30), p = (√(5.6 c*), 0, 0), a = b = 50000, c1α = c2α = 1, "
-        "c1γ = c2γ = 0.01, a γ-agent at rest at 0; other parameters as in the paper. The start is fixed.",
-        Algorithm2(alpha=alpha, gains=gains, target=StaticTarget((0.0,))),
-        np.array([[-12.0], [0.0], [30.0]]),
-        p0,
-        (0.0, 0.05),
-        seed,
-        verified("energy")
-        | refuted("os-3")
-        | verified("os-3:i")
-        | inconclusive("os-3:ii")
-        | verified("os-3:iii")  # by its proof, though velocities have not matched by then
-        | refuted("os-3:iv-printed")
-        | verified("os-3:iv-instant")
-        | vacuous("os-3:iv-none", "os-5-terminal:i")
-        | refuted("E13", "E13:printed")
-        | verified("E13:corrected"),
-        references=("olfati-saber-2006", "flockana"),
+        "c1γ = c2γ = 0.01, a γ-agent at rest at 0; other parameters as in the paper. The start is fixed."
     )
+    law = Algorithm2(alpha=alpha, gains=gains, target=StaticTarget((0.0,)))
+    # (iii) holds by its proof, though velocities have not matched by then
+    expected = verified("energy", "os-3:i", "os-3:iii", "os-3:iv-instant") | inconclusive("os-3:ii")
+    expected |= refuted("os-3", "os-3:iv-printed") | vacuous("os-3:iv-none", "os-5-terminal:i")
+    expected |= refuted("E13", "E13:printed") | verified("E13:corrected")
+    start = np.array([[-12.0], [0.0], [30.0]]), p0
+    return Scenario("three-agents-1d", title, source, law, *start, (0.0, 0.05), seed, expected, references=OURS)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {
@@ -291,7 +251,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         "variance 2500, p uniform in [-2, -1]², γ-agent from (200, 30) at (5, 0).",
         n=150,
         end=60.0,
-        reports=(_CONNECTED, _LATTICE, _MATCHED),
+        reports=(_CONNECTED, _ends_as_lattice, _ends_matched),
         more=verified("linearised-decay-terminal"),
     ),
     "paper-dynamic-topology": _following(
@@ -300,7 +260,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         "Olfati-Saber 2006, Fig. 11 and 18(a): n = 100, otherwise as Fig. 10.",
         n=100,
         end=50.0,
-        reports=(Report("topology", "the net changes on the way", _topology_changes), _CONNECTED, _LATTICE, _MATCHED),
+        reports=(_topology_changes, _CONNECTED, _ends_as_lattice, _ends_matched),
         shipped=(*_RESTS, "source"),
     ),
     "paper-fragmentation": _fragmentation,
@@ -312,7 +272,7 @@ SCENARIOS: dict[str, Callable[..., Scenario]] = {
         n=50,
         m=3,
         end=60.0,
-        reports=(Report("meets", "the group meets at the γ-agent", _centre_converges), _CONNECTED, _LATTICE),
+        reports=(_centre_converges, _CONNECTED, _ends_as_lattice),
         shipped=_RESTS,
     ),
     "collapse": _collapse,

@@ -6,6 +6,7 @@ its runs, and what that promises in a few words.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -174,18 +175,13 @@ ENTRIES: tuple[LawEntry, ...] = (
 
 def compare(names: Iterable[str] | None = None, *, seed: int = 0) -> tuple[Outcome, ...]:
     """Run the common start under each law, and check its theorem."""
-    known = {entry.name: entry for entry in ENTRIES}
-    chosen = tuple(known) if names is None else tuple(names)
-    for name in chosen:
-        ensure_known("law", name, tuple(known))
-    q, p = one_start(seed)
-    return tuple(_outcome(known[name], q, p) for name in chosen)
+    known, start = {entry.name: entry for entry in ENTRIES}, one_start(seed)
+    chosen = [ensure_known("law", name, tuple(known)) for name in (known if names is None else names)]
+    return tuple(_outcome(known[name], *start) for name in chosen)
 
 
 def _outcome(entry: LawEntry, q: FloatArray, p: FloatArray) -> Outcome:
     law = entry.law(q, p)
-    if isinstance(law, DiscreteLaw):
-        run = simulate(law, q, p, (0.0, UNTIL))
-    else:
-        run = simulate(law, q, p, (0.0, UNTIL), t_eval=np.linspace(0.0, UNTIL, _INSTANTS), rtol=_RTOL)
+    how: dict[str, Any] = {"t_eval": np.linspace(0.0, UNTIL, _INSTANTS), "rtol": _RTOL}
+    run = simulate(law, q, p, (0.0, UNTIL), **({} if isinstance(law, DiscreteLaw) else how))
     return Outcome(entry, run, verify(entry.theorem, run, subject=f"{entry.name}, one start"))

@@ -1,6 +1,7 @@
 """Scenarios with rigorous verdicts: a flock that provably forms, and a proved collision."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -8,47 +9,39 @@ from flockana.environment.targets import StaticTarget
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.scenarios.enclosure import Enclosure
 from flockana.scenarios.expected import refuted, vacuous, verified
-from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.scenario import OURS, Scenario
 
-_REFERENCES = ("olfati-saber-2006", "flockana")
 _ALL_OF_OS_3 = verified(*(f"os-3:{name}" for name in ("i", "ii", "iii", "iv-instant", "iv-none", "iv-barrier")))
 
 
 def _flock_of_three(seed: int = 0) -> Scenario:
     q = np.array([[-4.625, -2.5], [4.5, -2.75], [0.25, 5.5]])
-    return Scenario(
-        "proved-flock",
-        "Three agents: their flock and its limit are proved",
+    title = "Three agents: their flock and its limit are proved"
+    source = (
         "Ours: three agents at rest, out of each other's range, with the γ-agent between them, Algorithm 2 with the "
         "default gains. A tube encloses the run while the links form, until it is in a certified basin: all of Theorem "
-        "3 holds, its limit included. The start is fixed.",
-        Algorithm2(target=StaticTarget((0.0, 0.0))),
-        q,
-        np.zeros((3, 2)),
-        (0.0, 1.25),
-        seed,
-        verified("energy", "os-3") | _ALL_OF_OS_3,
-        references=_REFERENCES,
-        enclosed=Enclosure(("os-3",), limit=True),
+        "3 holds, its limit included. The start is fixed."
+    )
+    law = Algorithm2(target=StaticTarget((0.0, 0.0)))
+    p = np.zeros((3, 2))
+    expected = verified("energy", "os-3") | _ALL_OF_OS_3
+    enclosed = Enclosure(("os-3",), limit=True)
+    return Scenario(
+        "proved-flock", title, source, law, q, p, (0.0, 1.25), seed, expected, references=OURS, enclosed=enclosed
     )
 
 
 def _collision(seed: int = 0) -> Scenario:
-    return Scenario(
-        "proved-collision",
-        "Two agents head on: that they collide is proved",
+    title = "Two agents head on: that they collide is proved"
+    source = (
         "Ours: two agents on a line, 1 apart, at 32 towards each other, Algorithm 1 with the default gains, H(0) = "
         "1.6 c*. A tube shows them in the other order, so they met: no bound above c* excludes a collision. The start "
-        "is fixed.",
-        Algorithm1(),
-        np.array([[0.0], [1.0]]),
-        np.array([[32.0], [-32.0]]),
-        (0.0, 0.0625),
-        seed,
-        verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice"),
-        references=_REFERENCES,
-        enclosed=Enclosure(("collision-energy",)),
+        "is fixed."
     )
+    q, p = np.array([[0.0], [1.0]]), np.array([[32.0], [-32.0]])
+    expected = verified("energy") | vacuous("collision-energy:below") | refuted("collision-energy:twice")
+    more: dict[str, Any] = {"references": OURS, "enclosed": Enclosure(("collision-energy",))}
+    return Scenario("proved-collision", title, source, Algorithm1(), q, p, (0.0, 0.0625), seed, expected, **more)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {"proved-flock": _flock_of_three, "proved-collision": _collision}

@@ -22,6 +22,8 @@ from flockana.theorems import Claim, Tolerances, Verdict, verify
 from flockana.theorems.observed import Observed, by_both_runs, with_resolution
 from flockana.theorems.theorem import Status
 
+OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own about the paper's laws
+
 
 @dataclass(frozen=True)
 class Report:

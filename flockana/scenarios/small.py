@@ -12,16 +12,15 @@ from flockana.interactions import Gains
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm1, paper_pair
 from flockana.scenarios.expected import inconclusive, refuted, vacuous, verified
-from flockana.scenarios.scenario import Scenario
+from flockana.scenarios.scenario import OURS, Scenario
 from flockana.scenarios.start import lazy_array
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
 from flockana.theorems.theorem import Status
 
-_REFERENCES = ("olfati-saber-2006", "flockana")
-
 
 def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Callable[[int], Scenario]:
     """Return two approaching agents on a line, with a given share of c* as energy."""
+    statuses = verified("energy") | expected
 
     def build(seed: int = 0) -> Scenario:
         law, q = Algorithm1(), np.array([[0.0], [apart]])
@@ -31,19 +30,13 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
             speed = sqrt(kinetic)  # K = speed²
             return np.array([[speed], [-speed]])
 
-        return Scenario(
-            name,
-            f"Two agents head on, with {share:g} c* of energy",
+        title = f"Two agents head on, with {share:g} c* of energy"
+        source = (
             f"Ours: two agents on a line, {apart:g} apart, with equal and opposite velocities, H(0) = {share:g} c*, "
-            "Algorithm 1 with the default gains. The start is fixed.",
-            law,
-            q,
-            lazy_array((2, 1), velocities),
-            (0.0, 3.0),
-            seed,
-            verified("energy") | expected,
-            references=_REFERENCES,
+            "Algorithm 1 with the default gains. The start is fixed."
         )
+        p = lazy_array((2, 1), velocities)
+        return Scenario(name, title, source, law, q, p, (0.0, 3.0), seed, statuses, references=OURS)
 
     return build
 
@@ -53,35 +46,26 @@ def _five_agents(seed: int = 0) -> Scenario:
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
     q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)
-    return Scenario(
-        "five-agents",
-        "Five agents: two of them next to one corner of a rhombus",
+    title = "Five agents: two of them next to one corner of a rhombus"
+    source = (
         "Ours, on erratum E3: a rhombus of side d = 7 with two agents at one corner, 0.5 apart, at rest, Algorithm 1 "
-        "with c1α = 30, c2α = 20. The two part and all five come near a lattice, which can flex. The start is fixed.",
-        law,
-        q,
-        np.zeros((5, 2)),
-        (0.0, 40.0),
-        seed,
-        verified("energy") | inconclusive("lattice-limit-printed"),
-        references=_REFERENCES,
+        "with c1α = 30, c2α = 20. The two part and all five come near a lattice, which can flex. The start is fixed."
     )
+    p = np.zeros((5, 2))
+    expected = verified("energy") | inconclusive("lattice-limit-printed")
+    return Scenario("five-agents", title, source, law, q, p, (0.0, 40.0), seed, expected, references=OURS)
 
 
 def _beside_a_sphere(seed: int = 0) -> Scenario:
-    return Scenario(
-        "beside-a-sphere",
-        "Two agents pulled together beside a sphere",
+    title = "Two agents pulled together beside a sphere"
+    source = (
         "Ours, on erratum E2: two agents at rest 16 apart, out of each other's range, the γ-agent between them and a "
-        "sphere of radius 2 beside it, Algorithm 3 with the default gains. The start is fixed.",
-        Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),)),
-        np.array([[-6.0, 0.0], [10.0, 0.0]]),
-        np.zeros((2, 2)),
-        (0.0, 1.0),
-        seed,
-        verified("energy", "energy-printed"),
-        references=_REFERENCES,
+        "sphere of radius 2 beside it, Algorithm 3 with the default gains. The start is fixed."
     )
+    law = Algorithm3(target=StaticTarget((2.0, 0.0)), obstacles=(Sphere((2.0, 5.8), 2.0),))
+    q, p = np.array([[-6.0, 0.0], [10.0, 0.0]]), np.zeros((2, 2))
+    expected = verified("energy", "energy-printed")
+    return Scenario("beside-a-sphere", title, source, law, q, p, (0.0, 1.0), seed, expected, references=OURS)
 
 
 SCENARIOS: dict[str, Callable[..., Scenario]] = {

@@ -42,7 +42,10 @@ def state(seed: int = 3) -> tuple[np.ndarray, np.ndarray]:
     return rng.uniform(-8.0, 3.0, (12, 2)), rng.normal(0.0, 2.0, (12, 2))
 
 
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+SLOW = [pytest.param(law, marks=pytest.mark.slow) if isinstance(law, fl.Algorithm3) else law for law in LAWS]
+
+
+@pytest.mark.parametrize("law", SLOW, ids=lambda law: type(law).__name__)
 def test_accelerations_energies_and_derivatives_change_by_their_powers(law: fl.Law) -> None:
     q, p = state()
     there = rescale(law, length=LENGTH, time=TIME)

@@ -104,71 +104,48 @@ def test_missing_columns_are_named(run, path, columns, message):
         fl.read_lammps(path, run.law)
 
 
-def damage(text, how):
-    lines = text.splitlines(keepends=True)
-    return {
-        "cut within a line": "".join(lines[:-1]) + " ".join(lines[-1].split()[:5]),
-        "cut within a number": text.rstrip()[:-2],
-        "cut within a snapshot": "".join(lines[:-3]),
-        "cut after a step": text[: text.rindex("ITEM: NUMBER")],
-        "not finite": text.replace(lines[-1], lines[-1].replace(lines[-1].split()[3], "nan")),
-        "a word": text.replace(lines[-1], lines[-1].replace(lines[-1].split()[3], "far")),
-        "an agent lost": _without_last(text),
-        "one id twice": _twice(text),
-        "steps fall": text + text,
-        "times fall": text.replace("ITEM: TIME\n2.0\n", "ITEM: TIME\n1.0\n"),
-        "half a step": text.replace("TIMESTEP\n10\n", "TIMESTEP\n10.5\n"),
-        "a step below 0": text.replace("TIMESTEP\n0\n", "TIMESTEP\n-1\n"),
-        "no atoms": text.replace("ATOMS\n4\n", "ATOMS\n0\n"),
-        "atoms below 0": text.replace("ATOMS\n4\n", "ATOMS\n-1\n"),
-        "atoms without end": text.replace("ATOMS\n4\n", "ATOMS\n1e300\n"),
-        "an unknown item": text + "ITEM: ENTRIES\n1\n",
-        "stray text": "Step Temp\n" + text,
-        "nothing": "",
-        "a column twice": text.replace("ATOMS id type x y", "ATOMS id type x x"),
-        "no ids": text.replace("ATOMS id", "ATOMS mol"),
-    }[how]
-
-
-def _without_last(text):
+def without_last(text):
     cut = text.rindex("ITEM: NUMBER OF ATOMS\n4")
     last = text[cut:].replace("ATOMS\n4", "ATOMS\n3", 1)
     return text[:cut] + last[: last.rstrip("\n").rindex("\n") + 1]
 
 
-def _twice(text):
-    lines = text.splitlines(keepends=True)
-    return "".join([*lines[:-1], lines[-2]])
+def reworded(text, word):
+    """Another word in the fourth column of the last line."""
+    last = text.splitlines(keepends=True)[-1]
+    return text.replace(last, last.replace(last.split()[3], word))
 
 
-@pytest.mark.parametrize(
-    ("how", "message"),
-    [
-        ("cut within a line", r"'\d 1 .*' where 4 lines of 8 numbers were expected; was it cut off"),
-        ("cut within a number", "the end of the file where 4 lines of 8 numbers were expected; was it cut off"),
-        ("cut within a snapshot", "the end of the file where 4 lines"),
-        ("cut after a step", "ends within the snapshot of step 2000; was it cut off"),
-        ("not finite", r"'nan' in column 4 of .*; expected a finite number"),
-        ("a word", r"'far' in column 4 of .*; expected a finite number"),
-        ("an agent lost", "snapshot 200 has 3 agents .* were agents lost"),
-        ("one id twice", "two agents of one id; expected each once"),
-        ("steps fall", "step 0 follows step 2000; expected rising steps"),
-        ("times fall", "expected rising times"),
-        ("half a step", r"step 10\.5; expected a whole number >= 0"),
-        ("a step below 0", "step -1; expected a whole number >= 0"),
-        ("no atoms", "number of atoms 0; expected a whole number >= 1"),
-        ("atoms below 0", "number of atoms -1; expected a whole number >= 1"),
-        ("atoms without end", r"number of atoms 1e\+300; expected a whole number >= 1"),
-        ("an unknown item", "unknown item 'ITEM: ENTRIES'"),
-        ("stray text", "'Step Temp' where an ITEM was expected"),
-        ("nothing", "holds no snapshot: expected a text dump"),
-        ("a column twice", "or with a column twice"),
-        ("no ids", "expected a dump of style custom with id"),
-    ],
-)
+CUT = "where 4 lines of 8 numbers were expected; was it cut off"
+WHOLE = "expected a whole number >= 1"
+DAMAGE = [
+    (lambda text, lines: "".join(lines[:-1]) + " ".join(lines[-1].split()[:5]), rf"'\d 1 .*' {CUT}"),
+    (lambda text, lines: text.rstrip()[:-2], f"the end of the file {CUT}"),
+    (lambda text, lines: "".join(lines[:-3]), "the end of the file where 4 lines"),
+    (lambda text, lines: text[: text.rindex("ITEM: NUMBER")], "ends within the snapshot of step 2000; was it cut off"),
+    (lambda text, lines: reworded(text, "nan"), r"'nan' in column 4 of .*; expected a finite number"),
+    (lambda text, lines: reworded(text, "far"), r"'far' in column 4 of .*; expected a finite number"),
+    (lambda text, lines: without_last(text), "snapshot 200 has 3 agents .* were agents lost"),
+    (lambda text, lines: "".join([*lines[:-1], lines[-2]]), "two agents of one id; expected each once"),
+    (lambda text, lines: text + text, "step 0 follows step 2000; expected rising steps"),
+    (lambda text, lines: text + "ITEM: ENTRIES\n1\n", "unknown item 'ITEM: ENTRIES'"),
+    (lambda text, lines: f"Step Temp\n{text}", "'Step Temp' where an ITEM was expected"),
+    (lambda text, lines: "", "holds no snapshot: expected a text dump"),
+    (("ITEM: TIME\n2.0\n", "ITEM: TIME\n1.0\n"), "expected rising times"),
+    (("TIMESTEP\n10\n", "TIMESTEP\n10.5\n"), r"step 10\.5; expected a whole number >= 0"),
+    (("TIMESTEP\n0\n", "TIMESTEP\n-1\n"), "step -1; expected a whole number >= 0"),
+    (("ATOMS\n4\n", "ATOMS\n0\n"), f"number of atoms 0; {WHOLE}"),
+    (("ATOMS\n4\n", "ATOMS\n-1\n"), f"number of atoms -1; {WHOLE}"),
+    (("ATOMS\n4\n", "ATOMS\n1e300\n"), rf"number of atoms 1e\+300; {WHOLE}"),
+    (("ATOMS id type x y", "ATOMS id type x x"), "or with a column twice"),
+    (("ATOMS id", "ATOMS mol"), "expected a dump of style custom with id"),
+]
+
+
+@pytest.mark.parametrize(("how", "message"), DAMAGE)
 def test_damaged_dumps_are_refused(run, path, how, message):
-    dumped(run, path)
-    path.write_text(damage(path.read_text(), how))
+    text = dumped(run, path).read_text()
+    path.write_text(how(text, text.splitlines(keepends=True)) if callable(how) else text.replace(*how))
     with pytest.raises(FileError, match=message):
         fl.read_lammps(path, run.law)
 

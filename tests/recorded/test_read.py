@@ -169,25 +169,27 @@ def test_arrays_and_frames_may_be_named():
 
 
 def test_wrong_bytes_and_files_are_refused(tmp_path):
-    path = tmp_path / "it.csv"
+    path, bad = tmp_path / "it.csv", tmp_path / "bad.npz"
     for data, message in ((b"t,x\n0,\xff\n", "line 2: byte 0xff"), (b"\xff\xfet\0", "UTF-16"), (b"t\0", "null bytes")):
         path.write_bytes(data)
         with pytest.raises(FileError, match=message):
             fl.read_recording(path)
-    with pytest.raises(FileError, match="no file"):
-        fl.read_recording(tmp_path / "nothing.csv")
-    with pytest.raises(FileError, match="no regular file"):
-        fl.read_recording(tmp_path)
-    with pytest.raises(ArgumentError, match="expected a file, a pandas frame, or arrays by name"):
-        fl.read_recording(3)
-    with pytest.raises(ArgumentError, match=r"its axis 2 is that long: give numpy.moveaxis\(q, 2, 0\)"):
-        fl.read_recording({"t": T, "q": np.zeros((5, 2, 3))})
-    np.savez(tmp_path / "bad.npz", q=np.array([None]))
-    with pytest.raises(FileError, match="as npz"):
-        fl.read_recording(tmp_path / "bad.npz")
-    np.savez(tmp_path / "bad.npz", t=T, q=Q, ids=["a", "b"], source="it", estimated=np.zeros(3))
-    with pytest.raises(ArgumentError, match=r"estimated = .*expected True or False"):
-        fl.read_recording(tmp_path / "bad.npz")
+    for source, message in (
+        (tmp_path / "nothing.csv", "no file"),
+        (tmp_path, "no regular file"),
+        (3, "expected a file, a pandas frame, or arrays by name"),
+        ({"t": T, "q": np.zeros((5, 2, 3))}, r"its axis 2 is that long: give numpy.moveaxis\(q, 2, 0\)"),
+    ):
+        with pytest.raises(FlockanaError, match=message):
+            fl.read_recording(source)
+    named = {"t": T, "q": Q, "ids": ["a", "b"], "source": "it"}
+    for arrays, message in (
+        ({"q": np.array([None])}, "as npz"),
+        (named | {"estimated": np.zeros(3)}, r"estimated = .*expected True or False"),
+    ):
+        np.savez(bad, **arrays)
+        with pytest.raises(FlockanaError, match=message):
+            fl.read_recording(bad)
 
 
 def test_a_wrapped_dump_is_unwrapped(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from flockana.scenarios import scenario
 
 
-@pytest.mark.parametrize("name", ["as-built", "wind"])
+@pytest.mark.parametrize("name", ["as-built", pytest.param("wind", marks=pytest.mark.slow)])
 def test_what_is_expected_of_it(name):
     case = scenario(name)
     found = case.verify(case.run())

@@ -9,7 +9,7 @@ import pytest
 
 from flockana import components, links, simulate
 from flockana.laws.bearing_distance import CHOICES
-from flockana.scenarios import scenario, scenarios
+from flockana.scenarios import scenario
 from flockana.scenarios.bearing_distance import SCENARIOS, passed
 from flockana.scenarios.findings import component_counts
 
@@ -30,7 +30,6 @@ def claim_of(entry, run, name):
 
 
 def test_all_are_in_the_catalogue():
-    assert set(SCENARIOS) <= set(scenarios())
     sections = {f"zone-{section}{how}" for section in (51, 52) for how in ("", "-printed", "-charitable")}
     assert sections | {"zone-gap", "zone-gap-buffer"} == set(SCENARIOS)
 

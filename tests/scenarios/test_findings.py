@@ -3,4 +3,4 @@ from flockana.theorems.limits import Certificate
 
 
 def test_a_limit_without_certificate_stays_open():
-    assert limit_report("rests", Certificate(-0.5, "it does not fall"), "it still moves").status == "inconclusive"
+    assert limit_report(Certificate(-0.5, "it does not fall"), "it still moves").status == "inconclusive"

@@ -8,7 +8,7 @@ import pytest
 
 from flockana import components, links, rescale
 from flockana.base.errors import ArgumentError
-from flockana.scenarios import scenario, scenarios
+from flockana.scenarios import scenario
 from flockana.scenarios.zone_prose import SCENARIOS
 
 
@@ -19,10 +19,6 @@ def ran(name):
 
 def claim_of(name, run, claim):
     return scenario(name).verify(run)[-1].claim(claim)
-
-
-def test_all_are_in_the_catalogue():
-    assert set(SCENARIOS) <= set(scenarios())
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -68,33 +69,37 @@ def _array(value: Any, kind: str, where: str) -> Any:
     return array
 
 
+@contextmanager
+def _readable(path: Path, kind: str, remedy: str) -> Iterator[None]:
+    """Turn what readers raise on damaged bytes, errors of many kinds, into one in a line."""
+    try:
+        yield
+    except FileError:
+        raise
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FileError(f"cannot read {path} as {kind}: {reason}; {remedy}") from None
+
+
 def npz_arrays(path: Path) -> dict[str, Any]:
     """Return the arrays of an npz file; objects are refused, as they can run code."""
-    import zipfile
-
-    try:
+    with _readable(path, "npz", "write it by numpy.savez"):
         found = np.load(path, allow_pickle=False)
         if isinstance(found, np.ndarray):  # of a file .npy
             return {"q": found}
         with found as file:
             return {name: file[name] for name in file.files}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, zipfile.error) as error:
-        raise FileError(f"cannot read {path} as npz: {' '.join(str(error).split())}; write it by numpy.savez") from None
-    except Exception as error:  # zlib and tokenize raise kinds of their own on damaged bytes
-        raise FileError(f"cannot read {path} as npz: {type(error).__name__}; write it by numpy.savez") from None
 
 
 def mat_arrays(path: Path) -> dict[str, Any]:
     """Return the arrays of a MATLAB file."""
     from scipy.io import loadmat
 
-    try:
-        found = loadmat(path, squeeze_me=False)
-    except NotImplementedError:
-        raise FileError(f"{path} is a MATLAB file of version 7.3: expected save(..., '-v7')") from None
-    except Exception as error:  # scipy raises many kinds on damaged bytes
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileError(f"cannot read {path} as a MATLAB file: {reason}; expected save(..., '-v7')") from None
+    with _readable(path, "a MATLAB file", "expected save(..., '-v7')"):
+        try:
+            found = loadmat(path, squeeze_me=False)
+        except NotImplementedError:
+            raise FileError(f"{path} is a MATLAB file of version 7.3: expected save(..., '-v7')") from None
     return {name: value for name, value in found.items() if not name.startswith("__")}
 
 
@@ -102,11 +107,10 @@ def netcdf_arrays(path: Path) -> dict[str, Any]:
     """Return the arrays of a netCDF file, coordinates among them; of a run that flockana saved, too."""
     import xarray
 
-    try:
-        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
-            data = dataset.load()
-    except Exception as error:  # h5py raises many kinds on damaged bytes
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileError(f"cannot read {path} as netCDF-4: {reason}; expected q over (time, agent, axis)") from None
+    with (
+        _readable(path, "netCDF-4", "expected q over (time, agent, axis)"),
+        xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset,
+    ):
+        data = dataset.load()
     found = {str(name): np.asarray(data[name]) for name in (*data.coords, *data.data_vars)}
     return {name: value for name, value in found.items() if value.dtype.kind in "fiu"}

@@ -182,10 +182,8 @@ def _numbers(file: TextIO, rows: int, width: int | None, path: Path, *, words: S
     bad = next((line for line, row in zip(lines, cells, strict=True) if len(row) != width), None)
     cut = bool(lines) and not lines[-1].endswith("\n")  # LAMMPS ends every line: the last number may be half of one
     if len(lines) < rows or bad is not None or cut:
-        shown, size = (
-            "the end of the file" if bad is None else repr(bad.strip()[:60]),
-            "" if width is None else f"{width} ",
-        )
+        shown = "the end of the file" if bad is None else repr(bad.strip()[:60])
+        size = "" if width is None else f"{width} "
         raise FileError(f"{path}: {shown} where {rows} lines of {size}numbers were expected; was it cut off?")
     for row in cells:
         for k in words:

@@ -13,21 +13,13 @@ AXES = "xyz"
 TIMES = ("t", "time", "times", "timestamp", "seconds", "tau")
 FRAMES = ("frame", "frames", "step", "sample")
 AGENTS = (
-    "id",
-    "agent",
-    "agent_id",
-    "track",
-    "track_id",
-    "trackid",
-    "particle",
-    "robot",
-    "bird",
-    "fish",
-    "name",
-    "label",
+    *("id", "agent", "agent_id", "track", "track_id", "trackid"),
+    *("particle", "robot", "bird", "fish", "name", "label"),
 )
-KINDS = {"q": ("{}", "q{}", "q_{}", "pos_{}", "position_{}"), "p": ("v{}", "p{}", "v_{}", "p_{}", "vel_{}")} | {
-    "u": ("u{}", "a{}", "u_{}", "a_{}", "acc_{}")
+KINDS = {
+    "q": ("{}", "q{}", "q_{}", "pos_{}", "position_{}"),
+    "p": ("v{}", "p{}", "v_{}", "p_{}", "vel_{}"),
+    "u": ("u{}", "a{}", "u_{}", "a_{}", "acc_{}"),
 }
 _UNIT = re.compile(r"\s*[\[(].*[\])]\s*$")  # x [m], t (s)
 _NUMBERED = re.compile(r"^([a-z]+_?)[_ .-]?(\d+)$")  # x1, vx_2
@@ -65,9 +57,9 @@ def coordinate(name: str) -> tuple[str, int] | None:
 def layout_of(names: Sequence[Any], where: str) -> Layout:
     """Return the layout of a table by its header."""
     by_name = {plain(name): str(name) for name in names}
-    time = next((by_name[each] for each in TIMES if each in by_name), None)
-    frame = next((by_name[each] for each in FRAMES if each in by_name), None)
-    agent = next((by_name[each] for each in AGENTS if each in by_name), None)
+    time, frame, agent = (
+        next((by_name[each] for each in known if each in by_name), None) for known in (TIMES, FRAMES, AGENTS)
+    )
     long: dict[str, dict[int, str]] = {}
     wide: dict[str, dict[str, dict[int, str]]] = {}
     for name, column in by_name.items():
@@ -87,11 +79,11 @@ def layout_of(names: Sequence[Any], where: str) -> Layout:
         )
     if "q" in long or not wide:
         return Layout(time, frame, agent, _axes(long, where, shown), {})
-    first = _axes(next(iter(wide.values())), where, shown)
     each = {agent_: _axes(kinds, where, shown) for agent_, kinds in wide.items()}
-    other = next((a for a, kinds in each.items() if {k: len(v) for k, v in kinds.items()} != _sizes(first)), None)
-    if other is not None:
-        raise ArgumentError(f"{where} has other columns for agent {other} than for {next(iter(wide))}: expected alike")
+    sizes = {agent_: {kind: len(columns) for kind, columns in kinds.items()} for agent_, kinds in each.items()}
+    first = next(iter(wide))
+    if (other := next((agent_ for agent_ in sizes if sizes[agent_] != sizes[first]), None)) is not None:
+        raise ArgumentError(f"{where} has other columns for agent {other} than for {first}: expected alike")
     return Layout(time, frame, None, {}, each)
 
 
@@ -126,7 +118,3 @@ def _axes(kinds: Mapping[str, Mapping[int, str]], where: str, shown: str) -> dic
             extra = KINDS[kind][0].format(AXES[m])
             raise ArgumentError(f"{where} has {extra} and no {AXES[m]}: expected both or none")
     return {kind: [columns[k] for k in range(m)] for kind, columns in kinds.items()}
-
-
-def _sizes(kinds: Mapping[str, Sequence[str]]) -> dict[str, int]:
-    return {kind: len(columns) for kind, columns in kinds.items()}

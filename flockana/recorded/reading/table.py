@@ -29,16 +29,14 @@ def table_arrays(
     if not frame.columns.is_unique:
         twice = frame.columns[frame.columns.duplicated()][0]
         raise ArgumentError(f"{where}: the column {twice!r} is given twice; expected each once")
-    layout = (
-        given_layout(columns, list(frame), where) if isinstance(columns, Mapping) else layout_of(list(frame), where)
-    )
+    names = list(frame)
+    layout = given_layout(columns, names, where) if isinstance(columns, Mapping) else layout_of(names, where)
     if layout.wide:
         return _wide(frame, layout, _times(frame, layout, dt, clock, where))
-    if layout.agent is None:
-        return _without_agents(frame, layout, where, dt, clock)
     if layout.time is None and layout.frame is None:
         return _one_instant(frame, layout, where)
-    return _long(frame, layout, _times(frame, layout, dt, clock, where), where)
+    t = _times(frame, layout, dt, clock, where)
+    return _of_one_agent(frame, layout, t, where) if layout.agent is None else _long(frame, layout, t, where)
 
 
 def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, where: str) -> FloatArray:
@@ -140,11 +138,8 @@ def _wide(frame: Any, layout: Layout, t: FloatArray) -> dict[str, Any]:
     return found
 
 
-def _without_agents(frame: Any, layout: Layout, where: str, dt: float | None, clock: float | None) -> dict[str, Any]:
-    """Rows without names: one agent over time, or a flock at one instant."""
-    if layout.time is None and layout.frame is None:
-        return {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
-    t = _times(frame, layout, dt, clock, where)
+def _of_one_agent(frame: Any, layout: Layout, t: FloatArray, where: str) -> dict[str, Any]:
+    """Rows without names: one agent over time."""
     if len(np.unique(t)) < len(t):
         raise ArgumentError(f"{where} has several rows at one time and no column id: expected the agent of each row")
     order = np.argsort(t, kind="stable")
@@ -152,8 +147,10 @@ def _without_agents(frame: Any, layout: Layout, where: str, dt: float | None, cl
 
 
 def _one_instant(frame: Any, layout: Layout, where: str) -> dict[str, Any]:
-    """Agents by name and no times: a flock at one instant."""
-    ids = [str(i) for i in frame[layout.agent]]
-    if len(set(ids)) < len(ids):
-        raise ArgumentError(f"{where} has agents several times and no times: expected a column time")
-    return {"t": [0.0], "ids": ids} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
+    """Agents without times: a flock at one instant."""
+    found: dict[str, Any] = {"t": [0.0]} | {kind: _values(frame, names)[None] for kind, names in layout.long.items()}
+    if layout.agent is not None:
+        found["ids"] = ids = [str(i) for i in frame[layout.agent]]
+        if len(set(ids)) < len(ids):
+            raise ArgumentError(f"{where} has agents several times and no times: expected a column time")
+    return found

@@ -67,20 +67,16 @@ def numbers(frame: Any, column: str) -> Any:
 
     series = frame[column]
     if series.dtype.kind == "c":
-        raise _bad_cell(frame, 0, column, series.iloc[0])
-    if series.dtype.kind in "fiu":
-        values = series.to_numpy(dtype=np.float64)
-    else:
-        found = pd.to_numeric(series, errors="coerce")
-        refused = (series.notna() & found.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
-        if refused.any():
-            k = int(np.argmax(refused))
-            raise _bad_cell(frame, k, column, series.iloc[k])
-        values = found.to_numpy(dtype=np.float64)
-    if np.isinf(values).any():
-        k = int(np.argmax(np.isinf(values)))
-        raise _bad_cell(frame, k, column, series.iloc[k])
-    return values
+        raise _bad_cell(frame, 0, column)
+    values, refused = series, np.zeros(len(series), dtype=bool)
+    if series.dtype.kind not in "fiu":
+        values = pd.to_numeric(series, errors="coerce")
+        refused = (series.notna() & values.isna()).to_numpy() | series.map(lambda x: isinstance(x, bool)).to_numpy()
+    found = values.to_numpy(dtype=np.float64)
+    refused = refused | np.isinf(found)
+    if refused.any():
+        raise _bad_cell(frame, int(np.argmax(refused)), column)
+    return found
 
 
 def row_name(frame: Any, k: int) -> str:
@@ -92,11 +88,10 @@ def row_name(frame: Any, k: int) -> str:
     return f"{where}, line {k + first if lines is None else lines[k]}"
 
 
-def _bad_cell(frame: Any, k: int, column: str, value: Any) -> FileError:
-    return FileError(
-        f"{row_name(frame, k)}, column {column!r}: {str(value)[:_SHOWN]!r}; expected a finite number such as 0.5, or "
-        "nothing for a gap"
-    )
+def _bad_cell(frame: Any, k: int, column: str) -> FileError:
+    cell = str(frame[column].iloc[k])[:_SHOWN]
+    where = f"{row_name(frame, k)}, column {column!r}: {cell!r}"
+    return FileError(f"{where}; expected a finite number such as 0.5, or nothing for a gap")
 
 
 def _bytes(path: Path) -> bytes:
