@@ -1,5 +1,3 @@
-"""A line on the terminal while kernels are compiled: what it takes for compiling."""
-
 from threading import get_ident
 
 from flockana import jit
