@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -41,9 +41,8 @@ def animate_command(
     if item is not None and run.status == "interrupted":
         return INTERRUPTED
     with progress_bar(frame_count(seconds, fps)) as advance:
-        animate(
-            run, film, seconds=seconds, fps=fps, ranges=ranges, progress=lambda done, total: advance(done, "drawing")
-        )
+        look: dict[str, Any] = {"seconds": seconds, "fps": fps, "ranges": ranges}
+        animate(run, film, **look, progress=lambda done, total: advance(done, "drawing"))
     subject = str(file) if item is None else item.name
     if as_json:
         show_json({"subject": subject, "status": run.status, "message": run.message, "file": str(film)})

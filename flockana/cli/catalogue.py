@@ -14,10 +14,8 @@ if TYPE_CHECKING:
 
 Words = Annotated[list[str] | None, typer.Argument(metavar="[WORD]...", help="Only entries with all these words.")]
 Source = Annotated[str, typer.Option(help="Only this source, or part of its name.", show_default=False)]
-Status = Annotated[
-    Literal["verified", "refuted", "vacuous", "inconclusive"] | None,
-    typer.Option(help="Only entries with this expected status.", show_default=False),
-]
+Statuses = Literal["verified", "refuted", "vacuous", "inconclusive"]
+Status = Annotated[Statuses | None, typer.Option(help="Only entries with this expected status.")]
 Long = Annotated[bool, typer.Option("--long", help="Print all details of each.")]
 
 

@@ -13,8 +13,7 @@ from flockana.cli.status import OK, UNEXPECTED, print_error
 
 
 def check_command(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A certificate (.json).")],
-    as_json: AsJson = False,
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A certificate (.json).")], as_json: AsJson = False
 ) -> int:
     """Verify a certificate, such as a basin's, and print what it proves, step by step.
 
@@ -36,7 +35,7 @@ def check_command(
     if as_json:
         show_json(asdict(found))
         return OK
-    typer.echo(f"{file}: a certificate of kind {found.kind} that holds\n\n{found.statement}\n")
-    typer.echo("\n".join(["Verified:", *(f"  {step}" for step in found.steps)]))
-    typer.echo("\n".join(["Not checked by machine:", *(f"  {line}" for line in found.prose)]))
+    head = f"{file}: a certificate of kind {found.kind} that holds\n\n{found.statement}\n"
+    typer.echo("\n  ".join([f"{head}\nVerified:", *found.steps]))
+    typer.echo("\n  ".join(["Not checked by machine:", *found.prose]))
     return OK

@@ -27,21 +27,14 @@ class Command(TyperCommand):
             if not isinstance(value, str) or format_message is None or repr(value) in format_message():
                 raise
             raise ArgumentError(f"{format_message().rstrip('.')}; got {value!r}") from error
-        paths = _paths(self.callback)
+        callback: Any = self.callback
+        hints = get_type_hints(inspect.unwrap(callback))
         for param in self.params:
-            if param.name in paths and given.get(param.name) == "":
-                _ensure_nonempty(param)
+            kind = hints.get(str(param.name))
+            if given.get(str(param.name)) == "" and (
+                kind is Path or Path in get_args(kind)
+            ):  # as from an unset variable
+                name = param.opts[0] if param.param_type_name == "option" else param.metavar
+                here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
+                raise FileError(f"{name} '': the name is empty; choose another name{here}")
         return left
-
-
-def _paths(command: Any) -> set[str]:
-    """Return the parameters of a command that are paths."""
-    hints = get_type_hints(inspect.unwrap(command))
-    return {name for name, kind in hints.items() if kind is Path or Path in get_args(kind)}
-
-
-def _ensure_nonempty(param: Any) -> None:
-    """Raise on an empty path, as from an unset variable."""
-    name = param.opts[0] if param.param_type_name == "option" else param.metavar
-    here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
-    raise FileError(f"{name} '': the name is empty; choose another name{here}")

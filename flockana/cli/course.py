@@ -9,19 +9,15 @@ import typer
 
 from flockana.base.errors import ArgumentError
 from flockana.cli.options import AsJson
-from flockana.cli.show import show_files, show_json
+from flockana.cli.show import show_json
 from flockana.cli.status import OK
 
 
 def course_command(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
     solutions: Annotated[bool, typer.Option("--solutions", help="With solutions, and checks that grade.")] = False,
-    self_study: Annotated[
-        bool, typer.Option("--self-study", help="Without solutions, with checks that grade.")
-    ] = False,
-    slides: Annotated[
-        bool, typer.Option("--slides", help="Slides for `jupyter nbconvert --to slides --execute DIR/*.ipynb`.")
-    ] = False,
+    self_study: Annotated[bool, typer.Option("--self-study", help="No solutions; checks that grade.")] = False,
+    slides: Annotated[bool, typer.Option("--slides", help="Slides for `nbconvert --to slides --execute`.")] = False,
     grader: Annotated[
         Literal["otter", "nbgrader"] | None,
         typer.Option(help="Assignments with hidden tests, for `otter assign` or nbgrader's folder source."),
@@ -40,9 +36,6 @@ def course_command(
     """
     if solutions + self_study + slides + (grader is not None) > 1:
         raise ArgumentError("--solutions, --self-study, --slides, --grader: expected one of them; leave the others out")
-    version: Literal["student", "self-study", "solutions"] = (
-        "solutions" if solutions else "self-study" if self_study else "student"
-    )
     try:
         from flockana.course.build import write
         from flockana.course.export import write_for
@@ -54,11 +47,13 @@ def course_command(
     ensure_directory(folder)
     if grader is not None:
         notebooks = write_for(folder, grader)
+    elif slides:
+        notebooks = write_slides(folder)
     else:
-        notebooks = write_slides(folder) if slides else write(folder, version, address=address)
+        version = "solutions" if solutions else "self-study" if self_study else "student"
+        notebooks = write(folder, version, address=address)
     if as_json:
         show_json({"notebooks": [str(path) for path in notebooks]})
-        return OK
-    for written in notebooks:
-        show_files(notebook=written)
+    else:
+        typer.echo("\n".join(f"notebook: {path}" for path in notebooks))
     return OK

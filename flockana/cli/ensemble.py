@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from flockana.base.errors import ArgumentError
 from flockana.base.files import write_atomic
 from flockana.cli.options import AsJson, Drawing, Jobs, ScenarioName, output
 from flockana.cli.show import show, show_files, show_json
@@ -35,8 +36,7 @@ def ensemble_command(
     store: Annotated[Path | None, typer.Option(metavar="FILE", help="File that stores finished runs.")] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Retry failed runs of the store.")] = False,
     cluster: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one."),
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler's address, or 'local' to start one.")
     ] = None,
     jobs: Jobs = None,
     level: Annotated[float, typer.Option(help="Confidence of the intervals.")] = 0.95,
@@ -55,8 +55,7 @@ def ensemble_command(
     Exit status: 0 done, 2 bad input, 3 some run did not complete, 130 interrupted.
     """
     from flockana.base.binomial import ensure_level
-    from flockana.base.errors import ArgumentError
-    from flockana.cli.picture import KINDS, ensure_file, write_picture
+    from flockana.cli.picture import ensure_file, write_picture
     from flockana.ensemble import ensemble, shares
 
     if retry and store is None:
@@ -65,9 +64,9 @@ def ensemble_command(
     axes = [name for name, values in parameters.items() if isinstance(values, list)]
     ensure_level(level)
     ensure_file(save_to, (".nc",))
-    ensure_file(plot, KINDS)
-    if plot is not None:
-        _ensure_drawable(axes)
+    ensure_file(plot)
+    if plot is not None and len(axes) > 2:
+        raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
     runs = ensemble(
         scenario,
         range(first, first + seeds),
@@ -86,10 +85,8 @@ def ensemble_command(
         _show(runs, table)
     if save_to is not None:  # in memory first: HDF5 tears itself apart on a disk that fills
         write_atomic(save_to, runs.to_netcdf(None, engine="h5netcdf"))
-    if plot is not None:
-        write_picture(lambda ax: _draw(ax, runs, table, axes), plot, m=2)
-    if not as_json:
-        show_files(store=store, saved=save_to, picture=plot)
+    write_picture(lambda ax: _draw(ax, runs, table, axes), plot)
+    show_files(as_json, store=store, saved=save_to, picture=plot)
     return UNEXPECTED if (runs.run != 0).any() else OK
 
 
@@ -101,8 +98,6 @@ def read_options(texts: list[str]) -> dict[str, Any]:
     >>> read_options(["n=20,40", "push=true", "ratio=1e-3"])
     {'n': [20, 40], 'push': True, 'ratio': 0.001}
     """
-    from flockana.base.errors import ArgumentError
-
     options: dict[str, Any] = {}
     for text in texts:
         name, _, values = text.partition("=")
@@ -125,13 +120,6 @@ def _value(word: str) -> int | float | bool | str:
         except ValueError:
             continue
     return word
-
-
-def _ensure_drawable(axes: list[str]) -> None:
-    from flockana.base.errors import ArgumentError
-
-    if len(axes) > 2:
-        raise ArgumentError(f"--plot: {len(axes)} options have several values; expected two at most")
 
 
 def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str]) -> None:
@@ -174,10 +162,9 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
     if bad.any():
         messages = list(dict.fromkeys(runs.message.values[bad].tolist()))
         console.print(f"{bad.sum()} did not complete:", style="bold red", markup=False)
-        for message in messages[:_MESSAGES]:
-            console.print(f"  {message}", markup=False)
-        if len(messages) > _MESSAGES:
-            console.print(f"  … and {len(messages) - _MESSAGES} more kinds", markup=False)
+        more = [f"… and {len(messages) - _MESSAGES} more kinds"] if len(messages) > _MESSAGES else []
+        for text in messages[:_MESSAGES] + more:
+            console.print(f"  {text}", markup=False)
 
 
 def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:

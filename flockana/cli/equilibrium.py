@@ -41,13 +41,13 @@ def equilibrium_command(
     """
     from flockana.base.errors import SolverError
     from flockana.cli.flock import announce_time, read_flock
-    from flockana.cli.picture import KINDS, ensure_file, write_picture
+    from flockana.cli.picture import ensure_file, write_picture
     from flockana.equilibria import find_equilibrium
     from flockana.equilibria.record import write_equilibrium
     from flockana.report.tables import fact_table
 
     ensure_file(save_to, (".json",))
-    ensure_file(picture, KINDS)
+    ensure_file(picture)
     try:
         law, q = read_flock(source, start=start, seed=seed, algorithm=algorithm, d=d, r=r, time=time)
         announce_time(len(q))
@@ -62,10 +62,8 @@ def equilibrium_command(
         show(f"{source}: {equilibrium.kind}", fact_table(_rows(equilibrium, facts)))
     if save_to is not None:
         write_equilibrium(equilibrium, save_to)
-    if picture is not None:
-        write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])
-    if not as_json:
-        show_files(saved=save_to, picture=picture)
+    write_picture(lambda ax: _draw(ax, equilibrium, source), picture, m=equilibrium.q.shape[1])
+    show_files(as_json, saved=save_to, picture=picture)
     return OK
 
 
@@ -74,16 +72,10 @@ def summary(equilibrium: Equilibrium, name: str) -> dict[str, Any]:
     from flockana.equilibria.potential import Potential
     from flockana.measures.metrics import coincident_pairs
 
-    n, m = equilibrium.q.shape
-    strain = equilibrium.strain()
-    return {
-        "source": name,
-        "law": type(equilibrium.law).__name__,
-        "n": n,
-        "m": m,
-        "kind": equilibrium.kind,
-        "energy": equilibrium.energy,
-        "residual": equilibrium.residual,
+    (n, m), strain = equilibrium.q.shape, equilibrium.strain()
+    facts = {"source": name, "law": type(equilibrium.law).__name__, "n": n, "m": m}
+    facts |= {key: getattr(equilibrium, key) for key in ("kind", "energy", "residual")}
+    return facts | {
         "links": len(equilibrium.links),
         "strain": None if isnan(strain) else strain,
         "coincident pairs": coincident_pairs(equilibrium.q, 1e-6 * Potential(equilibrium.law).pair.length),

@@ -9,15 +9,12 @@ import typer
 from flockana.base.errors import ArgumentError, UnknownNameError
 from flockana.cli.status import OK
 
-_PORT = 8642
-
 
 def explore_command(
     name: Annotated[
-        str,
-        typer.Argument(help="A scenario, a law, a saved run (.nc) or a counterexample (.json).", metavar="[NAME|FILE]"),
+        str, typer.Argument(metavar="[NAME|FILE]", help="A scenario, law, saved run (.nc) or counterexample (.json).")
     ] = "paper-flocking",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 picks a free one.")] = _PORT,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 picks a free one.")] = 8642,
     seconds: Annotated[float, typer.Option(help="Longest computing time of a run; a longer one is refused.")] = 60.0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, open nothing.")] = False,
 ) -> int:

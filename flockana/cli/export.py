@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -35,29 +35,17 @@ def export_command(
     from flockana.scenarios import scenario
 
     item = scenario(name, seed)
-    exported = export_lammps(
-        item.law,
-        item.q0,
-        item.p0,
-        item.t_span,
-        out,
-        points=points,
-        inner=inner,
-        dt=dt,
-        samples=samples,
-        consensus=consensus,
-    )
+    options: dict[str, Any] = {"points": points, "inner": inner, "dt": dt, "samples": samples, "consensus": consensus}
+    exported = export_lammps(item.law, item.q0, item.p0, item.t_span, out, **options)
     if as_json:
         numbers = {"steps": exported.steps, "dt": exported.dt, "force error": exported.force_error}
         words = {name: list(getattr(exported, name)) for name in ("exact", "near", "missing")}
         show_json({"scenario": name, **numbers, **words, "files": [str(path) for path in exported.files]})
         return OK
     console = show(f"{item.name} for LAMMPS: {exported.steps} steps of {exported.dt:.6g}")
-    for word, texts in (("exact", exported.exact), ("nearly", exported.near), ("missing", exported.missing)):
-        for text in texts:
-            console.print(f"{word}: {text}", markup=False)
-    console.print(
-        f"table: force off by at most {exported.force_error:.3g}, energy by {exported.energy_error:.3g}", markup=False
-    )
+    lines = [f"exact: {text}" for text in exported.exact] + [f"nearly: {text}" for text in exported.near]
+    lines += [f"missing: {text}" for text in exported.missing]
+    lines.append(f"table: force off by at most {exported.force_error:.3g}, energy by {exported.energy_error:.3g}")
+    console.print("\n".join(lines), markup=False)
     show_files(**{path.name: path for path in exported.files})
     return OK

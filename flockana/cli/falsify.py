@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.cli.options import AsJson, output
+from flockana.base.errors import ArgumentError
+from flockana.cli.options import AsJson, Drawing, output
 from flockana.cli.show import show, show_files, show_json
 from flockana.cli.status import INTERRUPTED, OK, UNEXPECTED
 
@@ -36,7 +37,7 @@ def falsify_command(
     ] = None,
     deepen: Annotated[bool, typer.Option("--deepen", help="Search on after a claim is broken.")] = False,
     save_to: Annotated[Path | None, output("JSON file to write.")] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF of the search.")] = None,
+    plot: Drawing = None,
     replay: Annotated[Path | None, typer.Option(metavar="FILE", help="Check this counterexample instead.")] = None,
     as_json: AsJson = False,
 ) -> int:
@@ -48,8 +49,7 @@ def falsify_command(
     Exit status: 0 nothing found, or a claim broken that is known to be false; 2 bad input; 3 a claim broken that is not
     known to be false, or a replay on which the claim holds; 130 interrupted, after printing the worst run.
     """
-    from flockana.base.errors import ArgumentError
-    from flockana.cli.picture import KINDS, ensure_file, write_picture
+    from flockana.cli.picture import ensure_file, write_picture
     from flockana.falsify import falsify
     from flockana.plots.falsify import falsification
 
@@ -60,7 +60,7 @@ def falsify_command(
     if theorem is None or on is None:
         raise ArgumentError("expected THEOREM --on SCENARIO, such as os-3 --on three-agents-1d, or --replay FILE")
     ensure_file(save_to, (".json",))
-    ensure_file(plot, KINDS)
+    ensure_file(plot)
     search = falsify(
         theorem,
         on,
@@ -79,10 +79,8 @@ def falsify_command(
     else:
         _show(search)
     saved = search.save(save_to) if save_to is not None and search.found else None
-    if plot is not None:
-        write_picture(lambda ax: falsification(search, ax=ax), plot, m=2)
-    if not as_json:
-        show_files(counterexample=saved, picture=plot)
+    write_picture(lambda ax: falsification(search, ax=ax), plot)
+    show_files(as_json, counterexample=saved, picture=plot)
     if search.ended == "interrupted":
         return INTERRUPTED
     return OK if all(known_false(search.theorem, name) for name in search.broken) else UNEXPECTED
@@ -96,8 +94,6 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
     >>> read_ranges(["gains.c1_gamma=0.1,10"])
     {'gains.c1_gamma': (0.1, 10.0)}
     """
-    from flockana.base.errors import ArgumentError
-
     ranges: dict[str, tuple[float, float]] = {}
     for text in texts:
         name, _, bounds = text.partition("=")
@@ -113,21 +109,12 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
 
 def search_facts(search: Falsification) -> dict[str, Any]:
     """Return a search as plain data."""
-    ends = {"margin": search.margin, "error": search.error}
-    return {
-        "theorem": search.theorem,
-        "claim": search.claim,
-        "scenario": search.scenario,
-        "found": search.found,
-        "status": search.status,
-        **{name: value if isfinite(value) else None for name, value in ends.items()},
-        "known to be false": search.found and known_false(search.theorem, search.claim),
-        "evaluations": search.evaluations,
-        "failures": search.failures,
-        "ended": search.ended,
-        "broken": list(search.broken),
-        "parameters": dict(search.parameters),
-    }
+    names = ("theorem", "claim", "scenario", "found", "status", "margin", "error")
+    facts = {name: getattr(search, name) for name in names}
+    facts |= {name: facts[name] if isfinite(facts[name]) else None for name in ("margin", "error")}
+    facts["known to be false"] = search.found and known_false(search.theorem, search.claim)
+    facts |= {name: getattr(search, name) for name in ("evaluations", "failures", "ended")}
+    return facts | {"broken": list(search.broken), "parameters": dict(search.parameters)}
 
 
 def _replay(path: Path, *, as_json: bool) -> int:
@@ -139,12 +126,13 @@ def _replay(path: Path, *, as_json: bool) -> int:
     counterexample = Counterexample.load(path)
     verdict = counterexample.check()
     status = {claim.name: claim.status for claim in verdict.claims}.get(counterexample.claim, "not judged")
+    again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
+    claim = f"{counterexample.theorem}:{counterexample.claim}"
     if as_json:
         show_json(verdict.to_dict())
-        return OK if status == "refuted" else UNEXPECTED
-    Console(highlight=False).print(details(verdict))
-    again = "it breaks again" if status == "refuted" else f"it does not break here: {status}"
-    typer.echo(f"{counterexample.theorem}:{counterexample.claim}, found by flockana {counterexample.version}: {again}")
+    else:
+        Console(highlight=False).print(details(verdict))
+        typer.echo(f"{claim}, found by flockana {counterexample.version}: {again}")
     return OK if status == "refuted" else UNEXPECTED
 
 
@@ -156,14 +144,12 @@ def known_false(theorem: str, claim: str) -> bool:
         return False
     if "printed" in theorem + claim:
         return True
-    expected = [scenario(name).expected for name in scenarios()]
-    if any(statuses.get(f"{theorem}:{claim}") == "refuted" for statuses in expected):
-        return True
-    # where a scenario says that the theorem breaks, and not by which claim, it may be by any
-    return any(
-        statuses.get(theorem) == "refuted" and not any(key.startswith(f"{theorem}:") for key in statuses)
-        for statuses in expected
-    )
+    for statuses in (scenario(name).expected for name in scenarios()):
+        # where a scenario says that the theorem breaks, and not by which claim, it may be by any
+        named = any(key.startswith(f"{theorem}:") for key in statuses)
+        if statuses.get(f"{theorem}:{claim}" if named else theorem) == "refuted":
+            return True
+    return False
 
 
 def _show(search: Falsification) -> None:
@@ -177,13 +163,13 @@ def _show(search: Falsification) -> None:
     else:
         text = f"nothing found, which proves nothing: {search.claim} came nearest; {runs}"
     console.print(text + ("; interrupted" if search.ended == "interrupted" else ""), markup=False)
-    others = [name for name in search.broken if name != search.claim]
-    if others:
-        console.print(f"  broken on the way: {', '.join(others)}; search them by --claim", markup=False)
-    for name, value in search.parameters.items():
-        console.print(f"  {name} = {value:.6g}", markup=False)
+    others = ", ".join(name for name in search.broken if name != search.claim)
+    lines = [f"broken on the way: {others}; search them by --claim"] if others else []
+    lines += [f"{name} = {value:.6g}" for name, value in search.parameters.items()]
     if search.found and search.verdict is not None:
-        console.print(f"  {search.verdict.claim(search.claim).detail}", markup=False)
+        lines.append(search.verdict.claim(search.claim).detail)
+    for line in lines:
+        console.print(f"  {line}", markup=False)
 
 
 def claim_table(search: Falsification) -> Table:
@@ -195,8 +181,8 @@ def claim_table(search: Falsification) -> Table:
     from flockana.report.text import MARKS
     from flockana.report.text import show as number
 
-    headings = {"claim": False, "margin at the start": True, "at worst": True, "worst status": False, "judged on": True}
-    table = headed_table(*(column(heading, right=right) for heading, right in headings.items()))
+    headings = "claim", "margin at the start", "at worst", "worst status", "judged on"
+    table = headed_table(*(column(text, right=text not in ("claim", "worst status")) for text in headings))
     for name, margins in search.margins.items():
         judged = sum(status not in ("vacuous", "failed") for status in search.statuses[name])
         ends = (margins[0], search.least(name)[-1])

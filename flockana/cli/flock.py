@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from flockana.base.errors import ArgumentError, SolverError
+
 if TYPE_CHECKING:
     from flockana.base.checks import FloatArray
 
@@ -35,16 +37,25 @@ def read_flock(
     >>> type(law).__name__, law.alpha.d, q.ravel().tolist()
     ('Algorithm1', 2.0, [0.0, 2.0, 4.0])
     """
-    from flockana.cli.source import ensure_source
+    from flockana.cli.source import ensure_source, read_source
+    from flockana.environment.targets import StaticTarget
+    from flockana.interactions import AlphaInteraction
+    from flockana.laws.olfati_saber import Algorithm1, Algorithm2
     from flockana.scenarios import scenarios
 
     if source in scenarios():
-        _ensure_free(source, time=time, algorithm=algorithm, d=d, r=r)
+        _refuse(source, "has a law of its own", time=time, algorithm=algorithm, d=d, r=r)
         return _of_scenario(source, start or "end", seed or 0, potential)
     ensure_source(source, scenarios())
-    _ensure_no_scenario(source, seed=seed, start=start)
-    law, q = _of_source(source, algorithm=algorithm, d=d, r=r, time=time, potential=potential)
-    return law, q
+    _refuse(source, "is no scenario", seed=seed, start=start)
+    given = read_source(source, d=d, r=r, time=time)
+    if given.law is not None:
+        _refuse(source, "has a law of its own", algorithm=algorithm, d=d, r=r)
+        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
+    alpha = AlphaInteraction(d=given.d, r=given.r)
+    if algorithm == 2:
+        return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
+    return Algorithm1(alpha), given.q
 
 
 def announce_time(n: int, *, as_given: bool | None = None) -> None:
@@ -58,8 +69,6 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
     Traceback (most recent call last):
     flockana.base.errors.ArgumentError: n = 200000: expected at most 150000 agents
     """
-    from flockana.base.errors import ArgumentError
-
     most, each = (_GIVEN, _MODES) if as_given else (_SEARCHED, _SEARCH)
     if n > most:
         choice = f", or {_GIVEN} with --as-given (slowest modes at these positions)" if as_given is False else ""
@@ -69,24 +78,14 @@ def announce_time(n: int, *, as_given: bool | None = None) -> None:
         typer.echo(f"n = {n}: about {seconds:.0f} s on a machine of 2024", err=True)
 
 
-def _ensure_free(name: str, **given: object) -> None:
-    from flockana.base.errors import ArgumentError
-
+def _refuse(name: str, reason: str, **given: object) -> None:
+    """Raise on an option that does not go with this source."""
     for option, value in given.items():
         if value is not None:
-            raise ArgumentError(f"--{option} {value}: {name} has a law of its own, and no such choice; leave it out")
-
-
-def _ensure_no_scenario(name: str, **given: object) -> None:
-    from flockana.base.errors import ArgumentError
-
-    for option, value in given.items():
-        if value is not None:
-            raise ArgumentError(f"--{option} {value}: {name} is no scenario, and has no such choice; leave it out")
+            raise ArgumentError(f"--{option} {value}: {name} {reason}, and has no such choice; leave it out")
 
 
 def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any, FloatArray]:
-    from flockana.base.errors import SolverError
     from flockana.cli.source import integrated_law
     from flockana.equilibria.classify import ensure_small
     from flockana.scenarios import scenario
@@ -106,7 +105,6 @@ def _of_scenario(name: str, start: str, seed: int, potential: bool) -> tuple[Any
 
 def _ensured(law: Any, m: int, potential: bool) -> Any:
     """Return the law; raise if it is not continuous, or lacks a potential that is needed."""
-    from flockana.base.errors import ArgumentError
     from flockana.equilibria.potential import ensure_flock_law
 
     if potential or law.conservative:
@@ -114,26 +112,6 @@ def _ensured(law: Any, m: int, potential: bool) -> Any:
     if law.continuous is None:
         raise ArgumentError(f"{type(law).__name__} is a map from step to step: expected a continuous law to linearise")
     return law
-
-
-def _of_source(
-    name: str, *, algorithm: int | None, d: float | None, r: float | None, time: float | None, potential: bool
-) -> Any:
-    """Return positions, and the law of the file or Algorithm 1 or 2 with the user's scale and range."""
-    from flockana.cli.source import read_source
-    from flockana.interactions import AlphaInteraction
-    from flockana.laws.olfati_saber import Algorithm1, Algorithm2
-
-    given = read_source(name, d=d, r=r, time=time)
-    if given.law is not None:
-        _ensure_free(name, algorithm=algorithm, d=d, r=r)
-        return _with_fixed_target(_ensured(given.law, given.q.shape[1], potential), given.t), given.q
-    alpha = AlphaInteraction(d=given.d, r=given.r)
-    if algorithm != 2:
-        return Algorithm1(alpha), given.q
-    from flockana.environment.targets import StaticTarget
-
-    return Algorithm2(alpha, target=StaticTarget(given.q.mean(axis=0))), given.q
 
 
 def _with_fixed_target(law: Any, t: float) -> Any:

@@ -32,39 +32,17 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
         "course": ("Write the lectures as notebooks.", "flockana course lectures"),
     },
 }
-
-
-def example(command: str) -> str:
-    """Return the example of a command.
-
-    Examples
-    --------
-    >>> example("verify")
-    'flockana verify hexagon'
-    """
-    return next((group[command][1] for group in GROUPS.values() if command in group), f"flockana {command} --help")
+EXAMPLES = {name: example for group in GROUPS.values() for name, (_, example) in group.items()}
 
 
 class Groups(TyperGroup):
     """The root command, whose help lists commands by what they are for."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the groups of commands."""
-        listed: set[str] = set()
+        """Write the groups of commands, each command with its example below."""
+        width = max(map(len, EXAMPLES))
         for heading, group in GROUPS.items():
-            known = {name: entry for name, entry in group.items() if name in self.commands}
-            listed |= set(known)
-            if known:
-                self._write(formatter, heading, {name: f"{text}\n{line}" for name, (text, line) in known.items()})
-        rest = {name: self.commands[name].get_short_help_str() for name in self.commands if name not in listed}
-        if rest:
-            self._write(formatter, "More", rest)
-
-    def _write(self, formatter: Any, heading: str, rows: dict[str, str]) -> None:
-        width = max(map(len, self.commands))
-        with formatter.section(heading):
-            for name, text in rows.items():
-                first, *others = text.splitlines()
-                formatter.write(f"{'':{formatter.current_indent}}{name:{width}}  {first}\n")
-                for other in others:
-                    formatter.write(f"{'':{formatter.current_indent + width + 2}}$ {other}\n")
+            with formatter.section(heading):
+                for name, (text, example) in group.items():
+                    formatter.write(f"{'':{formatter.current_indent}}{name:{width}}  {text}\n")
+                    formatter.write(f"{'':{formatter.current_indent + width + 2}}$ {example}\n")

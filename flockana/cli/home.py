@@ -15,7 +15,11 @@ def prepare_home() -> None:
     By itself it takes a new one each time, which costs seconds, and says so in three lines. What the user has chosen
     stays, and where there is no such folder either, matplotlib tells.
     """
-    if "MPLCONFIGDIR" in os.environ or not sys.platform.startswith("linux") or all(map(_writable, _folders())):
+    if "MPLCONFIGDIR" in os.environ or not sys.platform.startswith("linux"):
+        return
+    home = Path(os.path.expanduser("~"))
+    own = os.environ.get("XDG_CONFIG_HOME") or home / ".config", os.environ.get("XDG_CACHE_HOME") or home / ".cache"
+    if all(_writable(Path(folder) / "matplotlib") for folder in own):
         return
     folder = Path(tempfile.gettempdir()) / f"flockana-matplotlib-{os.getuid()}"
     try:
@@ -26,17 +30,6 @@ def prepare_home() -> None:
     # settings are read from there: nobody else may write them
     if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
         os.environ["MPLCONFIGDIR"] = str(folder)
-
-
-def _folders() -> tuple[Path, Path]:
-    """Return the folders of matplotlib's settings and fonts."""
-    home = Path(os.path.expanduser("~"))
-    chosen = (
-        os.environ.get("XDG_CONFIG_HOME") or home / ".config",
-        os.environ.get("XDG_CACHE_HOME") or home / ".cache",
-    )
-    config, cache = (Path(folder) / "matplotlib" for folder in chosen)
-    return config, cache
 
 
 def _writable(folder: Path) -> bool:

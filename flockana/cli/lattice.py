@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,7 +30,6 @@ def lattice_command(
             metavar="SHARE",
             help="Largest |link - d|/d of an α-lattice, at most 0.1; by default 1e-6. Positions that are rounded to "
             "two decimals need about 0.001.",
-            show_default=False,
         ),
     ] = None,
     time: Time = None,
@@ -48,14 +48,14 @@ def lattice_command(
 
     Exit status: 0 measured, 2 bad input, 130 interrupted.
     """
-    from flockana.cli.picture import KINDS, ensure_file, write_picture
+    from flockana.cli.picture import ensure_file, write_picture
     from flockana.cli.source import read_source
     from flockana.lattice import links
     from flockana.report.console import details
     from flockana.report.tables import fact_table
     from flockana.theorems import verify
 
-    ensure_file(picture, KINDS)
+    ensure_file(picture)
     given = read_source(source, d=d, r=r, time=time)
     pairs = links(given.q, given.r)
     tolerances = _tolerances(tol)
@@ -65,10 +65,8 @@ def lattice_command(
         show_json(facts | {"verdict": verdict.to_dict()})
     else:
         show(given.name, fact_table(_rows(facts)), details(verdict), *_hint(facts, tolerances))
-    if picture is not None:
-        write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
-    if not as_json:
-        show_files(picture=picture)
+    write_picture(lambda ax: _draw(ax, given, pairs), picture, m=given.q.shape[1])
+    show_files(as_json, picture=picture)
     return OK
 
 
@@ -77,12 +75,9 @@ def _tolerances(tol: float | None) -> Tolerances:
     from flockana.base.errors import ArgumentError
     from flockana.theorems import Tolerances
 
-    usual = Tolerances()
-    if tol is None:
-        return usual
-    if not 0.0 < tol <= usual.quasi:
-        raise ArgumentError(f"--tol {tol:g}: expected more than 0 and at most {usual.quasi:g}")
-    return Tolerances(lattice=tol)
+    if tol is not None and not 0.0 < tol <= Tolerances().quasi:
+        raise ArgumentError(f"--tol {tol:g}: expected more than 0 and at most {Tolerances().quasi:g}")
+    return Tolerances() if tol is None else Tolerances(lattice=tol)
 
 
 def _hint(facts: dict[str, Any], tolerances: Tolerances) -> list[str]:
@@ -109,7 +104,7 @@ def _draw(ax: Any, given: Source, pairs: LinkArray) -> None:
 
 def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str, Any]:
     """Return scale, links, crossings, rigidity and defects of a configuration as plain data."""
-    from flockana.lattice import classify, harborth, is_complete, planar_bound
+    from flockana.lattice import classify, coordination, harborth, is_complete, planar_bound
     from flockana.lattice.measure import GUARD
     from flockana.measures.metrics import deviation_energy, min_distance
     from flockana.measures.nets import components, link_lengths
@@ -120,6 +115,7 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
     error = float(abs(lengths - d).max()) if len(pairs) else None
     strain = float("nan") if error is None else error / d
     graph, crossings = verdict.claim("i-graph"), verdict.claim("i").computed
+    neighbours = Counter(coordination(n, pairs).tolist())
     witness = graph.witness
     return {
         "source": given.name,
@@ -145,7 +141,7 @@ def lattice_facts(given: Source, pairs: LinkArray, verdict: Verdict) -> dict[str
         "planar bound": planar_bound(n),
         "harborth": harborth(n) if m == 2 else None,
         "rigidity": _rigidity(q, pairs),
-        "coordination": _histogram(n, pairs),
+        "coordination": {str(k): count for k, count in sorted(neighbours.items())},
         "defects": _defects(q, pairs) if m == 2 else None,
     }
 
@@ -159,15 +155,6 @@ def _rigidity(q: Any, pairs: LinkArray) -> dict[str, Any]:
     except SolverError as error:
         return {"undecided": str(error)}
     return vars(decided) | {"infinitesimally rigid": decided.infinitesimally_rigid}
-
-
-def _histogram(n: int, pairs: LinkArray) -> dict[str, int]:
-    import numpy as np
-
-    from flockana.lattice import coordination
-
-    sizes, numbers = np.unique(coordination(n, pairs), return_counts=True)
-    return {str(k): int(v) for k, v in zip(sizes.tolist(), numbers.tolist(), strict=True)}
 
 
 def _defects(q: Any, pairs: LinkArray) -> dict[str, Any]:
@@ -187,6 +174,8 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     linked, error = facts["links"] > 0, facts["edge-length error"]
     harborth = "" if facts["harborth"] is None else f", an α-lattice of the plane {facts['harborth']} (Harborth)"
     counted = f"{'at least ' if facts['crossings'] >= facts['crossings listed at most'] else ''}{facts['crossings']}"
+    witness = facts["kuratowski"]
+    contained = f": contains a subdivision of {witness['kind']} with {witness['links']} links" if witness else ""
     rows = [
         ("agents, dimension", f"n = {facts['n']}, m = {facts['m']}"),
         ("d and r", scale),
@@ -197,9 +186,9 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         ("least distance", "one agent" if facts["least distance"] is None else f"{facts['least distance']:.8g}"),
         ("components", f"{facts['components']}; {'' if facts['complete'] else 'not '}complete"),
         ("crossings", f"{counted if facts['crossings'] else 'none'}; {_CROSSING}"),
-        ("graph", _planarity(facts)),
+        ("graph", "planar" if facts["planar graph"] else f"not planar{contained}"),
         ("rigidity", _rigidity_text(facts["rigidity"])),
-        ("neighbours: agents", _counts(facts["coordination"])),
+        ("neighbours: agents", ", ".join(f"{k}: {count}" for k, count in facts["coordination"].items())),
     ]
     if (inner := facts["defects"]) is not None:
         off = inner["interior"] - inner["interior coordination"].get("6", 0)
@@ -210,15 +199,6 @@ def _rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-def _planarity(facts: dict[str, Any]) -> str:
-    if facts["planar graph"]:
-        return "planar"
-    witness = facts["kuratowski"]
-    return "not planar" + (
-        f": contains a subdivision of {witness['kind']} with {witness['links']} links" if witness else ""
-    )
-
-
 def _rigidity_text(rigidity: dict[str, Any]) -> str:
     if "undecided" in rigidity:
         return f"undecided: {rigidity['undecided']}"
@@ -227,7 +207,3 @@ def _rigidity_text(rigidity: dict[str, Any]) -> str:
     soft = f", {rigidity['soft']} soft" if rigidity["soft"] else ""
     stresses = rigidity["self_stresses"]
     return f"{kind}{soft}; rank {rigidity['rank']}, {stresses} self-stress{'' if stresses == 1 else 'es'}"
-
-
-def _counts(numbers: dict[str, int]) -> str:
-    return ", ".join(f"{k}: {v}" for k, v in numbers.items())

@@ -7,7 +7,9 @@ as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrup
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
 
@@ -15,59 +17,28 @@ from flockana._version import __version__
 from flockana.base.errors import FlockanaError, UnknownNameError
 from flockana.base.garbage import freeze_gc, relaxed_gc
 from flockana.base.interrupts import restore_interrupts
-from flockana.cli.animate import animate_command
-from flockana.cli.catalogue import scenarios_command, theorems_command
-from flockana.cli.check import check_command
 from flockana.cli.command import Command
-from flockana.cli.course import course_command
-from flockana.cli.ensemble import ensemble_command
-from flockana.cli.equilibrium import equilibrium_command
-from flockana.cli.explore import explore_command
-from flockana.cli.export import export_command
-from flockana.cli.falsify import falsify_command
-from flockana.cli.groups import Groups, example
+from flockana.cli.groups import EXAMPLES, Groups
 from flockana.cli.home import prepare_home
-from flockana.cli.lattice import lattice_command
-from flockana.cli.observe import observe_command
-from flockana.cli.prove import prove_command
-from flockana.cli.run import run_command
-from flockana.cli.stability import stability_command
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, print_error
 from flockana.cli.streams import finish_output, prepare_output
-from flockana.cli.verify import verify_command
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 _NAME = "flockana"
-_COMMANDS: dict[str, Callable[..., Any]] = {
-    "verify": verify_command,
-    "run": run_command,
-    "animate": animate_command,
-    "scenarios": scenarios_command,
-    "theorems": theorems_command,
-    "lattice": lattice_command,
-    "equilibrium": equilibrium_command,
-    "stability": stability_command,
-    "prove": prove_command,
-    "check": check_command,
-    "ensemble": ensemble_command,
-    "falsify": falsify_command,
-    "export": export_command,
-    "course": course_command,
-    "explore": explore_command,
-    "observe": observe_command,
-}
+_CATALOGUES = ("scenarios", "theorems")  # commands that share a module; every other has one of its name
 
 
 def _flockana(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+    context: typer.Context, version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False
 ) -> None:
     if version:
         typer.echo(f"flockana {__version__}")
     elif context.invoked_subcommand is None:
         typer.echo(context.get_help())
+
+
+def _command(name: str) -> Any:
+    module = import_module(f"flockana.cli.{'catalogue' if name in _CATALOGUES else name}")
+    return getattr(module, f"{name}_command")
 
 
 def _app(asked: str) -> typer.Typer:
@@ -81,16 +52,16 @@ def _app(asked: str) -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback(invoke_without_command=True)(_flockana)
-    for name in [asked] if asked in _COMMANDS else _COMMANDS:
-        app.command(name, cls=Command, epilog=f"Example: {example(name)}")(_COMMANDS[name])
+    for name in [asked] if asked in EXAMPLES else EXAMPLES:
+        app.command(name, cls=Command, epilog=f"Example: {EXAMPLES[name]}")(_command(name))
     return app
 
 
 def _asked(arguments: Sequence[str]) -> str:
     """Return the requested command or global option, or nothing; raise on an unknown command."""
     first = arguments[0] if arguments else ""
-    if arguments and not first.startswith("-") and first not in _COMMANDS:
-        raise UnknownNameError("command", first, _COMMANDS)
+    if arguments and not first.startswith("-") and first not in EXAMPLES:
+        raise UnknownNameError("command", first, EXAMPLES)
     return first
 
 

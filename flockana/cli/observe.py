@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -65,8 +66,7 @@ def observe_command(
     if page is not None:
         shown = None if whole is None else whole.trajectory(chosen, d=scale, r=reach)
         write_atomic(page, recording_page(rec, seen, trajectory=shown, notes=notes, **results))
-        if not as_json:
-            show_files(page=page)
+        show_files(as_json, page=page)
     follows = [v.hypotheses[0].status for v in results["verdicts"] if v.hypotheses]
     return UNEXPECTED if chosen is not None and "unmet" in follows[:1] else OK
 
@@ -157,11 +157,8 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
 
 def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]:
     """Return all results as plain data for JSON."""
-    import numpy as np
-
-    measures = {
-        str(name): [None if not np.isfinite(x) else float(x) for x in seen[name].values] for name in seen.data_vars
-    }
+    series = {str(name): seen[name].values.astype(float).tolist() for name in seen.data_vars}
+    measures = {name: [x if isfinite(x) else None for x in values] for name, values in series.items()}
     plain: dict[str, Any] = {"recording": repr(rec), "time": rec.t.tolist(), "measures": measures}
     if "comparison" in results:
         plain["comparison"] = results["comparison"].to_dict()

@@ -11,13 +11,9 @@ import typer
 ScenarioName = Annotated[str, typer.Argument(metavar="SCENARIO", help="Scenario of the catalogue.")]
 SourceName = Annotated[str, typer.Argument(metavar="SOURCE", help="A scenario, a file, or a builder with its size.")]
 Start = Annotated[
-    Literal["end", "start"] | None,
-    typer.Option(help="Use the end of a scenario's run (by default), or its start.", show_default=False),
+    Literal["end", "start"] | None, typer.Option(help="Use the end of a scenario's run (by default), or its start.")
 ]
-AnySeed = Annotated[
-    int | None,
-    typer.Option("--seed", min=0, help="Seed of a scenario's random start; by default 0.", show_default=False),
-]
+AnySeed = Annotated[int | None, typer.Option("--seed", min=0, help="Seed of a scenario's random start; by default 0.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the random starts.")]
 Time = Annotated[float | None, typer.Option(help="Time in a saved run; by default its end.")]
 
@@ -30,7 +26,7 @@ Scale = Annotated[float | None, typer.Option("--d", help="Desired distance d, if
 Range = Annotated[float | None, typer.Option("--r", help="Range r, if the source has no law; by default 1.2 d.")]
 
 # processes, and what is printed and written
-Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; by default the number of cores.", show_default=False)]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; by default the number of cores.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, and nothing else.")]
 Drawing = Annotated[Path | None, typer.Option(metavar="PICTURE", help="PNG, SVG or PDF to draw to.")]
 

@@ -20,7 +20,7 @@ _SIZE = (7.2, 5.4)
 _DPI = 160
 
 
-def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
+def ensure_file(path: Path | None, kinds: tuple[str, ...] = KINDS) -> None:
     """Raise if a picture of this kind cannot be written there."""
     if path is None:
         return
@@ -32,9 +32,10 @@ def ensure_file(path: Path | None, kinds: tuple[str, ...]) -> None:
     ensure_folder_of(path)
 
 
-def write_picture(draw: Callable[[Axes], object], path: Path, *, m: int) -> None:
-    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name."""
-    write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
+def write_picture(draw: Callable[[Axes], object], path: Path | None, *, m: int = 2) -> None:
+    """Draw on new axes and write them as PNG, SVG or PDF, by the file's name; nothing without one."""
+    if path is not None:
+        write_figure(lambda figure: draw(figure.add_subplot(projection="3d" if m == 3 else None)), path)
 
 
 def write_figure(draw: Callable[[Figure], object], path: Path, *, size: tuple[float, float] = _SIZE) -> None:

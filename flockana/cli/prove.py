@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from flockana.base.errors import ArgumentError, UnknownNameError
+from flockana.base.errors import ArgumentError
 from flockana.base.progress import progress_bar
 from flockana.cli.options import AsJson, Jobs, output
 from flockana.cli.show import show_files, show_json
@@ -20,7 +20,7 @@ from flockana.cli.status import OK, UNEXPECTED
 if TYPE_CHECKING:
     from rich.table import Table
 
-_COLOURS = {"proved": "green", "FAILED": "bold red", "unknown": "yellow"}
+_STYLES = {"proved": "green", "failed": "bold red", "unknown": "yellow"}
 
 
 def prove_command(
@@ -39,14 +39,14 @@ def prove_command(
 
     Exit status: 0 all proved, 2 bad input, 3 some proof failed or is unknown, 130 interrupted.
     """
+    from flockana.base.checks import ensure_known
     from flockana.ensemble.processes import cores
     from flockana.report.build import ensure_directory
 
     proof, run, certificates = (_module(name) for name in ("proof", "run", "certificates"))
     known = proof.names()
     for name in wanted or ():
-        if name not in known:
-            raise UnknownNameError("proof", name, known)
+        ensure_known("proof", name, known)
     chosen = tuple(dict.fromkeys(wanted or known))
     ensure_directory(folder)
     started = time.perf_counter()
@@ -85,10 +85,6 @@ def _module(name: str) -> Any:
     )
 
 
-def _status(outcome: Any) -> str:
-    return "FAILED" if outcome.status == "failed" else str(outcome.status)
-
-
 def _show(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
     from rich.console import Console
 
@@ -96,7 +92,7 @@ def _show(outcomes: Sequence[Any], seconds: float, folder: Path) -> None:
     console.print(_table(outcomes))
     for outcome in outcomes:
         for objection in outcome.objections():
-            console.print(f"  {outcome.id}: {objection}", style=_COLOURS[_status(outcome)], markup=False)
+            console.print(f"  {outcome.id}: {objection}", style=_STYLES[outcome.status], markup=False)
     proved, steps = sum(o.status == "proved" for o in outcomes), sum(len(o.steps) for o in outcomes)
     console.print(f"{proved} of {len(outcomes)} proved, {steps} steps, in {seconds:.0f} s", markup=False)
     show_files(certificates=folder)
@@ -111,13 +107,12 @@ def _table(outcomes: Sequence[Any]) -> Table:
     others = (column(name, right=name in ("steps", "time")) for name in ("rigour", "steps", "status", "time"))
     table = headed_table(Column("theorem, and what exactly is proved", ratio=1, overflow="fold"), *others)
     for outcome in outcomes:
+        title = f" · {outcome.title}" if outcome.title else ""
         table.add_row(
-            Text.assemble(
-                (outcome.id, "bold"), f" · {outcome.title}" * bool(outcome.title), f"\n{outcome.statement}\n"
-            ),
+            Text.assemble((outcome.id, "bold"), title, f"\n{outcome.statement}\n"),
             outcome.rigour,
             str(len(outcome.steps)),
-            Text(_status(outcome), style=_COLOURS[_status(outcome)]),
+            Text(outcome.status.replace("failed", "FAILED"), style=_STYLES[outcome.status]),
             f"{outcome.seconds:.1f} s",
         )
     return table

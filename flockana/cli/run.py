@@ -42,6 +42,5 @@ def run_command(
         console = show(f"{item.name}: {item.title}", run_table(run))
         console.print(f"{run.status}: {run.message}; {run.stats['seconds']:.2f} s", markup=False)
     run.save(save_to)  # last: results are printed even if they cannot be written
-    if not as_json:
-        show_files(saved=save_to)
+    show_files(as_json, saved=save_to)
     return {"complete": OK, "interrupted": INTERRUPTED}.get(run.status, UNEXPECTED)

@@ -32,10 +32,10 @@ def show_lines(text: str) -> None:
     Console(highlight=False).print(text, markup=False, soft_wrap=True)
 
 
-def show_files(**files: Path | None) -> None:
+def show_files(quiet: bool = False, /, **files: Path | None) -> None:
     """Print the path of each file written, with its description."""
     for kind, path in files.items():
-        if path is not None:
+        if path is not None and not quiet:
             typer.echo(f"{kind}: {path}")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from io import StringIO
 from math import isfinite, prod
@@ -21,18 +20,9 @@ from flockana.base.files import ensure_path, read_text_file
 D, KAPPA = 7.0, 1.2  # where neither the user nor a law says
 _MOST = 10**6  # agents that a builder makes at most
 _FILES = (".nc", ".csv", ".json")
-_BUILDERS: dict[str, tuple[Callable[..., FloatArray], str]] = {
-    "line": (lattice.line, "N"),
-    "triangular": (lattice.triangular, "N"),
-    "hexagonal-spiral": (lattice.hexagonal_spiral, "N"),
-    "hexagonal-patch": (lattice.hexagonal_patch, "RINGS"),
-    "square": (lattice.square, "ROWSxCOLS"),
-    "honeycomb": (lattice.honeycomb, "ROWSxCOLS"),
-    "simple-cubic": (lattice.simple_cubic, "NXxNYxNZ"),
-    "fcc": (lattice.fcc, "NXxNYxNZ"),
-    "hcp": (lattice.hcp, "NXxNYxNZ"),
-    "bcc": (lattice.bcc, "NXxNYxNZ"),
-}
+_BUILDERS = {"line": "N", "triangular": "N", "hexagonal-spiral": "N", "hexagonal-patch": "RINGS"}
+_BUILDERS |= {"square": "ROWSxCOLS", "honeycomb": "ROWSxCOLS"}
+_BUILDERS |= dict.fromkeys(("simple-cubic", "fcc", "hcp", "bcc"), "NXxNYxNZ")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,31 +48,27 @@ def read_source(name: str, *, d: float | None = None, r: float | None = None, ti
     """
     path = ensure_path(name)
     d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
+    law: Any = None
+    t, ratio = 0.0, None
     if path.suffix == ".nc":
-        return _scaled(name, *_sample(path, time), d=d, r=r)
-    if time is not None:
+        q, law, t = _sample(path, time)
+    elif time is not None:
         raise ArgumentError(f"--time {time:g}: {name} is no saved run (.nc) and has no time; leave it out")
-    if path.suffix == ".json":
+    elif path.suffix == ".json":
         from flockana.equilibria.record import read_equilibrium
 
         equilibrium = read_equilibrium(path)
-        return _scaled(name, equilibrium.q, equilibrium.law, 0.0, d=d, r=r)
-    if path.suffix in _FILES or os.path.exists(path):
-        return _scaled(name, read_csv(path), None, 0.0, d=d, r=r)
-    ensure_source(name)
-    scale = D if d is None else d
-    q, ratio = build(name, scale)
-    return Source(name, q, scale, KAPPA * scale if r is None else r, max_ratio=ratio)
-
-
-def _scaled(name: str, q: FloatArray, law: Any, t: float, *, d: float | None, r: float | None) -> Source:
-    """Positions with a scale and a range: a range that is not given keeps the law's ratio to the scale."""
+        q, law = equilibrium.q, equilibrium.law
+    elif path.suffix in _FILES or os.path.exists(path):
+        q = read_csv(path)
+    else:
+        ensure_source(name)
+        q, ratio = build(name, D if d is None else d)
     law = integrated_law(law)
     own_d, own_r = law_scales(law)
-    scale = own_d if d is None else d
-    if r is None:
-        r = own_r if d is None else own_r / own_d * d
-    return Source(name, np.ascontiguousarray(q), scale, r, law, t)
+    if r is None:  # the law's ratio to the scale is kept
+        r = own_r if d is None else (own_r / own_d if ratio is None else KAPPA) * d
+    return Source(name, np.ascontiguousarray(q), own_d if d is None else d, r, law, t, ratio)
 
 
 def integrated_law(law: Any) -> Any:
@@ -144,7 +130,7 @@ def builders() -> tuple[str, ...]:
     >>> builders()[0]
     'line:N'
     """
-    return tuple(f"{name}:{form}" for name, (_, form) in _BUILDERS.items())
+    return tuple(f"{name}:{form}" for name, form in _BUILDERS.items())
 
 
 def build(text: str, d: float) -> tuple[FloatArray, float]:
@@ -156,14 +142,14 @@ def build(text: str, d: float) -> tuple[FloatArray, float]:
     (array([[ 0.], [ 7.], [14.]]), 2.0)
     """
     name, _, size = text.partition(":")
-    function, form = _BUILDERS[name]
+    form, function = _BUILDERS[name], name.replace("-", "_")
     numbers = size.split("x")
     if len(numbers) != len(form.split("x")) or not all(k.isascii() and k.isdigit() and len(k) <= 9 for k in numbers):
         raise ArgumentError(f"{text!r}: expected {name}:{form}, with whole numbers")
     counts = [int(k) for k in numbers]
     if (3 * counts[0] ** 2 if form == "RINGS" else prod(counts)) > _MOST:
         raise ArgumentError(f"{text!r}: expected a size of at most {_MOST} agents")
-    return function(*counts, d), lattice.max_ratio(name.replace("-", "_"))
+    return getattr(lattice, function)(*counts, d), lattice.max_ratio(function)
 
 
 def read_csv(path: Path) -> FloatArray:

@@ -24,9 +24,8 @@ class _PipedOutput(io.FileIO):
                 self.gone = True
             except OSError as error:
                 self.gone = True
-                raise FileError(
-                    f"cannot write the output: {error.strerror or error}; send it elsewhere, or make room"
-                ) from error
+                text = f"cannot write the output: {error.strerror or error}; send it elsewhere, or make room"
+                raise FileError(text) from error
         return len(data)
 
 
@@ -40,12 +39,8 @@ def prepare_output() -> None:
         stream.reconfigure(errors="backslashreplace")
         return
     stream.flush()
-    sys.stdout = io.TextIOWrapper(
-        io.BufferedWriter(_PipedOutput(stream.fileno(), "wb", closefd=False)),
-        encoding=stream.encoding,
-        errors="backslashreplace",
-        newline=None,
-    )
+    piped = io.BufferedWriter(_PipedOutput(stream.fileno(), "wb", closefd=False))
+    sys.stdout = io.TextIOWrapper(piped, encoding=stream.encoding, errors="backslashreplace")
 
 
 def finish_output() -> None:

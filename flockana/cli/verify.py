@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.base.progress import progress_bar
-from flockana.cli.options import AnySeed, Jobs
+from flockana.cli.options import AnySeed, AsJson, Jobs
 from flockana.cli.show import show_files
 from flockana.cli.status import BAD_INPUT, INTERRUPTED, OK, UNEXPECTED
 from flockana.cli.streams import in_output_encoding
@@ -38,22 +38,13 @@ def verify_command(
     ] = None,
     report: Annotated[
         Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Folder of the report; by default report, or report/NAME to keep one on the catalogue.",
-            show_default=False,
-        ),
+        typer.Option(metavar="DIR", help="Folder; by default report, or report/NAME beside one on the catalogue."),
     ] = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no report.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the verdicts as JSON, and nothing else.")] = False,
+    as_json: AsJson = False,
     seeds: Annotated[
         int | None,
-        typer.Option(
-            min=0,
-            help="Seeds for success rates; 0 = none. By default as many as scenarios ask for, in a report on the "
-            "whole catalogue only.",
-            show_default=False,
-        ),
+        typer.Option(min=0, help="Seeds for success rates; 0 = none. By default as scenarios ask, on all of them."),
     ] = None,
     jobs: Jobs = None,
 ) -> int:
@@ -62,6 +53,10 @@ def verify_command(
     Exit status: 0 all as expected, 2 bad input, 3 some verdict differs from the expected, 130 interrupted.
     """
     from flockana.ensemble.processes import cores
+    from flockana.report.build import ensure_directory, report_folder, verdicts_json
+    from flockana.report.pages import Page
+    from flockana.report.statistics import gather
+    from flockana.report.surveys import SurveyResult
 
     started = time.perf_counter()
     if no_report and report is not None:
@@ -70,26 +65,25 @@ def verify_command(
         _ensure_checkable(name, seeds, seed)
     seed = seed or 0
     work, many = ((), ()) if on is not None else _planned(name, seeds, seed, figures=not no_report)
-    folder = None if no_report else _folder(report, name)
-    results, code, failure = (
-        ([_saved(name, on, not no_report)], OK, None) if on is not None else _check_all(work, jobs or cores())
-    )
-    pages, statistics = _gathered(results, many, figures=not no_report)
+    folder = None if no_report else ensure_directory(report or report_folder(name))
+    saved = [] if on is None else [_saved(name, on, not no_report)]
+    results, code, failure = (saved, OK, None) if saved else _check_all(work, jobs or cores())
+    pages = [result for result in results if isinstance(result, Page)]
+    surveyed = [result for result in results if isinstance(result, SurveyResult)]
     if code == OK and any(page.surprises for page in pages):
         code = UNEXPECTED
-    seconds, complete, written = time.perf_counter() - started, code in (OK, UNEXPECTED), None
-    if folder is not None and (pages or complete):
+    run: dict[str, Any] = {"seed": seed, "seconds": time.perf_counter() - started, "complete": code in (OK, UNEXPECTED)}
+    run |= {"statistics": gather(many, surveyed, figures=not no_report)}
+    written = None
+    if folder is not None and (pages or run["complete"]):
         try:
-            written = _write_pages(folder, results, pages, statistics, seed, seconds, complete, name)
+            written = _write(folder, results, pages, of=name, **run)
         except FlockanaError as error:  # the verdicts are still printed
             failure = failure or error
     if as_json:
-        from flockana.report.build import verdicts_json
-
-        text = verdicts_json(pages, seed=seed, seconds=seconds, complete=complete, statistics=statistics)
-        typer.echo(in_output_encoding(text), nl=False)
+        typer.echo(in_output_encoding(verdicts_json(pages, **run)), nl=False)
     else:
-        _print_verdicts(pages, statistics, seconds, written, name)
+        _print_verdicts(pages, run["statistics"], run["seconds"], written, name)
     if failure is not None:
         raise failure
     return code
@@ -110,51 +104,14 @@ def _planned(
     return (*tasks, *sections, *many), many
 
 
-def _folder(report: Path | None, name: str | None) -> Path:
-    from flockana.report.build import ensure_directory, report_folder
-
-    return ensure_directory(report or report_folder(name))
-
-
-def _gathered(
-    results: Sequence[Done], many: Sequence[Survey], *, figures: bool
-) -> tuple[list[Page], StatisticsSection | None]:
-    """Return pages and shares from the results."""
-    from flockana.report.pages import Page
-    from flockana.report.statistics import gather
-    from flockana.report.surveys import SurveyResult
-
-    pages = [result for result in results if isinstance(result, Page)]
-    surveyed = [result for result in results if isinstance(result, SurveyResult)]
-    return pages, gather(many, surveyed, figures=figures)
-
-
-def _write_pages(
-    folder: Path,
-    results: Sequence[Done],
-    pages: Sequence[Page],
-    statistics: StatisticsSection | None,
-    seed: int,
-    seconds: float,
-    complete: bool,
-    name: str | None,
-) -> Path:
-    """Write the report; return its path."""
+def _write(folder: Path, results: Sequence[Done], pages: Sequence[Page], **run: Any) -> Path:
     from flockana.report.build import write_report
     from flockana.report.comparison import ComparisonSection
     from flockana.report.stability import NO_FLOCKS, LinearisedFlocks
 
-    return write_report(
-        pages,
-        folder,
-        seed=seed,
-        seconds=seconds,
-        complete=complete,
-        statistics=statistics,
-        comparison=next((result for result in results if isinstance(result, ComparisonSection)), None),
-        flocks=next((r for r in results if isinstance(r, LinearisedFlocks)), NO_FLOCKS),
-        of=name,
-    )
+    comparison = next((result for result in results if isinstance(result, ComparisonSection)), None)
+    flocks = next((result for result in results if isinstance(result, LinearisedFlocks)), NO_FLOCKS)
+    return write_report(pages, folder, comparison=comparison, flocks=flocks, **run)
 
 
 def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, FlockanaError | None]:
@@ -179,7 +136,7 @@ def _check_all(tasks: Sequence[Work], jobs: int) -> tuple[list[Done], int, Flock
 
 
 def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> None:
-    from flockana.base.errors import UnknownNameError
+    from flockana.base.checks import ensure_known
     from flockana.report.work import ERRATA
     from flockana.scenarios import scenarios
     from flockana.theorems import theorem, theorems
@@ -191,11 +148,9 @@ def _ensure_checkable(name: str | None, seeds: int | None, seed: int | None) -> 
     if name is None:
         raise ArgumentError("--on FILE needs a NAME: the scenario that was run, or the theorem to check")
     if name == ERRATA:
-        raise ArgumentError(
-            f"{name} --on FILE: a saved run is checked by one scenario or theorem; name one, such as os-1"
-        )
-    if name not in (*scenarios(), *theorems()):
-        raise UnknownNameError("scenario or theorem", name, (*scenarios(), *theorems()))
+        text = f"{name} --on FILE: a saved run is checked by one scenario or theorem"
+        raise ArgumentError(f"{text}; name one, such as os-1")
+    ensure_known("scenario or theorem", name, (*scenarios(), *theorems()))
     if name in theorems() and theorem(name).kind != "trajectory":
         raise ArgumentError(f"{name} is not about a run: expected a theorem about motion, such as os-1")
 
@@ -220,11 +175,7 @@ def _saved(name: str | None, path: Path, figures: bool) -> Page:
 
 
 def _print_verdicts(
-    pages: Sequence[Page],
-    statistics: StatisticsSection | None,
-    seconds: float,
-    written: Path | None,
-    name: str | None,
+    pages: Sequence[Page], statistics: StatisticsSection | None, seconds: float, written: Path | None, name: str | None
 ) -> None:
     from rich.console import Console
 
@@ -233,9 +184,8 @@ def _print_verdicts(
 
     console, in_full = Console(highlight=False), name not in (None, ERRATA)
     if in_full:
-        for page in pages:
-            for finding in page.findings:
-                console.print(details(finding.verdict))
+        for finding in (finding for page in pages for finding in page.findings):
+            console.print(details(finding.verdict))
     console.print(verdict_table(pages, width=console.width))
     if name == ERRATA:
         console.print(errata_table(pages))
@@ -247,5 +197,4 @@ def _print_verdicts(
     elif statistics is not None:
         console.print("shares of runs over many seeds: in the report")
     console.print(summary(pages, seconds), markup=False)
-    if written is not None:
-        show_files(report=written)
+    show_files(report=written)

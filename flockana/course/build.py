@@ -6,8 +6,6 @@ no check, and their solutions end with a rubric. ``facts`` asserts what the text
 kept beside the solutions, where CI runs it.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

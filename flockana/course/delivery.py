@@ -1,7 +1,5 @@
 """Safe delivery of course files into a folder: nothing edited is overwritten."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from pathlib import Path

@@ -4,13 +4,11 @@ Both programs make the student's copy themselves, and take solutions and hidden 
 the form of an answer only. Neither is needed for writing what they start from.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import nbformat
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_raw_cell
 
 from flockana.base.checks import ensure_choice
 from flockana.course.build import (
@@ -39,7 +37,7 @@ def master(source: Path, grader: str) -> Any:
     ensure_choice("grader", grader, GRADERS)
     posed: Callable[..., Iterator[Any]] = _otter if grader == "otter" else _nbgrader
     book, asked = notebook(source, "solutions"), iter(exercises(source))
-    cells: list[Any] = [_raw(_assignment(source))] if grader == "otter" else []
+    cells: list[Any] = [new_raw_cell(_assignment(source))] if grader == "otter" else []
     parts: dict[str, Any] = {}
     for cell in book.cells:
         kind = next((tag for tag in ("exercise", "solution", "check") if tag in tags(cell)), "")
@@ -76,10 +74,6 @@ def _tests(check: str, exercise: Exercise) -> tuple[str, str]:
     return seen, f'assert {check.rstrip()}.status == "right"'
 
 
-def _raw(text: str) -> Any:
-    return nbformat.v4.new_raw_cell(text)
-
-
 def _assignment(source: Path) -> str:
     files = ["own_law/__init__.py", "own_law/law.py", "own_law/theorem.py", "own_law/proof.py"]
     files += ["proofs/__init__.py", "proofs/proof.py"]
@@ -91,22 +85,22 @@ def _otter(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator
     """Export for Otter: raw cells delimit a question, and the hidden test carries its points."""
     by_hand = not check
     head = f"# BEGIN QUESTION\nname: {exercise.name}\npoints: {exercise.points}"
-    yield _raw(head + "\nmanual: true" * by_hand)
-    yield nbformat.v4.new_markdown_cell(text.source)
-    yield _raw("# BEGIN SOLUTION")
+    yield new_raw_cell(head + "\nmanual: true" * by_hand)
+    yield new_markdown_cell(text.source)
+    yield new_raw_cell("# BEGIN SOLUTION")
     if by_hand:
-        yield nbformat.v4.new_markdown_cell(solution)
+        yield new_markdown_cell(solution)
     else:
         prompt = f'""" # BEGIN PROMPT\n{exercise.name} = ...\n"""; # END PROMPT'
-        yield nbformat.v4.new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
-    yield _raw("# END SOLUTION")
+        yield new_code_cell(f"{prompt}\n# BEGIN SOLUTION NO PROMPT\n{solution.rstrip()}\n# END SOLUTION")
+    yield new_raw_cell("# END SOLUTION")
     if not by_hand:
         seen, hidden = _tests(check, exercise)
-        yield _raw("# BEGIN TESTS")
-        yield nbformat.v4.new_code_cell(_scored(0, hidden=False) + seen)
-        yield nbformat.v4.new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden)
-        yield _raw("# END TESTS")
-    yield _raw("# END QUESTION")
+        yield new_raw_cell("# BEGIN TESTS")
+        yield new_code_cell(_scored(0, hidden=False) + seen)
+        yield new_code_cell(_scored(exercise.points, hidden=True) + _IMPORTS + hidden)
+        yield new_raw_cell("# END TESTS")
+    yield new_raw_cell("# END QUESTION")
 
 
 def _scored(points: int, *, hidden: bool) -> str:
@@ -115,17 +109,15 @@ def _scored(points: int, *, hidden: bool) -> str:
 
 def _nbgrader(exercise: Exercise, text: Any, solution: str, check: str) -> Iterator[Any]:
     """Export for nbgrader: cell metadata, and solutions between ``### BEGIN`` and ``### END``."""
-    yield nbformat.v4.new_markdown_cell(text.source)
+    yield new_markdown_cell(text.source)
     if not check:
-        written = nbformat.v4.new_markdown_cell(f"### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
+        written = new_markdown_cell(f"### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
         yield _marked(written, exercise, grade=True, solution=True)
     else:
-        answer = nbformat.v4.new_code_cell(
-            f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION"
-        )
+        answer = new_code_cell(f"{exercise.name} = ...\n### BEGIN SOLUTION\n{solution.rstrip()}\n### END SOLUTION")
         yield _marked(answer, exercise, grade=False, solution=True)
         seen, hidden = _tests(check, exercise)
-        tests = nbformat.v4.new_code_cell(f"{seen}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
+        tests = new_code_cell(f"{seen}\n### BEGIN HIDDEN TESTS\n{hidden}\n### END HIDDEN TESTS")
         yield _marked(tests, exercise, grade=True, solution=False)
 
 

@@ -3,25 +3,14 @@
 Lines differ by colour and dash, areas by lightness, so that every figure reads with any colour vision and in grey.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from flockana.interactions import AlphaInteraction
-from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    ensure_axes,
-    finish,
-    write_title,
-)
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, VERMILLION
+from flockana.plots.style import ensure_axes, finish, write_title
 
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 200)
 
@@ -29,7 +18,8 @@ _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 200)
 def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = None) -> Any:
     """Draw a net of n numbered agents on a circle."""
     ax = _plain(ensure_axes(ax))
-    q = _on_circle(n)
+    angle = np.pi / 2.0 - 2.0 * np.pi * np.arange(n) / n
+    q = np.column_stack([np.cos(angle), np.sin(angle)])
     for i, j in links:
         ax.plot(*q[[i, j]].T, color=MUTED, linestyle="-", linewidth=1.2, zorder=1)
     ax.scatter(*q.T, s=170, color="white", edgecolors=INK, zorder=2)
@@ -38,11 +28,6 @@ def net(n: int, links: Sequence[tuple[int, int]], *, title: str = "", ax: Any = 
     ax.set(xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
     write_title(ax, title)
     return ax
-
-
-def _on_circle(n: int) -> Any:
-    angle = np.pi / 2.0 - 2.0 * np.pi * np.arange(n) / n
-    return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def pair_vector(eps: float = 0.1, *, axes: Any) -> Any:
@@ -54,9 +39,9 @@ def pair_vector(eps: float = 0.1, *, axes: Any) -> Any:
     _arrow(plane, i, i + n, VERMILLION, "-", width=2.2)
     for place, name, offset in ((i, "$q_i$", (-4, -14)), (j, "$q_j$", (4, 4))):
         plane.plot(*place, "o", color=INK, markersize=6)
-        plane.annotate(name, place, offset, textcoords="offset points")
-    plane.annotate("$q_j-q_i$", 0.72 * j, (-2, 8), textcoords="offset points", color=BLUE, ha="right")
-    plane.annotate("$n_{ij}$", i + 0.6 * n, (6, -14), textcoords="offset points", color=VERMILLION)
+        _note(plane, name, place, offset)
+    _note(plane, "$q_j-q_i$", 0.72 * j, (-2, 8), color=BLUE, ha="right")
+    _note(plane, "$n_{ij}$", i + 0.6 * n, (6, -14), color=VERMILLION)
     plane.set(xlim=(-1.2, 7.5), ylim=(-1.6, 3.4))
     x = np.linspace(0.0, 12.0, 300)
     lengths.plot(x, x, color=BLUE, linestyle="--", label="$\\|q_j-q_i\\|$")
@@ -97,15 +82,13 @@ def wall_and_well(interaction: Any, *, ax: Any = None) -> Any:
     rim = float(interaction.psi_alpha(interaction.r_alpha))
     ax.plot(x, psi, color=BLUE, linestyle="-")
     ax.plot([0.0], [interaction.c_star], "s", color=VERMILLION, markersize=5)
-    ax.annotate(
-        f"wall: $c^* = {interaction.c_star:.1f}$", (0.0, interaction.c_star), (12, -4), textcoords="offset points"
-    )
+    _note(ax, f"wall: $c^* = {interaction.c_star:.1f}$", (0.0, interaction.c_star), (12, -4))
     inset = ax.inset_axes((0.47, 0.40, 0.5, 0.5))
     near = x > 0.9 * interaction.d
     inset.plot(x[near], psi[near], color=BLUE, linestyle="-")
     for at, value, name in ((interaction.d, 0.0, "well"), (interaction.r, rim, f"rim: {rim:.3f}")):
         inset.plot([at], [value], "o", color=VERMILLION, markersize=4)
-        inset.annotate(name, (at, value), (4, 6), textcoords="offset points", fontsize=8)
+        _note(inset, name, (at, value), (4, 6), fontsize=8)
     inset.set(xlim=(0.93 * interaction.d, 1.14 * interaction.r), ylim=(-0.1 * rim, 1.6 * rim))
     inset.tick_params(labelsize=7)
     return finish(ax, "distance of the pair (length)", "$\\psi_\\alpha$ (energy)")
@@ -120,14 +103,12 @@ def target_pull(*, ax: Any = None) -> Any:
         _arrow(ax, each, each + 0.3 * (target - each), BLUE, "-")
     ax.scatter(*q.T, s=36, color=INK, zorder=3)
     ax.plot(*q.mean(axis=0), "x", color=VERMILLION, markersize=9, markeredgewidth=2.2, zorder=4)
-    ax.annotate("$q_c$", q.mean(axis=0), (-6, 8), textcoords="offset points", color=VERMILLION)
+    _note(ax, "$q_c$", q.mean(axis=0), (-6, 8), color=VERMILLION)
     ax.plot(*target, "^", color=GREEN, markersize=11, zorder=4)
     _arrow(ax, target, target + velocity, GREEN, "-")
-    ax.annotate("γ-agent $q_r$", target, (-10, -18), textcoords="offset points", color=GREEN)
-    ax.annotate("$p_r$", target + velocity, (3, 2), textcoords="offset points", color=GREEN)
-    ax.annotate(
-        "$-c_1^\\gamma(q_i-q_r)$", q[2] + 0.25 * (target - q[2]), (-4, 10), textcoords="offset points", color=BLUE
-    )
+    _note(ax, "γ-agent $q_r$", target, (-10, -18), color=GREEN)
+    _note(ax, "$p_r$", target + velocity, (3, 2), color=GREEN)
+    _note(ax, "$-c_1^\\gamma(q_i-q_r)$", q[2] + 0.25 * (target - q[2]), (-4, 10), color=BLUE)
     ax.set(xlim=(-1.4, 6.4), ylim=(-2.0, 2.9))
     return ax
 
@@ -141,7 +122,7 @@ def projections(*, axes: Any) -> Any:
     sphere.fill(*(radius * np.array([np.cos(_CIRCLE), np.sin(_CIRCLE)])), color=FAINT)
     _agent_and_image(sphere, q, p, centre + share * (q - centre), share * (p - unit * (unit @ p)))
     sphere.plot(*np.array([centre, q]).T, color=MUTED, linestyle=":", linewidth=1.0)
-    sphere.annotate("$y$", centre, (-12, -4), textcoords="offset points")
+    _note(sphere, "$y$", centre, (-12, -4))
     sphere.set(xlim=(-1.3, 3.0), ylim=(-1.2, 2.4))
     write_title(sphere, "sphere: $\\hat p = \\mu P p$")
     q, p = np.array([0.0, 1.3]), np.array([1.2, -0.8])
@@ -158,10 +139,10 @@ def _agent_and_image(ax: Any, q: Any, p: Any, image: Any, image_p: Any) -> None:
     _arrow(ax, image, image + image_p, VERMILLION, "-")
     ax.plot(*q, "o", color=BLUE, markersize=7)
     ax.plot(*image, "D", color=VERMILLION, markersize=6)
-    ax.annotate("$q_i$", q, (6, 3), textcoords="offset points", color=BLUE)
-    ax.annotate("$p_i$", q + p, (6, -4) if p[0] > 0.0 else (-14, 4), textcoords="offset points", color=BLUE)
-    ax.annotate("$\\hat q_{ik}$", image, (-4, -16), textcoords="offset points", color=VERMILLION)
-    ax.annotate("$\\hat p_{ik}$", image + image_p, (4, 4), textcoords="offset points", color=VERMILLION)
+    _note(ax, "$q_i$", q, (6, 3), color=BLUE)
+    _note(ax, "$p_i$", q + p, (6, -4) if p[0] > 0.0 else (-14, 4), color=BLUE)
+    _note(ax, "$\\hat q_{ik}$", image, (-4, -16), color=VERMILLION)
+    _note(ax, "$\\hat p_{ik}$", image + image_p, (4, 4), color=VERMILLION)
 
 
 def zones(radii: Mapping[str, float], *, ax: Any = None) -> Any:
@@ -191,11 +172,8 @@ def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
     def above(x: Any, energy: float) -> Any:
         return interaction.psi_alpha(interaction.sigma_norm(x)) - energy
 
-    looks = (
-        (0.5, BLUE, "-", "0.5 of the rim: it swings"),
-        (1.0, INK, "--", "the rim: separatrix"),
-        (1.6, VERMILLION, "-.", "1.6 of the rim: it leaves"),
-    )
+    looks = [(0.5, BLUE, "-", "0.5 of the rim: it swings"), (1.0, INK, "--", "the rim: separatrix")]
+    looks.append((1.6, VERMILLION, "-.", "1.6 of the rim: it leaves"))
     for share, colour, dash, name in looks:
         nearest = brentq(above, 0.5 * interaction.d, interaction.d, args=(share * rim,), xtol=1e-13)
         swings = share < 1.0  # else it ends at the range, or leaves
@@ -208,7 +186,7 @@ def three_orbits(interaction: Any, *, ax: Any = None) -> Any:
         _arrow(ax, (x[middle], rate[middle]), (x[middle + 4], rate[middle + 4]), colour, "-")
         _arrow(ax, (x[middle], -rate[middle]), (x[middle - 4], -rate[middle - 4]), colour, "-")
     ax.axvline(interaction.r, color=MUTED, linestyle=":", linewidth=1.0)
-    ax.annotate("r", (interaction.r, ax.get_ylim()[0]), (3, 4), textcoords="offset points", color=MUTED)
+    _note(ax, "r", (interaction.r, ax.get_ylim()[0]), (3, 4), color=MUTED)
     ax.plot([interaction.d], [0.0], "o", color=INK, markersize=4)
     return finish(ax, "distance of the pair (length)", "its rate (length/time)")
 
@@ -227,7 +205,7 @@ def orbit_ball_level(*, ax: Any = None) -> Any:
     angle = 0.6 + 0.9 * (1.0 - np.exp(-3.0 * t))
     ax.plot((1.0 + away) * np.cos(angle), (1.0 + away) * np.sin(angle), color=INK, linestyle="-", label="a solution")
     ax.annotate("", (1.0 + thick, 0.0), (1.0, 0.0), arrowprops={"arrowstyle": "<->", "color": INK})
-    ax.annotate("$\\xi_0$", (1.0 + thick, 0.0), (4, -4), textcoords="offset points")
+    _note(ax, "$\\xi_0$", (1.0 + thick, 0.0), (4, -4))
     ax.set(xlim=(-1.6, 1.9), ylim=(-1.6, 1.6))
     return finish(ax)
 
@@ -236,11 +214,8 @@ def equilibria(*, axes: Any) -> Any:
     """Draw the potentials about a minimum, a saddle and a degenerate valley on three axes, with descents."""
     x = np.linspace(-1.5, 1.5, 121)
     X, Y = np.meshgrid(x, x)
-    kinds = {
-        "minimum: eigenvalues 2, 3": (2.0, 3.0),
-        "saddle: eigenvalues 2, −1": (2.0, -1.0),
-        "degenerate: eigenvalues 2, 0": (2.0, 0.0),
-    }
+    kinds = {"minimum: eigenvalues 2, 3": (2.0, 3.0), "saddle: eigenvalues 2, −1": (2.0, -1.0)}
+    kinds["degenerate: eigenvalues 2, 0"] = (2.0, 0.0)
     for ax, (name, (a, b)) in zip(axes, kinds.items(), strict=True):
         ax.contour(X, Y, 0.5 * (a * X**2 + b * Y**2), levels=9, colors=MUTED, linewidths=0.8)
         t = np.linspace(0.0, 3.0, 100)
@@ -254,13 +229,13 @@ def equilibria(*, axes: Any) -> Any:
     return axes
 
 
-def held_at_a_jump(repulsion: float = 1.0, pull: float = 0.4, k2: float = 0.12, *, axes: Any) -> Any:
+def held_at_a_jump(*, axes: Any) -> Any:
     """Draw a force that jumps, with Filippov's values at the jump, and a damped motion in the phase plane."""
-    force, plane = axes
+    (force, plane), (repulsion, pull, k2) = axes, (1.0, 0.4, 0.12)
     for ends, value, name, below in (((-1.0, 0.0), repulsion, "repulsion", -12), ((0.0, 1.0), -pull, "pull", 5)):
         force.plot(ends, (value, value), color=BLUE, linestyle="-")
         force.plot(0.0, value, "o", color=BLUE, markerfacecolor="white", markersize=5, zorder=3)
-        force.annotate(name, (ends[0] + 0.25, value), (0, below), textcoords="offset points", fontsize=8)
+        _note(force, name, (ends[0] + 0.25, value), (0, below), fontsize=8)
     force.plot((0.0, 0.0), (-pull, repulsion), color=VERMILLION, linestyle="--", label="Filippov: any of these")
     force.plot(0.0, 0.0, "o", color=VERMILLION, label="held: the force 0")
     y, rate, path = 0.0, 0.9, []
@@ -312,6 +287,10 @@ def interval_tails(k: int, runs: int, interval: tuple[float, float], *, axes: An
 def _arrow(ax: Any, start: Any, end: Any, colour: str, dash: str, *, width: float = 1.4) -> None:
     look = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "linestyle": dash, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", end, start, arrowprops=look)
+
+
+def _note(ax: Any, text: str, at: Any, offset: tuple[int, int], **look: Any) -> None:
+    ax.annotate(text, at, offset, textcoords="offset points", **look)
 
 
 def _plain(ax: Any) -> Any:

@@ -3,8 +3,6 @@
 No kernel has to answer a slider, so that lectures run without widgets, headless too, and keep working when exported.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import json
@@ -124,16 +122,10 @@ def slider(
 
 
 def film(
-    draw: Callable[[Any, Any], object],
-    values: Sequence[Any],
-    *,
-    name: str,
-    title: str,
-    size: tuple[float, float] = (6.0, 3.6),
-    seconds: float = 6.0,
+    draw: Callable[[Any, Any], object], values: Sequence[Any], *, name: str, title: str, seconds: float = 6.0
 ) -> Frames:
     """Return a player over a sequence of pictures."""
-    return slider(draw, values, name=name, title=title, size=size, seconds=ensure_positive("seconds", seconds))
+    return slider(draw, values, name=name, title=title, seconds=ensure_positive("seconds", seconds))
 
 
 def _png(figure: Any) -> bytes:

@@ -1,7 +1,5 @@
 """Check a student's answer in a notebook: right, not yet, or not answered; never an exception."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -28,9 +26,8 @@ class Grade:
     hint: str = ""  # where to look, if it is not right
 
     def __repr__(self) -> str:
-        return f"{_MARKS[self.status]} {self.status}" + (
-            f": {self.hint}" if self.hint and self.status != "right" else ""
-        )
+        hint = f": {self.hint}" if self.hint and self.status != "right" else ""
+        return f"{_MARKS[self.status]} {self.status}{hint}"
 
 
 def grade(

@@ -1,7 +1,5 @@
 """Headers, references and map of the course, from two tables."""
 
-from __future__ import annotations
-
 import csv
 import re
 import tomllib
@@ -54,9 +52,8 @@ def course_map(folder: Path) -> list[Lecture]:
             raise ArgumentError(f"lecture {number} builds on {early}: expected earlier entries of lectures.toml")
         references = tuple(as_text(cite(key)) for key in entry["references"])
         title = _title(files[number])
-        found.append(
-            Lecture(number, title, tuple(entry["after"]), entry["minutes"], references, tuple(entry["further"]))
-        )
+        after, further = tuple(entry["after"]), tuple(entry["further"])
+        found.append(Lecture(number, title, after, entry["minutes"], references, further))
     return found
 
 
@@ -129,9 +126,8 @@ def references(lecture: Lecture) -> str:
 
 def notation_page(folder: Path) -> str:
     """Return all symbols of the course, in Markdown."""
-    return (
-        "# Notation\n\nA symbol means the same in all lectures.\n\n" + "\n".join(_rows(notation(folder), "all")) + "\n"
-    )
+    rows = "\n".join(_rows(notation(folder), "all"))
+    return f"# Notation\n\nA symbol means the same in all lectures.\n\n{rows}\n"
 
 
 def map_page(folder: Path) -> str:

@@ -4,8 +4,6 @@ A slide has a fixed height, and nothing may be cut off: code and what it puts ou
 are broken, figures are no larger than the slide, and what is still taller is scrolled.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,9 +1,7 @@
 """Messages that answer a case of the page, in the order in which they are computed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -42,13 +40,8 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
         send("form", form(case, parts))
         ensure_small(parts)
 
-        def show(data: bytes) -> None:
-            send("run", data)
-
-        if parts.recorded is not None:
-            run = shown(parts.recorded, show)
-        else:
-            run = watched(parts, show, limit=limit, cancelled=cancelled)
+        show, saved = partial(send, "run"), parts.recorded
+        run = shown(saved, show) if saved is not None else watched(parts, show, limit=limit, cancelled=cancelled)
         send("ran", {"status": run.status, "message": run.message, "samples": len(run.t)})
         for kind, content in _analysed(parts, run):
             if cancelled():
@@ -67,6 +60,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         for each in numbers(parts.law)
         if not each.path.endswith(_idle(parts.law))
     ]
+    reports = [] if parts.source is None else [{"id": SOURCE, "title": "What the source reports of this run"}]
     return {
         "title": parts.title,
         "law": type(parts.law).__name__,
@@ -75,7 +69,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
         "q0": parts.q0.tolist(),
         "duration": parts.t_span[1] - parts.t_span[0],
         "numbers": listed,
-        "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + _reporting(parts),
+        "theorems": [{"id": name, "title": theorem(name).title} for name in parts.theorems] + reports,
         "ratio": _collapses_by_ratio(parts.law),
         "python": program(parts),
     }
@@ -85,11 +79,6 @@ def _idle(law: Any) -> tuple[str, ...]:
     """Return paths of parameters without effect on a law, such as unused gains."""
     unpulled = () if law.target is not None else ("c1_gamma", "c2_gamma")
     return unpulled if law.obstacles else (*unpulled, "c1_beta", "c2_beta")
-
-
-def _reporting(parts: Start) -> list[dict[str, str]]:
-    """Return the row of the source's reports, if there are any."""
-    return [] if parts.source is None else [{"id": SOURCE, "title": "What the source reports of this run"}]
 
 
 def _analysed(parts: Start, run: Trajectory) -> Iterator[tuple[str, Any]]:
@@ -115,9 +104,8 @@ def poles(run: Trajectory) -> dict[str, Any]:
     if law is None:
         return {"note": f"{type(run.law).__name__} is a map of its own: it has no poles in continuous time"}
     if q.size > _POLES:
-        return {
-            "note": f"{q.size} coordinates: this page computes the poles of at most {_POLES}; use flockana stability"
-        }
+        text = f"{q.size} coordinates: this page computes the poles of at most {_POLES}; use flockana stability"
+        return {"note": text}
     t = float(run.t[-1])
     try:
         linear = linearise(law, q, t=t, allow_residual=True)
@@ -129,10 +117,12 @@ def poles(run: Trajectory) -> dict[str, Any]:
         modes, eigenvalues = linear.modes[:_MODES], linear.eigenvalues
     except FlockanaError as error:
         return {"note": f"No poles: {error}"}
+    named = [mode.name for mode in linear.zero_modes if not mode.name.startswith("soft")]
+    soft = len(linear.zero_modes) - len(named)
     return {
         "note": note,
         "poles": np.column_stack([eigenvalues.real, eigenvalues.imag]).tolist(),
-        "zero": _few([mode.name for mode in linear.zero_modes]),
+        "zero": [*named, f"{soft} soft ones"] if soft else named,
         "abscissa": linear.spectral_abscissa if modes else None,
         "q": linear.q.tolist(),
         "links": np.asarray(linear.links).tolist(),
@@ -149,19 +139,10 @@ def poles(run: Trajectory) -> dict[str, Any]:
     }
 
 
-def _few(names: list[str]) -> list[str]:
-    """Return the names of zero modes; soft modes, which have no names, are counted."""
-    named = [name for name in names if not name.startswith("soft")]
-    soft = len(names) - len(named)
-    return [*named, f"{soft} soft ones"] if soft else named
-
-
 def _collapses_by_ratio(law: Any) -> bool:
     """Return whether a γ-agent pulls all agents alike, so that c1γ/c1α decides on collapse (erratum E11)."""
-    gains = getattr(law, "gains", None)
-    follows = (
-        law.target is not None and getattr(law, "centre_decouples", False) and isinstance(law.pair, AlphaInteraction)
-    )
+    gains, decouples = getattr(law, "gains", None), getattr(law, "centre_decouples", False)
+    follows = law.target is not None and decouples and isinstance(law.pair, AlphaInteraction)
     return bool(follows and gains is not None and not gains.per_agent and gains.c1_alpha > 0.0)
 
 

@@ -6,7 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flockana.base.checks import ensure_choice, ensure_finite_scalar, ensure_positive, ensure_time_span, ensure_vector
+from flockana.base.checks import (
+    ensure_choice,
+    ensure_finite_scalar,
+    ensure_positive,
+    ensure_seed,
+    ensure_time_span,
+    ensure_vector,
+)
 from flockana.base.errors import ArgumentError
 from flockana.explore.parameters import changed, expression, tree_of
 from flockana.explore.starts import Start, from_file, from_law, from_scenario
@@ -40,16 +47,11 @@ class Case:
         ensure_choice("kind", self.kind, KINDS)
         if not isinstance(self.name, str):
             raise ArgumentError(f"name = {self.name!r}: expected a text")
-        for name in ("seed", "n", "m"):
-            if isinstance(getattr(self, name), bool) or not isinstance(getattr(self, name), int):
-                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected a whole number")
-        if self.seed < 0:
-            raise ArgumentError(f"seed = {self.seed}: expected a whole number >= 0")
+        ensure_seed(self.seed)  # n and m are checked where a law gets its flock
         if self.duration is not None:
             ensure_positive("duration", self.duration)
-        for name in ("changes", "moved"):
-            if not isinstance(getattr(self, name), Mapping):
-                raise ArgumentError(f"{name} = {getattr(self, name)!r}: expected values by name")
+        if not isinstance(self.changes, Mapping):
+            raise ArgumentError(f"changes = {self.changes!r}: expected values by name")
 
     @classmethod
     def of(cls, asked: Any) -> Case:

@@ -1,7 +1,5 @@
 """The explorer for a flock of the user's own."""
 
-from __future__ import annotations
-
 import asyncio
 import tempfile
 import threading
@@ -42,11 +40,6 @@ def explore(
         Port of the page; 0 picks a free one.
     browser : bool
         Open the page in the browser; its address is printed in any case.
-
-    Raises
-    ------
-    ArgumentError
-        If tornado is not installed, or the law cannot be written to a file.
     """
     try:
         from flockana.explore.server import Server, kept_token, serve

@@ -1,7 +1,5 @@
 """The explorer's page, with its scripts and styles in it."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from importlib.resources import files

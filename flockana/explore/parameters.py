@@ -4,8 +4,6 @@ A page changes numbers and nothing else: it names a path that the law has and gi
 What they may be the law's own classes say, which check them as they do when a program makes them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any

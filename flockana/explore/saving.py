@@ -1,7 +1,5 @@
 """The run of a page as a file."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A server on the loopback address: one page, one socket for each tab, one process for each socket."""
 
-from __future__ import annotations
-
 import asyncio
 import hmac
 import json
@@ -31,10 +29,7 @@ HOST = "127.0.0.1"
 _TABS = 6
 _LENGTH = 32  # letters that a token has at least
 _TRIES = 3  # processes in a row that end before they say anything: then only a new question starts one
-_PATIENCE = (
-    0.12,
-    1.0,
-)  # seconds within which a process must begin the newest question: with, and without, a spare process
+_PATIENCE = (0.12, 1.0)  # seconds in which a process must begin the newest question: with, and without, a spare one
 _QUESTION = 1_000_000  # bytes at most
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'; connect-src 'self'; img-src data:"
 
@@ -56,15 +51,13 @@ class Process:
 
     def _read(self, loop: asyncio.AbstractEventLoop) -> None:
         message: Any = ()
-        while message is not None:
-            try:
-                message = self.pipe.recv()
-            except (EOFError, OSError):
-                message = None
-            try:
+        with suppress(RuntimeError):  # the server is gone
+            while message is not None:
+                try:
+                    message = self.pipe.recv()
+                except (EOFError, OSError):
+                    message = None
                 loop.call_soon_threadsafe(self._forward, message)
-            except RuntimeError:  # the server is gone
-                return
 
     def _forward(self, message: Any) -> None:
         self.ready = True
@@ -117,17 +110,22 @@ class Server:
         return host in (HOST, "localhost") and hmac.compare_digest(given.encode(), self.token.encode())
 
 
-class _Page(RequestHandler):
+class _Guarded(RequestHandler):
+    def prepare(self) -> None:
+        """Reject requests without the token."""
+        self.server: Server = self.application.settings["explorer"]
+        if not self.server.admits(self):
+            raise HTTPError(403)
+
+
+class _Page(_Guarded):
     def get(self) -> None:
         """Answer with the page."""
-        server: Server = self.application.settings["explorer"]
-        if not server.admits(self):
-            raise HTTPError(403)
         nonce = secrets.token_urlsafe(16)
         self.set_header("Content-Security-Policy", _POLICY.format(nonce))
         self.set_header("Referrer-Policy", "no-referrer")
         self.set_header("Cache-Control", "no-store")
-        self.finish(page(server.first, nonce))
+        self.finish(page(self.server.first, nonce))
 
     def write_error(self, status_code: int, **_: Any) -> None:
         """Write the error in one line."""
@@ -135,14 +133,11 @@ class _Page(RequestHandler):
         self.finish(wrong if status_code == 403 else f"{status_code}")
 
 
-class _Run(RequestHandler):
+class _Run(_Guarded):
     async def get(self) -> None:
         """Simulate a case once more and send the run as netCDF."""
-        server: Server = self.application.settings["explorer"]
-        if not server.admits(self):
-            raise HTTPError(403)
         try:
-            case = server.admitted(json.loads(self.get_query_argument("case")))
+            case = self.server.admitted(json.loads(self.get_query_argument("case")))
             data = await asyncio.to_thread(run_file, case)
         except (ValueError, AttributeError, FlockanaError) as error:
             self.set_status(400)
@@ -152,18 +147,12 @@ class _Run(RequestHandler):
         self.finish(data)
 
 
-class _Tab(WebSocketHandler):
+class _Tab(_Guarded, WebSocketHandler):
     """Tab with its own process, which answers the newest question."""
 
     process: Process | None = None
     number, begun, asked = 0, 0, None
     analysing, silent = False, 0
-
-    def prepare(self) -> None:
-        """Reject requests without the token."""
-        self.server: Server = self.application.settings["explorer"]
-        if not self.server.admits(self):
-            raise HTTPError(403)
 
     def open(self, *_: Any) -> None:
         """Take a process for a new page."""
@@ -184,8 +173,7 @@ class _Tab(WebSocketHandler):
         """Send a question to the process."""
         try:
             asked = json.loads(message)
-            number, case = int(asked["number"]), asked["case"]
-            self.server.admitted(case)
+            number, case = int(asked["number"]), self.server.admitted(asked["case"])
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             self._say({"number": -1, "kind": "error", "text": f"no question: {error}"})
             return
@@ -256,10 +244,8 @@ def kept_token() -> str:
     path = Path.home() / ".flockana" / "explore-token"
     try:
         path.parent.mkdir(mode=0o700, exist_ok=True)
-        with (
-            suppress(FileExistsError),
-            os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as new,
-        ):
+        flags = os.O_CREAT | os.O_EXCL | os.O_WRONLY
+        with suppress(FileExistsError), os.fdopen(os.open(path, flags, 0o600), "w") as new:
             new.write(secrets.token_urlsafe(32))
         kept = path.read_text(encoding="ascii").strip()
     except (OSError, ValueError):

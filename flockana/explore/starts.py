@@ -1,8 +1,6 @@
 """Starts of the page: scenarios, laws with random flocks, and files, with equivalent Python."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
@@ -70,12 +68,8 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
         radius = round(side / 8.0, 3)
         target, text = StaticTarget(there), f"fl.StaticTarget({there}), obstacles=(fl.Sphere({between}, {radius}),)"
         return Algorithm3(target=target, obstacles=(Sphere(between, radius),)), f"fl.Algorithm3(target={text})"
-    kinds: dict[str, Callable[[], Any]] = {
-        "Algorithm1": Algorithm1,
-        "CuckerSmale": CuckerSmale,
-        "DeadZoneFlocking": DeadZoneFlocking,
-    }
-    return kinds[name](), f"fl.{name}()"
+    laws: tuple[Any, ...] = (Algorithm1, CuckerSmale, DeadZoneFlocking)
+    return next(law() for law in laws if law.__name__ == name), f"fl.{name}()"
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
@@ -101,9 +95,8 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
         f"p0 = {speed} * rng.normal(size=({n}, {m}))",
         f"t_span, options = (0.0, {end}), {{}}",
     )
-    return Start(
-        f"{name}, {n} agents at random", law, q0, p0, (0.0, end), lines, theorems=theorems_of(type(law).__name__)
-    )
+    start = f"{name}, {n} agents at random", law, q0, p0, (0.0, end), lines
+    return Start(*start, theorems=theorems_of(name))
 
 
 @lru_cache(maxsize=8)

@@ -1,7 +1,5 @@
 """Runs streamed while they are computed: first frames at once, an error if they take too long."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Worker process of one page: answers the newest case and interrupts older ones."""
 
-from __future__ import annotations
-
 import _thread
 import os
 import signal
@@ -45,7 +43,6 @@ class Worker:
             with self.changed:
                 self.changed.wait_for(lambda: self.newest[0] > self.done)
                 number, data = self.newest
-
             try:
                 self._send(number, "begun", {})
                 with restore_interrupts():
@@ -91,9 +88,5 @@ def _warm() -> None:
 
     ran: list[str] = []
     with suppress(KeyboardInterrupt):
-        answer(
-            Case("law", "Algorithm2", n=12, duration=0.5),
-            lambda kind, content: ran.append(kind),
-            limit=60.0,
-            cancelled=lambda: "ran" in ran,
-        )
+        small = Case("law", "Algorithm2", n=12, duration=0.5)
+        answer(small, lambda kind, content: ran.append(kind), limit=60.0, cancelled=lambda: "ran" in ran)

@@ -1,22 +1,18 @@
 """A run that moves in a page: the player of notebooks and of the report."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.base.files import atomic_write
+from flockana.dynamics.trajectory import Trajectory
 from flockana.player.marks import marks_of
 from flockana.player.page import page, script, style
 from flockana.player.scene import scene
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.theorems import Verdict
+from flockana.theorems import Verdict
 
 __all__ = ["Player", "marks_of", "page", "scene", "script", "style"]
 
@@ -73,11 +69,7 @@ class Player:
                 "run.player() itself, which needs nothing"
             ) from None
         source = Path(__file__).with_name("widget.js").read_text(encoding="utf-8")
-        fields = {
-            "_esm": script() + source,
-            "_css": style(),
-            "data": traitlets.Bytes().tag(sync=True),
-            "time": traitlets.Float(0.0).tag(sync=True),
-        }
+        fields = {"_esm": script() + source, "_css": style()}
+        fields |= {"data": traitlets.Bytes().tag(sync=True), "time": traitlets.Float(0.0).tag(sync=True)}
         kind = type("RunWidget", (anywidget.AnyWidget,), fields)
         return kind(data=self._scene(), time=float(self.trajectory.t[0]))

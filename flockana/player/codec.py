@@ -6,8 +6,6 @@ round((x − origin)/step). Each row but the first is less the one before it (mo
 (all times of one agent together) and split (first the low bytes of all, …), which is what deflate compresses best.
 """
 
-from __future__ import annotations
-
 import json
 import zlib
 from collections.abc import Mapping

@@ -1,20 +1,14 @@
 """Marked instants of a player: the witnesses of claims."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.theorems import Verdict
+from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems import Verdict
 
 Marks = list[tuple[float, str]]
 
 
-def marks_of(
-    run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[float] = (), *, named: str = "as in the source"
-) -> Marks:
+def marks_of(run: Trajectory, verdicts: Iterable[Verdict], instants: Iterable[float] = ()) -> Marks:
     """Return the instants of a run in order, each with the claims that it witnesses.
 
     Examples
@@ -24,7 +18,7 @@ def marks_of(
     >>> [name for _, name in marks_of(run, [verify("os-1", run)])]
     ['os-1 iii, os-1 iii-barrier', 'os-1 ii']
     """
-    found: dict[float, list[str]] = {float(time): [named] for time in instants}
+    found: dict[float, list[str]] = {float(time): ["as in the source"] for time in instants}
     for verdict in verdicts:
         for claim in verdict.claims:
             time = claim.witness.get("time") if isinstance(claim.witness, Mapping) else None

@@ -1,17 +1,13 @@
 """The player of a flock of the user's own."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.player import Player
+from flockana.scenarios import Flock, Scenario
 from flockana.scenarios.flock import run_of
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.scenarios import Flock, Scenario
-    from flockana.theorems import Verdict
+from flockana.theorems import Verdict
 
 
 def player(
@@ -41,11 +37,6 @@ def player(
         Height of its frame in a notebook, in pixels.
     verdicts : sequence of Verdict
         Verdicts on the run: the instants that their claims point to are marked.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no run and no flock.
 
     Examples
     --------

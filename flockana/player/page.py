@@ -1,7 +1,5 @@
 """Player as parts of a page, and as a page of its own."""
 
-from __future__ import annotations
-
 import base64
 from functools import cache
 from html import escape
@@ -39,6 +37,13 @@ def text_of(data: bytes) -> str:
     return base64.b64encode(data).decode("ascii")
 
 
+def played(data: bytes) -> str:
+    """Return the elements of a page that play a run in its element ``player``."""
+    start = "flockanaPlayer(document.getElementById('player'),bytesOfText(document.getElementById('run').textContent));"
+    run = f'<script type="text/plain" id="run">{text_of(data)}</script>'
+    return f"{run}<script>(() => {{\n{script()}{start}\n}})();</script>"
+
+
 def page(data: bytes, *, title: str = "A run") -> str:
     """Return a self-contained page with the player and one run."""
     return (
@@ -47,7 +52,5 @@ def page(data: bytes, *, title: str = "A run") -> str:
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<style>{style()}\n{_WHOLE}</style></head>"
         f'<body><main><h1 class="fp-hidden">{escape(title)}</h1><div id="player"></div></main>'
-        f'<script type="text/plain" id="run">{text_of(data)}</script><script>(() => {{\n{script()}'
-        'flockanaPlayer(document.getElementById("player"), bytesOfText(document.getElementById("run").textContent));'
-        "\n})();</script></body></html>"
+        f"{played(data)}</body></html>"
     )

@@ -3,27 +3,23 @@
 A law with a world of its own registers it (`world`), as it registers how a snapshot draws it (`plots.snapshot`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Obstacle, Sphere, Wall
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.player.codec import Packed, encode
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
 
 SHOWN = (
     "connectivity",
@@ -191,10 +187,8 @@ def _paths(targets: Iterable[Any], times: FloatArray) -> FloatArray:
 
 
 def _solid(solid: Obstacle) -> dict[str, Any]:
-    if isinstance(solid, Sphere):
-        return {"kind": "sphere", "par": solid.par.tolist()}
-    if isinstance(solid, Wall):
-        return {"kind": "wall", "par": solid.par.tolist()}
+    if isinstance(solid, Sphere | Wall):
+        return {"kind": type(solid).__name__.lower(), "par": solid.par.tolist()}
     return {"kind": "other"}
 
 

@@ -1,33 +1,31 @@
 """Films of runs: frames at equal spacing in time, in a fixed view."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from scipy.interpolate import CubicHermiteSpline
 
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, FileError
 from flockana.base.files import atomic_write, ensure_path, ensure_target
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
+from flockana.plots.gif import GifWriter
 from flockana.plots.snapshot import drawn_law, in_view, snapshot
-from flockana.plots.style import style
-from flockana.scenarios.flock import run_of
-
-if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
-
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.scenarios.flock import Flock
-    from flockana.scenarios.scenario import Scenario
+from flockana.plots.style import limit, style
+from flockana.scenarios.flock import Flock, run_of
+from flockana.scenarios.scenario import Scenario
 
 _DPI = 100
 _STILL: dict[Any, Any] = {"figure.constrained_layout.use": False}
@@ -50,8 +48,6 @@ def equal_times(trajectory: Trajectory, count: int) -> Trajectory:
         k = np.unique(np.searchsorted(0.5 * (t[:-1] + t[1:]), times, side="right"))
         extra = {name: series[k] for name, series in trajectory.extra.items()}
         return replace(trajectory, t=t[k], q=trajectory.q[k], p=trajectory.p[k], u=trajectory.u[k], extra=extra)
-    from scipy.interpolate import CubicHermiteSpline
-
     # an agent that hits an obstacle brakes within less than a sample: both cubics follow it, with no overshoot
     q = CubicHermiteSpline(t, trajectory.q, trajectory.p)(times)
     p = CubicHermiteSpline(t, trajectory.p, trajectory.u)(times)
@@ -68,16 +64,7 @@ def animation(
     ----------
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no run, seconds or fps is not positive, or they ask for too many frames.
     """
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     ensure_run(trajectory)
     frames = frame_count(seconds, fps)
     film, view = equal_times(trajectory, frames), film_view(trajectory)
@@ -134,18 +121,7 @@ def animate(
         Draw circles at the range of interaction about the agents, in the plane.
     progress : callable
         Is told the number of frames drawn and their total.
-
-    Raises
-    ------
-    ArgumentError
-        If it is no run; on a bad file name, or bad seconds or fps.
-    FileError
-        If the file cannot be written, or ffmpeg is missing.
     """
-    from matplotlib.animation import FFMpegWriter
-
-    from flockana.plots.gif import GifWriter
-
     target = ensure_film(path, seconds=seconds, fps=fps)
     run = run_of(trajectory, law=law, q0=q0, p0=p0, t_span=t_span, seed=seed)
     film = animation(run, seconds=seconds, fps=fps, velocities=velocities, ranges=ranges)
@@ -165,8 +141,6 @@ def animate(
 
 def ensure_film(path: str | os.PathLike[str], *, seconds: float, fps: float) -> Path:
     """Raise unless a film of this name, length and rate can be written."""
-    from matplotlib.animation import FFMpegWriter
-
     target = ensure_path(path, action="write")
     frame_count(seconds, fps)
     if target.suffix.lower() not in _SUFFIXES:
@@ -218,7 +192,6 @@ def _fix_view(ax: Any, view: FloatArray) -> None:
         ax.set_box_aspect(None, zoom=0.95)
         middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
         low, high = middle - half, middle + half
-    for name, a, b in zip("xyz", low.tolist(), high.tolist(), strict=False):
-        getattr(ax, f"set_{name}lim")(a, b)
+    limit(ax, low, high)
     if low.size == 2:
         ax.set_aspect("equal", adjustable="box")

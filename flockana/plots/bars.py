@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from flockana.base.checks import ensure_finite_scalar
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, finish, subplots
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
+from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
+from flockana.plots.style import finish, subplots
 
 Cell = float | tuple[float, float]
 _HEIGHT = 0.6  # of a bar
@@ -39,11 +38,6 @@ def bars(
     -------
     ndarray of matplotlib.axes.Axes
 
-    Raises
-    ------
-    ArgumentError
-        On an empty table, rows with other columns, or values that are no numbers.
-
     Examples
     --------
     >>> panels = bars({"agent 0": {"phase (degrees)": 34.0}, "agent 1": {"phase (degrees)": (51.0, 2.0)}})
@@ -61,7 +55,7 @@ def bars(
     places = -np.arange(len(table))
     for column, panel in zip(columns, panels, strict=True):
         pairs = [_cell(f"{row}, {column}", cells[column]) for row, cells in table.items()]
-        values, widths = (np.array(series) for series in zip(*pairs, strict=True))
+        values, widths = np.array(pairs).T
         known = np.isfinite(values)
         lengths = np.where(known, values, 1.2 * max(values[known], default=1.0))
         panel.barh(places, lengths, _HEIGHT, color=[BLUE if one else MUTED for one in known])

@@ -4,40 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
-from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    PURPLE,
-    VERMILLION,
-    ensure_axes,
-    finish_over_time,
-    lines,
-    subplots,
-    write_title,
-)
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
+from flockana.plots.style import ensure_axes, finish_over_time, lines, subplots, write_title
 from flockana.plots.symbols import typeset
-from flockana.scenarios.one_start import RANGE
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.scenarios.one_start import Outcome
+from flockana.scenarios.one_start import RANGE, Outcome
 
 _COLUMNS = 5
-_LOOKS = tuple(
-    zip((BLUE, VERMILLION, GREEN, PURPLE, INK), ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1))), strict=True)
-)
+_DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+_LOOKS = tuple(zip((BLUE, VERMILLION, GREEN, PURPLE, INK), _DASHES, strict=True))
 _MARKS = (None, "o", "s", "^")  # a marker for each repetition of the colours and dashes
 _FLOOR = 1e-8  # of the start: below it is what an integration leaves
 
@@ -57,11 +40,6 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
     -------
     ndarray of matplotlib.axes.Axes
         One for each outcome.
-
-    Raises
-    ------
-    ArgumentError
-        If there are no outcomes, or other than one Axes for each.
     """
     if not outcomes:
         raise ArgumentError("outcomes is empty: expected those of flockana.scenarios.one_start.compare()")
@@ -82,7 +60,7 @@ def side_by_side(outcomes: Sequence[Outcome], *, ax: Any = None) -> Any:
         _paths(panel, outcome.run)
         write_title(panel, f"{outcome.entry.name}\n{outcome.entry.theorem}: {outcome.verdict.status}", fontsize=9)
         panel.set(xlabel=typeset("x (length)"), ylabel=typeset("y (length)"), box_aspect=1.0)
-        panel.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+        panel.set(xlim=middle[0] + (-half, half), ylim=middle[1] + (-half, half))
     return panels
 
 
@@ -102,11 +80,6 @@ def velocity_diameters(outcomes: Sequence[Outcome], *, ax: Axes | None = None) -
     ----------
     outcomes : sequence of Outcome
         What `flockana.scenarios.one_start.compare` gave.
-
-    Raises
-    ------
-    ArgumentError
-        If there are no outcomes.
     """
     if not outcomes:
         raise ArgumentError("outcomes is empty: expected those of flockana.scenarios.one_start.compare()")

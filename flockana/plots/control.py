@@ -6,23 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
+from matplotlib.ticker import MultipleLocator, NullFormatter
 
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    PURPLE,
-    VERMILLION,
-    ensure_axes,
-    finish,
-    line_width_and_opacity,
-    style,
-)
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
+from flockana.plots.style import ensure_axes, finish, hairlines, line_width_and_opacity, mark, style
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -56,9 +45,8 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
     """
     for label, response in responses.items():
         if not (hasattr(response, "omega") and hasattr(response, "complex")):
-            raise ArgumentError(
-                f"responses[{label!r}] = {format_value(response)}: expected a frequency response, as of CentreOfMass"
-            )
+            what = f"responses[{label!r}] = {format_value(response)}"
+            raise ArgumentError(f"{what}: expected a frequency response, as of CentreOfMass")
     if ax is None:
         import matplotlib.pyplot as plt
 
@@ -66,14 +54,12 @@ def bode(responses: Mapping[str, Any], *, marks: Mapping[str, float] | None = No
             ax = plt.subplots(2, 1, figsize=(5.2, 4.6), sharex=True)[1]
     magnitude, phase = panels = np.ravel(ax)
     for (label, response), (colour, dash) in zip(responses.items(), _DASHES, strict=False):
-        gain, angle = np.abs(np.ravel(response.complex)), np.unwrap(np.angle(np.ravel(response.complex)))
-        magnitude.semilogx(response.omega, 20.0 * np.log10(gain), color=colour, linestyle=dash, label=label)
-        phase.semilogx(response.omega, np.degrees(angle), color=colour, linestyle=dash)
+        values, look = np.ravel(response.complex), {"color": colour, "linestyle": dash}
+        magnitude.semilogx(response.omega, 20.0 * np.log10(np.abs(values)), label=label, **look)
+        phase.semilogx(response.omega, np.degrees(np.unwrap(np.angle(values))), **look)
     for name, omega in (marks or {}).items():
-        for panel in panels:
-            panel.axvline(omega, color=MUTED, linewidth=0.9, linestyle=":")
-        text = {"xytext": (3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
-        magnitude.annotate(typeset(name), (omega, 0.0), xycoords=magnitude.get_xaxis_transform(), **text)
+        mark(magnitude, omega, name, width=0.9, color=MUTED, fontsize=8)
+        mark(phase, omega, width=0.9)
     magnitude.axhline(0.0, color=FAINT, linewidth=1.2, linestyle="-", zorder=0)
     finish(magnitude, y="|q_c/q_r| (dB)")
     finish(phase, "ω (radians/time)", "phase (degrees)")
@@ -113,9 +99,7 @@ def gain_sweep(sweep: Sweep, *, ax: Axes | None = None) -> Axes:
     """
     ax = ensure_axes(ax)
     decay = sweep.eigenvalues.real[:, sweep.neutral :]
-    width, alpha = line_width_and_opacity(decay.shape[1])
-    ax.plot(sweep.values, decay, color=MUTED, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=MUTED, linestyle="-", linewidth=0.8, label="every mode")
+    hairlines(ax, sweep.values, decay, "every mode", colour=MUTED)
     ax.plot(sweep.values, sweep.abscissa, color=VERMILLION, linestyle="-", linewidth=2.0, label="the slowest")
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
     if sweep.neutral:
@@ -138,11 +122,8 @@ def norms(table: NormTable, *, ax: Axes | None = None) -> Axes:
     ax.fill_between(n, low, high, color=BLUE, alpha=0.15, linewidth=0.0, label="bounds of H₂")
     ax.plot(n, table.h2, "o-", color=BLUE, markersize=4, label="H₂ (time^(3/2))")
     ax.plot(n, table.hinf, "s--", color=VERMILLION, markersize=4, label="H∞ (time²)")
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xticks(n)
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.set(xscale="log", yscale="log", xticks=n)
+    ax.xaxis.set(major_formatter="{x:g}", minor_formatter=NullFormatter())
     ax.tick_params(axis="x", which="minor", bottom=False)
     return finish(ax, "n, agents", "norm from forces to the shape")
 
@@ -160,8 +141,7 @@ def delay_chart(sweeps: Mapping[str, MarginSweep], *, ax: Axes | None = None) ->
     for k, ((label, sweep), (colour, dash)) in enumerate(zip(sweeps.items(), _DASHES, strict=False)):
         if k == 0:
             ax.fill_between(sweep.values, 0.0, sweep.margins, color=BLUE, alpha=0.12, linewidth=0.0)
-            ax.set_xlabel(typeset(_gain_label(sweep.name)))
-            ax.set_xlim(sweep.values[0], sweep.values[-1])
+            ax.set(xlabel=typeset(_gain_label(sweep.name)), xlim=(sweep.values[0], sweep.values[-1]))
         ax.plot(sweep.values, sweep.margins, color=colour, linestyle=dash, label=label)
     ax.text(0.03, 0.05, "stable", transform=ax.transAxes, color=MUTED)
     ax.set_ylim(bottom=0.0)

@@ -3,62 +3,31 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
+from flockana.dynamics.trajectory import Trajectory
+from flockana.interactions import DeadZoneInteraction
 from flockana.laws.led_dead_zone import LedDeadZoneFlocking
+from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
 from flockana.plots.snapshot import configuration, draw_sample, in_view
-from flockana.plots.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    PURPLE,
-    VERMILLION,
-    ensure_axes,
-    finish,
-    frame_space,
-    in_plane,
-    over_time,
-    write_title,
-)
-from flockana.plots.symbols import typeset
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.interactions import DeadZoneInteraction
+from flockana.plots.style import ensure_axes, finish, frame_space, in_plane, mark, over_time, star, write_title
 
 _SAMPLES = 300
 _GROUPS = (ORANGE, PURPLE, GREEN, BLUE, VERMILLION)  # colours of leaders and their agents, again from the first
 
 
 @check_kinds
-def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None = None, ax: Axes | None = None) -> Axes:
-    """Draw F against the distance of a pair (Fig. 2 of the paper); a dot marks the value taken at each jump.
-
-    Parameters
-    ----------
-    nearest : float, optional
-        Where the curve begins, 0.7 d1 by default: it falls to minus infinity at 0.
-
-    Raises
-    ------
-    ArgumentError
-        If `nearest` is not between 0 and d1.
-    """
-    nearest = 0.7 * interaction.d1 if nearest is None else nearest
-    if not 0.0 < nearest < interaction.d1:
-        raise ArgumentError(f"nearest = {nearest!r}: expected a distance between 0 and d1 = {interaction.d1:g}")
+def dead_zone_force(interaction: DeadZoneInteraction, *, ax: Axes | None = None) -> Axes:
+    """Draw F from 0.7 d1 on against the distance of a pair (Fig. 2 of the paper), with a dot at its value at a jump."""
     ax = ensure_axes(ax)
-    far = 1.15 * interaction.r
-    edges = [nearest, *(x for x in (interaction.d1, interaction.d2, interaction.r) if x < far), far]
+    far = 1.15 * interaction.r  # towards 0 it falls to minus infinity
+    edges = [0.7 * interaction.d1, *(x for x in (interaction.d1, interaction.d2, interaction.r) if x < far), far]
     for left, right in pairwise(edges):  # piece by piece: a jump is no steep line
         x = np.linspace(np.nextafter(left, far), np.nextafter(right, 0.0), _SAMPLES)
         ax.plot(x, interaction.force(x), color=BLUE, linestyle="-")
@@ -69,8 +38,7 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
             ax.plot(jump.distance, value, "o", color=BLUE, markerfacecolor=face, markersize=5, zorder=3)
     ax.axhline(0.0, color=MUTED, linewidth=0.8, linestyle="-")
     for name, place in (("d₁", interaction.d1), ("d₂", interaction.d2), ("r", interaction.r)):
-        ax.axvline(place, color=MUTED, linewidth=0.8, linestyle=":")
-        ax.annotate(typeset(name), (place, 0.0), (3, 4), xycoords=("data", "axes fraction"), textcoords="offset points")
+        mark(ax, place, name)
     ax.set_xlim(0.0, far)
     write_title(ax, "below 0 it repels", color=MUTED, fontsize=8)
     return finish(ax, "distance of the pair (length)", "F, force along the line (length/time²)")
@@ -78,13 +46,7 @@ def dead_zone_force(interaction: DeadZoneInteraction, *, nearest: float | None =
 
 @over_time("energy (length²/time²)")
 def dead_zone_energies(trajectory: Trajectory, ax: Any) -> None:
-    """Draw the saturated energy H̄, which never rises, and the energy of neighbours, which jumps (erratum L5).
-
-    Raises
-    ------
-    ArgumentError
-        If the law measures no energy of neighbours.
-    """
+    """Draw the saturated energy H̄, which never rises, and the energy of neighbours, which jumps (erratum L5)."""
     metrics = trajectory.metrics()
     if "literal_energy" not in metrics:
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of DeadZoneFlocking")
@@ -107,7 +69,7 @@ def _led(
         colour = _GROUPS[number % len(_GROUPS)]
         rings = [INK if i in law.pinned else colour for i in own.tolist()]
         axes.scatter(*x[own].T, s=1.6 * size, color=colour, edgecolors=rings, linewidths=1.0, zorder=3.5)
-        axes.scatter(*place[:, None], s=110, marker="*", color=colour, edgecolors="white", linewidths=0.6, zorder=4)
+        star(axes, place[None, :], color=colour)
     framed: Axes = frame_space(axes, np.vstack([x, places]), trajectory.m)
     return framed
 

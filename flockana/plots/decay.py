@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION, ensure_axes, finish
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from flockana.plots.palette import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION
+from flockana.plots.style import ensure_axes, finish, mark
 
 _LOOKS = ((BLUE, "o", "-"), (VERMILLION, "s", "--"), (GREEN, "^", "-."), (PURPLE, "D", ":"))
 
@@ -34,18 +33,15 @@ def linear_range(
         colour, marker, dash = _LOOKS[k % len(_LOOKS)]
         x, y, broken = np.asarray(sizes), np.asarray(deviations), np.asarray(changes, dtype=bool)
         ax.plot(x, y, color=colour, linestyle=dash, linewidth=1.2, zorder=2)
-        ax.plot(x[~broken], y[~broken], marker, color=colour, markersize=4.5, linestyle="none", label=label, zorder=3)
-        look: Any = {"color": colour, "markerfacecolor": "white", "markersize": 5.0, "linestyle": "none", "zorder": 3}
-        ax.plot(x[broken], y[broken], marker, **look)
+        look: Any = {"marker": marker, "color": colour, "linestyle": "none", "zorder": 3}
+        ax.plot(x[~broken], y[~broken], markersize=4.5, label=label, **look)
+        ax.plot(x[broken], y[broken], markersize=5.0, markerfacecolor="white", **look)
         if k == 0:
             guide = y[0] * x / x[0]
             ax.plot(x, guide, color=MUTED, linestyle="-", linewidth=0.8, label="∝ amplitude", zorder=1)
     for name, value in (marks or {}).items():
-        ax.axvline(value, color=MUTED, linewidth=0.9, linestyle=":")
-        text: Any = {"xytext": (-3, 4), "textcoords": "offset points", "color": MUTED, "fontsize": 8}
-        ax.annotate(name, (value, 0.0), xycoords=ax.get_xaxis_transform(), rotation=90.0, ha="right", **text)
-    ax.set_xscale("log")
-    ax.set_yscale("log")
+        mark(ax, value, name, offset=(-3, 4), width=0.9, color=MUTED, fontsize=8, rotation=90.0, ha="right")
+    ax.set(xscale="log", yscale="log")
     return finish(ax, "largest initial displacement / d", "deviation from the linear motion / displacement")
 
 

@@ -1,17 +1,11 @@
 """Dense samples of a run, for smooth curves between the solver's steps."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from flockana.base.checks import FloatArray
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
-
-if TYPE_CHECKING:
-    from flockana.base.checks import FloatArray
-    from flockana.dynamics.trajectory import Trajectory
 
 _INSTANTS = 1500  # about as many as a figure has pixels across
 

@@ -1,16 +1,13 @@
 """Diameters of positions and velocities, and windows of joint connectivity."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.windows import windows_of
-from flockana.plots.style import BLUE, FAINT, INK, VERMILLION, over_time, write_title
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.palette import BLUE, FAINT, INK, VERMILLION
+from flockana.plots.style import over_time, write_title
 
 _FLOOR = 1e-12  # of the start: below it a difference is rounding
 
@@ -31,11 +28,6 @@ def joint_windows(trajectory: Trajectory, ax: Any) -> None:
     """Draw C over time above bands for the shortest contiguous windows that connect all agents jointly.
 
     Bands are grey and white in turn; what is left after the last of them is hatched.
-
-    Raises
-    ------
-    ArgumentError
-        If the law has no net.
     """
     windows, t = windows_of(trajectory), trajectory.t
     ends = [float(t[min(stop, len(t) - 1)]) for _, stop in windows]

@@ -12,7 +12,8 @@ from matplotlib.ticker import PercentFormatter
 from flockana.base.checks import FloatArray, ensure_known
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, FAINT, GREEN, LEGEND, MUTED, ORANGE, VERMILLION, ensure_axes, write_title
+from flockana.plots.palette import BLUE, FAINT, GREEN, MUTED, ORANGE, VERMILLION
+from flockana.plots.style import ABOVE, LEGEND, ensure_axes, write_title
 from flockana.plots.symbols import typeset
 
 if TYPE_CHECKING:
@@ -24,12 +25,8 @@ _DODGE = 0.012  # of the axes' width, between curves that share their abscissae
 _MOST = 7  # curves that can be distinguished
 _LINE = 105  # characters that fit side by side above the axes
 # colour, hatch: distinguished in grey by their lightness and, where that is close, by the hatch
-_PHASES = {
-    "flocking": (GREEN, ""),
-    "fragmentation": (ORANGE, "//"),
-    "collapse": (VERMILLION, "xx"),
-    "other": (FAINT, ".."),
-}
+_PHASES = {"flocking": (GREEN, ""), "fragmentation": (ORANGE, "//"), "collapse": (VERMILLION, "xx")}
+_PHASES |= {"other": (FAINT, "..")}
 
 
 @check_kinds
@@ -54,17 +51,12 @@ def share_against(
         Which, at most seven; by default all.
     of : {"verified", "refuted"}
         Which share.
-
-    Raises
-    ------
-    ArgumentError
-        If the table has other parameters, no such claim, or too many claims.
     """
     chosen = _ensure_table(table, {parameter}, claims, of)
-    if len(_alike(table, chosen, of)) > _MOST:
-        raise ArgumentError(
-            f"{len(chosen)} claims: expected at most {_MOST} in one picture; choose some by claims=[...]"
-        )
+    curves = _alike(table, chosen, of)
+    if len(curves) > _MOST:
+        text = f"{len(chosen)} claims: expected at most {_MOST} in one picture"
+        raise ArgumentError(f"{text}; choose some by claims=[...]")
     axes = ensure_axes(ax)
     values = table[parameter].values
     numbers = values.dtype.kind in "iuf"
@@ -72,31 +64,20 @@ def share_against(
     logarithmic = numbers and _geometric(place)
     scaled = np.log(place) if logarithmic else place
     spread = float(np.ptp(scaled)) or 1.0
-    curves = _alike(table, chosen, of)
     for k, (claim, label) in enumerate(curves.items()):
         part = table.sel(claim=claim, of=of)
         shift = _DODGE * spread * (k - 0.5 * (len(curves) - 1))
         at = np.exp(scaled + shift) if logarithmic else place + shift
         share = part.share.values
         bars = np.abs(np.stack([share - part.low.values, part.high.values - share]))
-        axes.errorbar(
-            at,
-            share,
-            yerr=bars,
-            marker=_MARKS[k],
-            markersize=4,
-            capsize=2,
-            elinewidth=0.9,
-            label=label,
-        )
+        axes.errorbar(at, share, yerr=bars, marker=_MARKS[k], markersize=4, capsize=2, elinewidth=0.9, label=label)
     if logarithmic:
         axes.set_xscale("log")
     if not numbers:
         axes.set_xticks(place, [str(value) for value in values.tolist()])
-    axes.set_xlabel(parameter)
-    axes.set_ylim(-0.03, 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_ylabel(f"share of runs {of}, {100 * table.attrs['level']:g} % intervals")
+    label = f"share of runs {of}, {100 * table.attrs['level']:g} % intervals"
+    axes.set(xlabel=parameter, ylabel=label, ylim=(-0.03, 1.03))
     return _finish(axes, title)
 
 
@@ -131,18 +112,11 @@ def share_bars(
         From `flockana.ensemble.shares`, without parameters.
     claims : iterable of str, optional
         Which; by default all.
-
-    Raises
-    ------
-    ArgumentError
-        If the table has parameters, or no such claim.
     """
     chosen = _ensure_table(table, set(), claims, "verified")
     axes, part = ensure_axes(ax), table.sel(claim=chosen)
-    shares = {
-        of: np.array([part[name].sel(of=of).values for name in ("share", "low", "high")])
-        for of in ("verified", "refuted")
-    }
+    names = "share", "low", "high"
+    shares = {of: np.array([part[name].sel(of=of).values for name in names]) for of in ("verified", "refuted")}
     return draw_bars(axes, chosen, shares, part.runs.values, table.attrs["level"], title)
 
 
@@ -159,10 +133,10 @@ def draw_bars(
         style = {"color": colour, "markerfacecolor": fill, "markersize": 5, "linestyle": "none"}
         axes.plot(share[known], rows[known] + shift, mark, label=of, **style)
     axes.set_yticks(rows, claims)
-    axes.set_ylim(-0.6, len(claims) - 0.4)
-    axes.set_xlim(-0.03, 1.03)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_xlabel(f"share of {_several(runs)} runs, {100 * level:g} % intervals")
+    several = " to ".join(map(str, dict.fromkeys((int(np.min(runs)), int(np.max(runs))))))
+    axes.set(ylim=(-0.6, len(claims) - 0.4), xlim=(-0.03, 1.03))
+    axes.set_xlabel(f"share of {several} runs, {100 * level:g} % intervals")
     return _finish(axes, title)
 
 
@@ -190,11 +164,6 @@ def distribution(
         A threshold to mark.
     log : bool
         A logarithmic axis; values that are not positive are left out and counted in the legend.
-
-    Raises
-    ------
-    ArgumentError
-        If there is nothing to draw.
     """
     axes = ensure_axes(ax)
     drawn = 0
@@ -207,9 +176,8 @@ def distribution(
         below = known.size - shown.size  # they count in the shares, although a logarithmic axis has no place for them
         note = f", {below} at 0" if below else ""
         share = (below + np.arange(shown.size + 1)) / known.size
-        (line,) = axes.step(
-            np.concatenate([shown[:1], shown]), share, where="post", label=f"{name} ({known.size} runs{note})"
-        )
+        label = f"{name} ({known.size} runs{note})"
+        (line,) = axes.step(np.concatenate([shown[:1], shown]), share, where="post", label=label)
         height = -0.02 - 0.03 * k
         axes.plot(shown, np.full(shown.size, height), "|", color=line.get_color(), markersize=5, markeredgewidth=0.7)
         drawn += 1
@@ -219,10 +187,8 @@ def distribution(
         axes.axvline(bound, color=MUTED, linestyle=":", linewidth=1.2, label=f"{bound:g}")
     if log:
         axes.set_xscale("log")
-    axes.set_ylim(-0.04 - 0.03 * len(groups), 1.03)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_xlabel(quantity)
-    axes.set_ylabel("share of runs at or below")
+    axes.set(xlabel=quantity, ylabel="share of runs at or below", ylim=(-0.04 - 0.03 * len(groups), 1.03))
     return _finish(axes, title)
 
 
@@ -246,11 +212,6 @@ def phase_diagram(
         Names of the parameters; every value has a cell of one size.
     labels : (str, str)
         Of the axes, instead of the parameters' names.
-
-    Raises
-    ------
-    ArgumentError
-        If the dimensions are others.
     """
     if {*phase.dims} != {x, y, "seed"}:
         raise ArgumentError(f"phase has dimensions {', '.join(map(str, phase.dims))}: expected {x}, {y} and seed")
@@ -280,14 +241,8 @@ def phase_diagram(
     axes.set(xlim=(-0.5, codes.shape[0] - 0.5), ylim=(-0.5, codes.shape[1] - 0.5))
     handles = {text: handle for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
     order = [name for name in names if name in handles]
-    axes.legend(
-        [handles[name] for name in order],
-        order,
-        loc="lower left",
-        bbox_to_anchor=(0.0, 1.0),
-        ncols=len(order),
-        **LEGEND,
-    )
+    look = LEGEND | {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(order)}
+    axes.legend([handles[name] for name in order], order, **look)
     if title:
         write_title(axes, title, pad=26)
     return axes  # type: ignore[no-any-return]
@@ -312,16 +267,11 @@ def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[
     return chosen
 
 
-def _several(counts: Any) -> str:
-    least, most = int(np.min(counts)), int(np.max(counts))
-    return f"{most}" if least == most else f"{least} to {most}"
-
-
 def _finish(axes: Any, title: str) -> Axes:
     """Put the legend above the axes, in as many columns as fit, and the title above it."""
     labels = axes.get_legend_handles_labels()[1]
     columns = max(1, min(4, len(labels), _LINE // (6 + max(len(text) for text in labels))))
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, **LEGEND)
+    axes.legend(ncols=columns, **LEGEND, **ABOVE)
     if title:
         write_title(axes, title, pad=10 + 14 * -(-len(labels) // columns))
     return axes  # type: ignore[no-any-return]

@@ -10,7 +10,8 @@ from matplotlib.ticker import MaxNLocator
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, write_title
+from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
+from flockana.plots.style import ensure_axes, finish, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,11 +57,6 @@ def search_history(
         Which runs refute the claim, counted from 0.
     label : str
         Name of the claim.
-
-    Raises
-    ------
-    ArgumentError
-        If the two differ in length, or there is no run.
     """
     values, least = (np.asarray(series, dtype=np.float64) for series in (margins, best))
     if values.ndim != 1 or values.shape != least.shape or not values.size:

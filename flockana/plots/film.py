@@ -1,16 +1,12 @@
 """Film of a run that plays in a notebook and saves to a file."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
+from flockana.dynamics.trajectory import Trajectory
 from flockana.plots.animation import animate, animation, frame_count
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,11 +17,6 @@ class Film:
     ----------
     ranges : bool
         Draw circles at the range of interaction about the agents, in the plane.
-
-    Raises
-    ------
-    ArgumentError
-        If seconds or fps is not positive, or they ask for too many frames.
     """
 
     trajectory: Trajectory
@@ -37,6 +28,10 @@ class Film:
     def __post_init__(self) -> None:
         frame_count(self.seconds, self.fps)
 
+    @property
+    def _options(self) -> dict[str, Any]:
+        return {key: value for key, value in vars(self).items() if key != "trajectory"}
+
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the film; an existing file is replaced only once the new one is complete.
 
@@ -44,24 +39,9 @@ class Film:
         ----------
         path : path-like
             ``.gif``, or ``.mp4`` where the program ffmpeg is installed.
-
-        Raises
-        ------
-        ArgumentError, FileError
-            As `flockana.plots.animate`.
         """
-        return animate(
-            self.trajectory,
-            path,
-            seconds=self.seconds,
-            fps=self.fps,
-            velocities=self.velocities,
-            ranges=self.ranges,
-        )
+        return animate(self.trajectory, path, **self._options)
 
     def _repr_html_(self) -> str:
         """Return the HTML player with its frames."""
-        film = animation(
-            self.trajectory, seconds=self.seconds, fps=self.fps, velocities=self.velocities, ranges=self.ranges
-        )
-        return str(film.to_jshtml(fps=round(self.fps), default_mode="loop"))
+        return str(animation(self.trajectory, **self._options).to_jshtml(fps=round(self.fps), default_mode="loop"))

@@ -10,7 +10,8 @@ from matplotlib.ticker import PercentFormatter
 from flockana.base.binomial import clopper_pearson
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, MUTED, ORANGE, ensure_axes, finish, place_legend, write_title
+from flockana.plots.palette import BLUE, MUTED, ORANGE
+from flockana.plots.style import ensure_axes, finish, place_legend, write_title
 
 if TYPE_CHECKING:
     import xarray
@@ -36,11 +37,6 @@ def informed_shares(
         How many agents there are.
     majority : float
         The share of agents that a run must exceed to count, 0 <= majority < 1.
-
-    Raises
-    ------
-    ArgumentError
-        If the dataset lacks the share of followers or the number of informed agents.
     """
     if "followers" not in runs or "informed" not in runs.get("followers", runs).dims:
         raise ArgumentError(

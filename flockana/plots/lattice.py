@@ -12,24 +12,8 @@ from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter
 from flockana.base.checks import ensure_links, ensure_points, ensure_series
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import (
-    BLUE,
-    GREEN,
-    INK,
-    LEGEND,
-    MUTED,
-    ORANGE,
-    PURPLE,
-    STRAIN,
-    VERMILLION,
-    colour_bar,
-    ensure_axes,
-    finish,
-    frame_space,
-    in_plane,
-    lines,
-    write_title,
-)
+from flockana.plots.palette import BLUE, GREEN, INK, MUTED, ORANGE, PURPLE, STRAIN, VERMILLION
+from flockana.plots.style import LEGEND, colour_bar, ensure_axes, finish, frame_space, in_plane, lines, write_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,16 +96,14 @@ def defect_map(
 
 def _draw_links(ax: Any, segments: Any, strain: Any, limit: float | None, raster: bool) -> None:
     width = float(np.clip(20.0 / len(segments) ** 0.5, 0.3, 2.2)) * (0.6 if segments.shape[2] == 3 else 1.0)
+    look: dict[str, Any] = {"linewidths": width, "zorder": 2, "rasterized": raster}
     if strain is None:
-        ax.add_collection(lines(segments, colors=MUTED, linewidths=width, zorder=2, rasterized=raster))
+        ax.add_collection(lines(segments, colors=MUTED, **look))
         return
-    values = np.asarray(strain, dtype=np.float64)
-    end = (float(np.abs(values).max()) if limit is None else limit) or 1.0
-    norm = Normalize(-end, end)
-    coloured = lines(segments, cmap=STRAIN, norm=norm, linewidths=width, zorder=2, rasterized=raster)
-    coloured.set_array(values)
+    end = (float(np.abs(strain).max()) if limit is None else limit) or 1.0
+    coloured = lines(segments, array=strain, cmap=STRAIN, norm=Normalize(-end, end), **look)
     ax.add_collection(coloured)
-    extend = ("min" if values.min() < -end else "") + ("max" if values.max() > end else "")
+    extend = ("min" if strain.min() < -end else "") + ("max" if strain.max() > end else "")
     ends = {"": "neither", "minmax": "both"}.get(extend, extend)
     colour_bar(ax, coloured, "strain of links (length − d)/d", extend=ends)
 
@@ -136,16 +118,14 @@ def collapse(diagram: CollapseDiagram, *, ax: Axes | None = None) -> Axes:
         Shortest distances, sizes and ratios.
     """
     axes = ensure_axes(ax)
-    n, ratio = np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :])
+    places = np.stack(np.broadcast_arrays(diagram.sizes[:, None], diagram.ratios[None, :]))
     apart, together, failed = diagram.coincident == 0, diagram.coincident > 0, diagram.coincident < 0
-    dots = axes.scatter(
-        n[apart], ratio[apart], c=diagram.closest[apart], cmap="cividis", vmin=0.0, vmax=1.0, s=34, zorder=3
-    )
-    axes.scatter(n[together], ratio[together], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
+    look: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0, "s": 34, "zorder": 3}
+    dots = axes.scatter(*places[:, apart], c=diagram.closest[apart], **look)
+    axes.scatter(*places[:, together], marker="x", color=VERMILLION, s=30, zorder=3, label="agents coincide")
     if failed.any():
-        axes.scatter(n[failed], ratio[failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
-    onset = diagram.onset()
-    axes.plot(diagram.sizes, onset, color=INK, linestyle="--", linewidth=1.0, label="onset")
+        axes.scatter(*places[:, failed], marker="_", color=MUTED, s=30, label="no equilibrium found")
+    axes.plot(diagram.sizes, diagram.onset(), color=INK, linestyle="--", linewidth=1.0, label="onset")
     colour_bar(axes, dots, "least distance over d", share=1.0)
     return _over_size(axes, diagram.sizes.tolist(), "c1γ/c1α")
 
@@ -198,8 +178,8 @@ def _over_size(ax: Any, sizes: Sequence[int], label: str, *, logarithmic: bool =
     """Label axes over the number of agents; few sizes are all named."""
     if logarithmic:
         ax.set_yscale("log")
-        ax.yaxis.set_major_formatter(ScalarFormatter())
-        ax.yaxis.set_minor_formatter(ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter())
+        minor = ScalarFormatter() if np.ptp(np.log10(ax.get_ylim())) < 1.5 else NullFormatter()
+        ax.yaxis.set(major_formatter=ScalarFormatter(), minor_formatter=minor)
     if len(sizes) <= 12:
         ax.xaxis.set_major_locator(FixedLocator(sizes))
     return finish(ax, "n, agents", label)

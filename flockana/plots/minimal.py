@@ -1,20 +1,14 @@
 """Perception graphs of the minimal bearing-distance model, coloured by the strain of their edges."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.minimal import MinimalFlocking
-from flockana.plots.snapshot import configuration, draw_sample, drawn_law, nearest_sample
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.snapshot import configuration, draw_sample, drawn_law, snapshot
 
 
 def perception(
@@ -36,29 +30,14 @@ def perception(
         By default the end.
     bar : bool
         Draw the colour bar of (length − ρ)/ρ.
-
-    Raises
-    ------
-    ArgumentError
-        If it is a run of another law, or on a time that is not of the run.
     """
-    ensure_run(trajectory)
-    law = drawn_law(trajectory)
-    if not isinstance(law, MinimalFlocking):
+    if not isinstance(drawn_law(trajectory), MinimalFlocking):
         raise ArgumentError(f"law = {trajectory.law!r}: expected a run of MinimalFlocking")
-    return _draw(law, trajectory, nearest_sample(trajectory.t, time), ax=ax, velocities=velocities, bar=bar)
+    return snapshot(trajectory, time, ax=ax, velocities=velocities, bar=bar)
 
 
 @draw_sample.register(MinimalFlocking)
 def _draw(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
-    q = trajectory.q[k]
-    data = law.edge_data(q)
-    return configuration(
-        q,
-        trajectory.p[k] if velocities else None,
-        d=data.rho,
-        edges=np.column_stack([data.tail, data.head]),
-        ax=ax,
-        bar=bar,
-        title=f"t = {trajectory.t[k]:.4g}",
-    )
+    q, p = trajectory.q[k], trajectory.p[k] if velocities else None
+    data, title = law.edge_data(q), f"t = {trajectory.t[k]:.4g}"
+    return configuration(q, p, d=data.rho, edges=np.column_stack([data.tail, data.head]), ax=ax, bar=bar, title=title)

@@ -7,18 +7,17 @@ bounding ball's points trace the outline. An unbounded solid is traced as far as
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from flockana.base.checks import FloatArray
 from flockana.base.kinds import check_kinds
 from flockana.environment.obstacles import Obstacle
-from flockana.plots.style import FAINT, MUTED, ensure_axes, finish
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from flockana.plots.palette import FAINT, MUTED
+from flockana.plots.style import ensure_axes, finish
 
 _ROUND = 720  # points of an outline in the plane: corners are met exactly, arcs to 4e-5 of their radius
 _MESH = 19, 37  # of a surface in space
@@ -74,9 +73,8 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
         corners = np.array([[x, y] for x, y in zip(ends[[0, 1, 1, 0], 0], (-0.3, -0.3, 0.3, 0.3), strict=True)])
     else:
         angle = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
-        corners, _ = _nearest_points(
-            solid, centre + _OUTSIDE * radius * np.column_stack([np.cos(angle), np.sin(angle)])
-        )
+        disc = np.column_stack([np.cos(angle), np.sin(angle)])
+        corners, _ = _nearest_points(solid, centre + _OUTSIDE * radius * disc)
     patch = Polygon(corners, closed=True, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1)
     (ax.add_patch if bounded else ax.add_artist)(patch)  # an artist does not widen the view
 

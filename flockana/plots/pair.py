@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.kinds import check_kinds
+from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import deviation_energy
-from flockana.plots.style import BLUE, MUTED, VERMILLION, ensure_axes, finish, place_legend
+from flockana.plots.palette import BLUE, MUTED, VERMILLION
+from flockana.plots.style import ensure_axes, finish, mark, place_legend
 from flockana.plots.symbols import typeset
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.interactions import AlphaInteraction
 
 _SAMPLES = 600
 
@@ -35,9 +31,8 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax = ensure_axes(ax)
     x = np.linspace(0.0, 1.15 * interaction.r, _SAMPLES)
     ax.plot(x, interaction.psi_alpha(interaction.sigma_norm(x)), color=VERMILLION, linestyle="-")
-    ax.annotate(
-        typeset(f"c* = {interaction.c_star:.4g}"), (0.0, interaction.c_star), (30, -4), textcoords="offset points"
-    )
+    text, c_star = typeset(f"c* = {interaction.c_star:.4g}"), interaction.c_star
+    ax.annotate(text, (0.0, c_star), (30, -4), textcoords="offset points")
     return _frame(ax, interaction, "ψ_α, the pair's potential")
 
 
@@ -49,13 +44,8 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     """
     ax, d, r = ensure_axes(ax), interaction.d, interaction.r
     x = np.linspace(-0.5 * d, 1.15 * r, _SAMPLES)
-    ax.plot(
-        x,
-        interaction.psi_alpha(interaction.sigma_norm(np.abs(x))) / interaction.c_star,
-        color=VERMILLION,
-        linestyle="--",
-        label="V, the pair's potential, over c*",
-    )
+    psi = interaction.psi_alpha(interaction.sigma_norm(np.abs(x))) / interaction.c_star
+    ax.plot(x, psi, color=VERMILLION, linestyle="--", label="V, the pair's potential, over c*")
     zero, within = deviation_energy([[0.0], [0.0]], d, r), np.nextafter(r, 0.0)
     inside = np.append(x[x < r], within)
     values = np.array([deviation_energy([[0.0], [at]], d, r) for at in inside]) / zero
@@ -64,15 +54,13 @@ def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
     ax.plot([r], [values[-1]], "o", color=BLUE, markerfacecolor="white", markersize=5)
     ax.plot([r], [0.0], "o", color=BLUE, markersize=5)
     _frame(ax, interaction, "energy over its value at 0")
-    ax.set_xlim(x[0], x[-1])
-    ax.set_xlabel("position of one agent relative to the other (length)")
+    ax.set(xlim=(x[0], x[-1]), xlabel="position of one agent relative to the other (length)")
     place_legend(ax)
     return ax
 
 
 def _frame(ax: Axes, interaction: AlphaInteraction, label: str) -> Axes:
-    for name, x in (("d", interaction.d), ("r", interaction.r)):
-        ax.axvline(x, color=MUTED, linewidth=0.8, linestyle=":")
-        ax.annotate(typeset(name), (x, 1.0), (3, -9), xycoords=("data", "axes fraction"), textcoords="offset points")
+    for name in "dr":
+        mark(ax, getattr(interaction, name), name, offset=(3, -9), height=1.0)
     ax.set_xlim(0.0, 1.15 * interaction.r)
     return finish(ax, "distance of the pair (length)", label)

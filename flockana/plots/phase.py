@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, INK, MUTED, VERMILLION, ensure_axes, finish, line_width_and_opacity
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike
+from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
+from flockana.plots.style import ensure_axes, finish, line_width_and_opacity
 
 _LEVELS = 14
 _ORBITS = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 1.25, 1.75, 2.5, 4.0])  # of the separatrix, from the least energy on
@@ -41,11 +40,6 @@ def phase_portrait(
         and of more energy about it.
     labels : (str, str)
         Of the axes, with units.
-
-    Raises
-    ------
-    ArgumentError
-        If the two do not have the same shape, or a separatrix is given without an energy.
     """
     x, v = (np.asarray(values, dtype=np.float64) for values in (position, velocity))
     if x.shape != v.shape or x.ndim not in (1, 2):

@@ -1,30 +1,21 @@
 """Connectivity of the MSN project, rank(A)/n, over time beside the correct rank(L)/(n − 1)."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from flockana.base.errors import ArgumentError
+from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.plots.style import BLUE, INK, VERMILLION, over_time
-
-if TYPE_CHECKING:
-    from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.palette import BLUE, INK, VERMILLION
+from flockana.plots.style import over_time
 
 _SAMPLES = 271  # every other of the project's 540 iterations
 
 
 @over_time("connectivity, three ways")
 def rank_connectivity(trajectory: Trajectory, ax: Any) -> None:
-    """Draw rank(A)/n over time, with a zero diagonal and as typeset, and C = rank(L)/(n − 1) (erratum E8).
-
-    Raises
-    ------
-    ArgumentError
-        If the law has no interaction range.
-    """
+    """Draw rank(A)/n over time, with a zero diagonal and as typeset, and C = rank(L)/(n − 1) (erratum E8)."""
     pair = trajectory.law.pair
     if pair is None or not np.isfinite(pair.range):
         raise ArgumentError(f"law = {trajectory.law!r}: expected one whose agents interact within a range")

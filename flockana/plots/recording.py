@@ -8,7 +8,8 @@ import numpy as np
 
 from flockana.base.checks import ensure_known
 from flockana.base.vectors import lengths
-from flockana.plots.style import BLUE, ensure_axes, finish_over_time
+from flockana.plots.palette import BLUE
+from flockana.plots.style import ensure_axes, finish_over_time
 
 if TYPE_CHECKING:
     import xarray
@@ -23,12 +24,13 @@ def recorded_measure(seen: xarray.Dataset, name: str, *, ax: Axes | None = None)
     values, ax = seen[ensure_known("measure", name, names)], ensure_axes(ax)
     t, error = seen["time"].values, seen[f"{name}_error"].values
     ax.plot(t, values, color=BLUE, linestyle="-")
+    positive = float(values.min()) >= 0.0
     if np.isfinite(error).any():
-        low = np.maximum(values - error, 0.0) if float(values.min()) >= 0.0 else values - error
+        low = np.maximum(values - error, 0.0) if positive else values - error
         ax.fill_between(t, low, values + error, color=BLUE, alpha=0.25, linewidth=0.0)
     unit = values.attrs.get("units", "")
     label = str(values.attrs.get("long_name", name)) + (f" ({unit})" if unit not in ("", "1") else "")
-    if float(values.min()) >= 0.0:
+    if positive:
         ax.set_ylim(bottom=0.0)
     return finish_over_time(ax, t, label)
 
@@ -42,7 +44,5 @@ def residuals(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
     edges: Any = np.concatenate([t - 0.5 * step, [t[-1] + 0.5 * step]])
     shown = ax.pcolormesh(edges, np.arange(size.shape[0] + 1) - 0.5, size, cmap="cividis_r", rasterized=True)
     ax.figure.colorbar(shown, ax=ax, label="‖residual‖ (length/time²)")
-    ax.set_xlabel("time")
-    ax.set_ylabel("agent")
-    ax.set_title(f"left unexplained by {type(comparison.law).__name__}")
+    ax.set(xlabel="time", ylabel="agent", title=f"left unexplained by {type(comparison.law).__name__}")
     return ax

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from flockana.base.checks import FloatArray, ensure_points
+from flockana.base.checks import ensure_points
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
 from flockana.measures.reynolds import Reynolds
-from flockana.plots.style import BLUE, FAINT, GREEN, INK, VERMILLION, ensure_axes, finish, frame_space
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, VERMILLION
+from flockana.plots.style import ensure_axes, finish, frame_space
 
 _ARROW = 0.1  # longest arrow as a share of the axes' width
 
@@ -29,11 +28,6 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
         What `flockana.measures.reynolds.reynolds` found.
     q : array_like, shape (n, 2)
         The positions that it was given.
-
-    Raises
-    ------
-    ArgumentError
-        If the flock is not in the plane, or has another number of agents than `parts`.
     """
     points = ensure_points("q", q)
     if points.shape != parts.total.shape or points.shape[1] != 2:
@@ -46,24 +40,16 @@ def rules(parts: Reynolds, q: Any, *, ax: Axes | None = None) -> Axes:
             lines = points[parts.links[chosen]]
             axes.add_collection(LineCollection(lines, colors=colour, linestyles=dash, linewidths=0.8, label=name))
     axes.scatter(*points.T, s=12, color=INK, linewidths=0, zorder=3)
-    arrows = (
-        ("flock centring", parts.centring, BLUE),
-        ("collision avoidance", parts.avoidance, VERMILLION),
-        ("velocity matching", parts.matching, GREEN),
-    )
-    longest = max(float(np.linalg.norm(part, axis=1).max()) for _, part, _ in arrows)
-    for name, part, colour in arrows:
-        _arrows(axes, points, part, longest, colour, name)
-    scale = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
+    names = "flock centring", "collision avoidance", "velocity matching"
+    forces = parts.centring, parts.avoidance, parts.matching
+    longest = max(float(np.linalg.norm(part, axis=1).max()) for part in forces)
+    scale = {"angles": "xy", "scale_units": "width", "scale": longest / _ARROW, "width": 0.004, "zorder": 4}
+    for name, part, colour in zip(names, forces, (BLUE, VERMILLION, GREEN), strict=True):
+        acts = np.linalg.norm(part, axis=1) > 1e-3 * longest
+        if acts.any():
+            axes.quiver(*points[acts].T, *part[acts].T, color=colour, label=name, **scale)
+    text = f"longest arrow: {longest:.3g} length/time²" if longest > 0.0 else "no rule acts"
     axes.margins(0.12)
     finish(axes)
-    axes.get_legend().set_title(scale, prop={"size": 8})
+    axes.get_legend().set_title(text, prop={"size": 8})
     return frame_space(axes, points, 2)
-
-
-def _arrows(ax: Any, points: FloatArray, part: FloatArray, longest: float, colour: str, name: str) -> None:
-    """Draw the arrows of one rule, at agents on which it acts."""
-    acts = np.linalg.norm(part, axis=1) > 1e-3 * longest
-    if acts.any():
-        scale = {"angles": "xy", "scale_units": "width", "scale": longest / _ARROW, "width": 0.004, "zorder": 4}
-        ax.quiver(*points[acts].T, *part[acts].T, color=colour, label=name, **scale)

@@ -4,8 +4,6 @@ matplotlib makes five artists of every tick, and asks each six times where it st
 its own locators and formatters say where ticks stand and what their numbers are, and no artists are made of them.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -65,15 +63,12 @@ class Ticks:
 class PlainScale(Artist):
     """Fast replacement for matplotlib's drawing of one axis of two-dimensional axes."""
 
-    def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size] | None = None) -> None:
+    def __init__(self, ax: Any, name: str, sizes: dict[tuple[str, float], Size]) -> None:
         super().__init__()
-        self.ax, self.name, self.scale, self._known = (
-            ax,
-            name,
-            getattr(ax, f"{name}axis"),
-            {} if sizes is None else sizes,
-        )
-        self.side = "right" if name == "y" and self.scale.get_tick_params().get("right") else "left"
+        self.ax, self.name, self.scale, self._known = ax, name, getattr(ax, f"{name}axis"), sizes
+        self.k, look = "xy".index(name), self.scale.get_tick_params()
+        self.side = "right" if name == "y" and look.get("right") else "left"
+        self.font = FontProperties(size=look.get("labelsize", self._style("labelsize")))
         self.set_zorder(0.5)  # below what is drawn, as the style has it
         self.scale.set_visible(False)
         ax.add_artist(self)
@@ -81,44 +76,38 @@ class PlainScale(Artist):
 
     def ticks(self, which: str) -> Ticks:
         """Return the major or minor ticks within the limits."""
-        scale, look, pixel = self.scale, self.scale.get_tick_params(which), self.ax.figure.dpi / 72.0
+        scale, look = self.scale, self.scale.get_tick_params(which)
         values = np.asarray(getattr(scale, f"get_{which}ticklocs")(), dtype=np.float64)
         formatter = getattr(scale, f"get_{which}_formatter")()
         numbers = tuple(plain(text) for text in formatter.format_ticks(values)) if values.size else ()
-        at = self._pixels(values)
-        low, high = self.ax.bbox.intervalx if self.name == "x" else self.ax.bbox.intervaly
+        points = np.zeros((values.size, 2))
+        points[:, self.k] = values
+        at = getattr(self.ax, f"get_{self.name}axis_transform")().transform(points)[:, self.k]
+        low, high = getattr(self.ax.bbox, f"interval{self.name}")
         seen = (at >= low - _OUTSIDE) & (at <= high + _OUTSIDE)
         length, width, pad = (
-            float(look.get(key, self._tick_style(f"{which}.{rc}")))
+            float(look.get(key, self._style(f"{which}.{rc}")))
             for key, rc in (("length", "size"), ("width", "width"), ("pad", "pad"))
         )
         shown = tuple(text for text, inside in zip(numbers, seen.tolist(), strict=True) if inside)
-        return Ticks(at[seen], shown, length * pixel, width, pad * pixel, bool(look["gridOn"]))
+        return Ticks(at[seen], shown, length * self._pixel, width, pad * self._pixel, bool(look["gridOn"]))
 
-    def _tick_style(self, key: str) -> Any:
+    def _style(self, key: str) -> Any:
         """Return the style's settings of the ticks of this scale."""
         look: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
         return look[f"{self.name}tick.{key}"]
 
-    def _pixels(self, values: FloatArray) -> FloatArray:
-        zeros, k = np.zeros_like(values), 0 if self.name == "x" else 1
-        points = np.column_stack([values, zeros] if k == 0 else [zeros, values])
-        transform = self.ax.get_xaxis_transform() if k == 0 else self.ax.get_yaxis_transform()
-        pixels: FloatArray = transform.transform(points)[:, k]
-        return pixels
-
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
         """Return the pixels that the scale takes left of, right of, below and above its axes."""
-        kinds, sizes, box = self._kinds(), self._sizes(renderer), self.ax.bbox
-        k, ends = "xy".index(self.name), (0.0, 0.0)
-        low, high = ((box.x0, box.x1), (box.y0, box.y1))[k]
+        kinds, ends = self._kinds(), (0.0, 0.0)
+        low, high = getattr(self.ax.bbox, f"interval{self.name}")
         for at, text in (pair for ticks in kinds for pair in ticks.numbered):
-            half = 0.5 * sizes(text)[k]
+            half = 0.5 * self._size(renderer, text)[self.k]
             ends = max(ends[0], low - at + half), max(ends[1], at + half - high)
         label, power = self.scale.get_label_text(), self._power()
         depth = self._depth(renderer, kinds)
         depth += self._label_pad() + self._label_size(renderer)[1] if label else 0.0
-        extra = sizes(power)[1] + _POWER_PAD * self._pixel if power else 0.0
+        extra = self._size(renderer, power)[1] + _POWER_PAD * self._pixel if power else 0.0
         if self.name == "x":
             return *ends, depth + (0.0 if label else extra), 0.0
         sides = (depth, 0.0) if self.side == "left" else (0.0, depth)
@@ -138,16 +127,9 @@ class PlainScale(Artist):
     def _label_pad(self) -> float:
         return float(self.scale.labelpad) * self._pixel
 
-    def _font(self) -> FontProperties:
-        size = self.scale.get_tick_params().get("labelsize", self._tick_style("labelsize"))
-        return FontProperties(size=size)
-
-    def _sizes(self, renderer: Any) -> Any:
-        font = self._font()
-        return lambda text: self._size(renderer, text, font)
-
-    def _size(self, renderer: Any, text: str, font: FontProperties) -> Size:
-        """Return width, height and descent of a text (cached)."""
+    def _size(self, renderer: Any, text: str, font: FontProperties | None = None) -> Size:
+        """Return width, height and descent of a text, of a number by default (cached)."""
+        font = font or self.font
         key = text, font.get_size_in_points()
         if key not in self._known:
             self._known[key] = renderer.get_text_width_height_descent(text, font, ismath=_typeset(text))
@@ -161,42 +143,37 @@ class PlainScale(Artist):
 
     def _depth(self, renderer: Any, kinds: tuple[Ticks, ...]) -> float:
         """Return the pixels from the axes to the far side of marks and numbers."""
-        sizes, depth = self._sizes(renderer), 0.0
-        for ticks in kinds:
-            if not ticks.at.size:
-                continue
-            extents = [sizes(text)[0] if self.name == "y" else sizes("lp")[1] for text in ticks.numbers if text]
+        depth = 0.0
+        for ticks in (ticks for ticks in kinds if ticks.at.size):
+            texts = [text if self.name == "y" else "lp" for text in ticks.numbers if text]
+            extents = [self._size(renderer, text)[self.name == "x"] for text in texts]
             depth = max(depth, ticks.length + (ticks.pad + max(extents) if extents else 0.0))
         return depth
 
     def draw(self, renderer: Any) -> None:
         """Draw grid lines, marks, numbers, the power of ten that they share, and the name."""
         kinds = self._kinds()
-        for ticks in kinds:
-            if ticks.at.size:
-                self._draw_lines(renderer, ticks)
-                self._draw_numbers(renderer, ticks)
+        for ticks in (ticks for ticks in kinds if ticks.at.size):
+            self._draw_lines(renderer, ticks)
+            self._draw_numbers(renderer, ticks)
         depth = self._depth(renderer, kinds)
         self._draw_power(renderer, depth)
         self._draw_label(renderer, depth)
 
     def _draw_lines(self, renderer: Any, ticks: Ticks) -> None:
-        box, rc = self.ax.bbox, mpl.rcParams
-        foot = {"x": box.y0, "left": box.x0, "right": box.x1}["x" if self.name == "x" else self.side]
-        outward = 1.0 if self.side == "right" and self.name == "y" else -1.0
+        low, high = getattr(self.ax.bbox, f"interval{'yx'[self.k]}")
+        foot, outward = (high, 1.0) if self.side == "right" else (low, -1.0)
         if ticks.grid and self.side == "left":
-            ends = (box.y0, box.y1) if self.name == "x" else (box.x0, box.x1)
-            self._stroke(renderer, ticks.at, ends, rc["grid.color"], rc["grid.linewidth"])
+            self._stroke(renderer, ticks.at, (low, high), mpl.rcParams["grid.color"], mpl.rcParams["grid.linewidth"])
         if ticks.length > 0.0:
             ends = (foot, foot + outward * ticks.length)
-            self._stroke(renderer, ticks.at, ends, self._tick_style("color"), ticks.width)
+            self._stroke(renderer, ticks.at, ends, self._style("color"), ticks.width)
 
     def _stroke(self, renderer: Any, at: FloatArray, ends: tuple[float, float], colour: str, width: float) -> None:
         """Draw parallel lines across the axis at the given places, between two ends."""
         vertices = np.empty((2 * at.size, 2))
-        k = 0 if self.name == "x" else 1
-        vertices[:, k] = np.repeat(at, 2)
-        vertices[:, 1 - k] = np.tile(ends, at.size)
+        vertices[:, self.k] = np.repeat(at, 2)
+        vertices[:, 1 - self.k] = np.tile(ends, at.size)
         codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), at.size)
         context = renderer.new_gc()
         context.set_foreground(colour)
@@ -207,28 +184,27 @@ class PlainScale(Artist):
         context.restore()
 
     def _draw_numbers(self, renderer: Any, ticks: Ticks) -> None:
-        box, sizes = self.ax.bbox, self._sizes(renderer)
-        _, tall, below = sizes("lp")
+        box, (_, tall, below) = self.ax.bbox, self._size(renderer, "lp")
         away = ticks.length + ticks.pad
         for at, text in ticks.numbered:
-            width, height, descent = sizes(text)
+            width, height, descent = self._size(renderer, text)
             if self.name == "x":
                 x, y = at - 0.5 * width, box.y0 - away - (tall - below)
             else:
                 x = box.x0 - away - width if self.side == "left" else box.x1 + away
                 y = at - 0.5 * (height - descent)
-            self._write(renderer, x, y, text, self._font(), self._tick_style("color"))
+            self._write(renderer, x, y, text)
 
     def _draw_power(self, renderer: Any, depth: float) -> None:
         text = self._power()
         if not text:
             return
-        box, (width, height, descent) = self.ax.bbox, self._sizes(renderer)(text)
+        box, (width, height, descent) = self.ax.bbox, self._size(renderer, text)
         if self.name == "x":
             x, y = box.x1 - width, box.y0 - depth - _POWER_PAD * self._pixel - (height - descent)
         else:
             x, y = box.x0 if self.side == "left" else box.x1, box.y1 + _POWER_PAD * self._pixel + descent
-        self._write(renderer, x, y, text, self._font(), self._tick_style("color"))
+        self._write(renderer, x, y, text)
 
     def _draw_label(self, renderer: Any, depth: float) -> None:
         label, box = self.scale.label, self.ax.bbox
@@ -241,9 +217,11 @@ class PlainScale(Artist):
         else:
             x = box.x0 - away - descent if self.side == "left" else box.x1 + away + height - descent
             y, angle = 0.5 * (box.y0 + box.y1 - width), 90.0
-        self._write(renderer, x, y, label.get_text(), label.get_fontproperties(), label.get_color(), angle)
+        self._write(renderer, x, y, label.get_text(), (label.get_fontproperties(), label.get_color(), angle))
 
-    def _write(self, renderer: Any, x: float, y: float, text: str, font: Any, colour: str, angle: float = 0.0) -> None:
+    def _write(self, renderer: Any, x: float, y: float, text: str, look: tuple[Any, str, float] | None = None) -> None:
+        """Write a text, a number by default, from its lower left corner on."""
+        font, colour, angle = look or (self.font, self._style("color"), 0.0)
         context = renderer.new_gc()
         context.set_foreground(colour)
         height = renderer.get_canvas_width_height()[1]

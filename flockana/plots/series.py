@@ -1,30 +1,25 @@
 """Plots of quantities of a run over time."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator, NullFormatter
 
 from flockana.base.errors import UnknownNameError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
 from flockana.measures.profiles import pair_distance_profile
 from flockana.plots.dense import velocities_between
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    PURPLE,
-    VERMILLION,
     curves,
     ensure_axes,
     finish_empty,
     finish_over_time,
+    hairlines,
     levels,
     line_width_and_opacity,
     over_time,
@@ -32,22 +27,11 @@ from flockana.plots.style import (
 )
 from flockana.scenarios.findings import PANEL, component_counts, has_metric
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
-
 _FEW = 12  # components that a linear scale shows as well
 
 
 def measure(trajectory: Trajectory, name: str, *, ax: Axes | None = None) -> Axes:
-    """Draw one metric of a run over time; empty axes say why where the law does not define it.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such metric.
-    """
+    """Draw one metric of a run over time; empty axes say why where the law does not define it."""
     ensure_run(trajectory)
     drawn, ax = trajectory.measure(name), ensure_axes(ax)
     try:
@@ -206,9 +190,7 @@ def clearances(trajectory: Trajectory, ax: Any) -> str | None:
 def speeds(trajectory: Trajectory, ax: Any) -> None:
     """Draw every agent's speed, the speed of the centre of mass, and the γ-agent's as handed to the law."""
     (t, p), target = velocities_between(trajectory), trajectory.law.target
-    width, alpha = line_width_and_opacity(trajectory.n)
-    ax.plot(t, lengths(p), color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label="agents")
+    hairlines(ax, t, lengths(p), "agents")
     curves(ax, t, [(np.linalg.norm(p.mean(axis=1), axis=1), "centre of mass", INK, "-")])
     if target is not None:
         handed = np.array([np.linalg.norm(target.state(s)[1]) for s in t.tolist()])

@@ -4,14 +4,14 @@ A law with a world of its own registers how it is drawn (`draw_sample`) and what
 snapshots, films and the report then show it so. Of a map that steps another law, that law is drawn.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import singledispatch
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 
 from flockana.base.checks import (
@@ -24,31 +24,15 @@ from flockana.base.checks import (
 )
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.interactions import BetaInteraction
 from flockana.measures.nets import components, link_lengths, links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
-from flockana.plots.style import (
-    GREEN,
-    INK,
-    MUTED,
-    PURPLE,
-    STRAIN,
-    VERMILLION,
-    colour_bar,
-    ensure_axes,
-    frame_space,
-    in_plane,
-    lines,
-    write_title,
-)
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.palette import GREEN, INK, MUTED, PURPLE, STRAIN, VERMILLION
+from flockana.plots.style import colour_bar, ensure_axes, frame_space, in_plane, lines, star, write_title
 
 _ARROW = 0.07  # longest arrow as a share of the axes' width
 _MANY = 4.0  # links per agent beyond which they are drawn thinner; a lattice has 3
@@ -78,12 +62,6 @@ def snapshot(
         Draw the colour bar of the strain.
     ranges : bool
         Draw a circle about each agent at the distance within which it interacts, in the plane.
-
-    Raises
-    ------
-    ArgumentError
-        On a time before or after the run, or if circles are asked for where there are none: of a law without a range,
-        or on a line or in space.
     """
     ensure_run(trajectory)
     k = nearest_sample(trajectory.t, time)
@@ -108,29 +86,15 @@ def nearest_sample(t: FloatArray, time: float | None) -> int:
 
 def _range_circles(ax: Any, q: FloatArray, law: Any) -> None:
     """Draw circles at the range of the pair law, or of each agent."""
-    from matplotlib.collections import EllipseCollection
-
     if law.pair is None or not np.isfinite(law.pair.range) or q.shape[1] != 2:
         raise ArgumentError(
             f"ranges = True: expected a law with a range in the plane, not {law!r} for m = {q.shape[1]}"
         )
     own = getattr(law, "ranges", None)
     widths = np.broadcast_to(2.0 * np.asarray(law.pair.range if own is None else own), len(q))
-    turned = np.zeros(len(q))
-    ax.add_collection(
-        EllipseCollection(
-            widths,
-            widths,
-            turned,
-            units="xy",
-            offsets=q,
-            offset_transform=ax.transData,
-            facecolor="none",
-            edgecolor=MUTED,
-            linewidth=0.5,
-            alpha=0.6,
-        )
-    )
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": MUTED, "linewidth": 0.5, "alpha": 0.6}
+    look |= {"units": "xy", "offsets": q, "offset_transform": ax.transData}
+    ax.add_collection(EllipseCollection(widths, widths, np.zeros(len(q)), **look))
 
 
 def drawn_law(trajectory: Trajectory) -> Any:
@@ -143,9 +107,9 @@ def drawn_law(trajectory: Trajectory) -> Any:
 def draw_sample(law: Any, trajectory: Trajectory, k: int, *, ax: Axes | None, velocities: bool, bar: bool) -> Axes:
     """Draw sample k of a run; a law registers its own drawing with ``@draw_sample.register(Law)``."""
     pair, target = law.pair, law.target
-    q, t = trajectory.q[k], float(trajectory.t[k])
+    t = float(trajectory.t[k])
     return configuration(
-        q,
+        trajectory.q[k],
         trajectory.p[k] if velocities else None,
         d=None if pair is None else pair.length,
         r=None if pair is None else pair.range,
@@ -221,11 +185,9 @@ def configuration(
     _multiplicities(axes, x)
     seen = x
     if target is not None:
-        mark = in_plane(np.asarray(target, dtype=np.float64)[None, :])
-        axes.scatter(
-            *mark.T, s=110, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=4, label="γ-agent"
-        )
-        seen = np.vstack([x, mark])
+        place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
+        star(axes, place, label="γ-agent")
+        seen = np.vstack([x, place])
     if len(obstacles):
         seen = np.vstack([seen, in_plane(bounds(obstacles))])
         draw_obstacles(obstacles, ax=axes, view=seen[:, :m])
@@ -251,12 +213,10 @@ def _multiplicities(ax: Any, x: FloatArray) -> None:
     near = links(x, _COINCIDE * extent) if extent else np.array(list(combinations(range(len(x)), 2)))
     if len(near) == 0:
         return
-    groups = components(len(x), near)
+    groups, look = components(len(x), near), {"fontsize": 7, "color": VERMILLION, "ha": "left", "va": "bottom"}
     for group in np.unique(groups[near]):
         here = groups == group
-        ax.text(
-            *x[here].mean(axis=0), f"  ×{here.sum()}", fontsize=7, color=VERMILLION, ha="left", va="bottom", zorder=5
-        )
+        ax.text(*x[here].mean(axis=0), f"  ×{here.sum()}", zorder=5, **look)
 
 
 def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: float | None, bar: bool) -> None:
@@ -272,8 +232,7 @@ def _links(ax: Any, x: FloatArray, points: FloatArray, pairs: Any, d: Any, r: fl
     strain = (link_lengths(points, pairs) - d) / d
     order = np.argsort(-np.abs(strain), kind="stable") if few < 1.0 else slice(None)
     limit = 1.0 if r is None else min(1.0, r / d - 1.0)
-    coloured = lines(x[pairs[order]], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
-    coloured.set_array(strain[order])
+    coloured = lines(x[pairs[order]], array=strain[order], cmap=STRAIN, norm=Normalize(-limit, limit), **look)
     ax.add_collection(coloured)
     if bar:
         colour_bar(ax, coloured, "strain (length − d)/d", extend="min" if limit < 1.0 else "max")
@@ -310,10 +269,8 @@ def velocity_arrows(ax: Any, q: Any, p: Any) -> str:
     extent = float(np.ptp(x, axis=0).max()) or 1.0
     if fastest == 0.0:
         return ""
-    if x.shape[1] == 3:
-        ax.quiver(*x.T, *v.T, length=_ARROW * extent / fastest, color=GREEN, linewidth=0.6, arrow_length_ratio=0.25)
-    else:
-        ax.quiver(
-            *x.T, *v.T, angles="xy", scale_units="width", scale=fastest / _ARROW, width=0.0022, color=GREEN, zorder=2.5
-        )
+    look: dict[str, Any] = {"length": _ARROW * extent / fastest, "linewidth": 0.6, "arrow_length_ratio": 0.25}
+    if x.shape[1] != 3:
+        look = {"angles": "xy", "scale_units": "width", "scale": fastest / _ARROW, "width": 0.0022, "zorder": 2.5}
+    ax.quiver(*x.T, *v.T, color=GREEN, **look)
     return f"   longest arrow: {fastest:.3g} length/time"

@@ -13,21 +13,8 @@ from flockana.base.checks import ensure_links, ensure_points
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.kinds import check_kinds
 from flockana.plots.animation import animate
-from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    PURPLE,
-    VERMILLION,
-    ensure_axes,
-    finish,
-    frame_space,
-    in_plane,
-    lines,
-    write_title,
-)
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, PURPLE, VERMILLION
+from flockana.plots.style import ensure_axes, finish, frame_space, in_plane, lines, star, write_title
 from flockana.plots.symbols import typeset
 from flockana.stability.modes import Mode
 from flockana.stability.motion import mode_motion
@@ -43,23 +30,20 @@ _ARROW = 0.09  # longest arrow as a share of the flock's width
 _RING = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
-def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
+def pole_map(poles: Any, *, ax: Axes | None = None) -> Axes:
     """Draw eigenvalues in the complex plane: zeros as a ring with their number, unstable ones as red triangles.
 
     Parameters
     ----------
     poles : array_like of complex, or mapping of str to array_like
         Eigenvalues; with labels, up to four groups.
-    grid : bool
-        Draw rays of constant damping ratio.
     """
     groups = dict(poles) if isinstance(poles, Mapping) else {"eigenvalues": poles}
     try:
         values = {name: np.asarray(group, dtype=np.complex128).ravel() for name, group in groups.items()}
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(
-            f"poles = {format_value(poles)}: expected complex numbers, or groups of them by label"
-        ) from None
+        text = f"poles = {format_value(poles)}: expected complex numbers, or groups of them by label"
+        raise ArgumentError(text) from None
     whole = np.concatenate([*values.values(), np.empty(0)])
     if whole.size == 0 or np.isnan(whole).any():
         raise ArgumentError(f"poles = {format_value(poles)}: expected at least one eigenvalue, and no NaN")
@@ -68,9 +52,8 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     axes.axvline(0.0, color=INK, linewidth=1.0, zorder=1)
     for (marker, colour), (name, group) in zip(_LOOKS, values.items(), strict=False):
         shown = group[(group != 0.0) & (group.real <= 0.0)]
-        axes.plot(
-            shown.real, shown.imag, marker, color=colour, markersize=6.0, markeredgewidth=1.3, label=name, zorder=3
-        )
+        look: dict[str, Any] = {"color": colour, "markersize": 6.0, "markeredgewidth": 1.3, "zorder": 3}
+        axes.plot(shown.real, shown.imag, marker, label=name, **look)
     grows, zeros = whole[whole.real > 0.0], int(np.sum(whole == 0.0))
     if grows.size:
         axes.plot(grows.real, grows.imag, "^", color=VERMILLION, markersize=6.0, label="growing", zorder=3)
@@ -82,8 +65,7 @@ def pole_map(poles: Any, *, grid: bool = True, ax: Axes | None = None) -> Axes:
     height = max(1.2 * float(np.abs(whole.imag).max()), 0.2 * float(np.abs(whole).max()))  # real poles have none
     if height:
         axes.set_ylim(-height, height)
-    if grid:
-        _damping_rays(axes)
+    _damping_rays(axes)
     return finish(axes, "Re s (1/time)", "Im s (rad/time)")
 
 
@@ -101,12 +83,9 @@ def _damping_rays(ax: Any) -> None:
             reach = min(-left, abs(edge) / slope)
             ax.plot([0.0, -reach], [0.0, sign * slope * reach], color=FAINT, linestyle="-", linewidth=0.7, zorder=0)
             if sign > 0.0:
-                inside = 0.97 * reach
-                ax.text(
-                    -inside, slope * inside, typeset(f"ζ = {ratio:g}"), color=MUTED, fontsize=7, ha="left", va="top"
-                )
-    ax.set_xlim(left, right)
-    ax.set_ylim(low, high)
+                text, inside = typeset(f"ζ = {ratio:g}"), 0.97 * reach
+                ax.text(-inside, slope * inside, text, color=MUTED, fontsize=7, ha="left", va="top")
+    ax.set(xlim=(left, right), ylim=(low, high))
 
 
 def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes | None = None, title: str = "") -> Axes:
@@ -148,10 +127,9 @@ def mode_shape(q: Any, links: Any, shape: Any, *, target: Any = None, ax: Axes |
         axes.quiver(*points.T, *arrows.T, **look)
     seen = np.vstack([points, points + np.abs(moves), points - np.abs(moves)])
     if target is not None:
-        mark = np.zeros((1, points.shape[1]))
-        mark[0, :m] = target
-        axes.scatter(*mark.T, s=90, marker="*", color=PURPLE, edgecolors="white", linewidths=0.6, zorder=3.5)
-        seen = np.vstack([seen, mark])
+        place = in_plane(np.asarray(target, dtype=np.float64)[None, :])
+        star(axes, place, s=90, color=PURPLE, zorder=3.5)
+        seen = np.vstack([seen, place])
     write_title(axes, title)
     if m == 2:  # neither arrows nor collections count in the view
         axes.update_datalim(seen)
@@ -182,9 +160,6 @@ def animate_mode(
     mode: Mode,
     path: str | os.PathLike[str],
     *,
-    amplitude: float | None = None,
-    periods: float = 2.0,
-    damped: bool = True,
     seconds: float = 4.0,
     fps: float = 15.0,
     velocities: bool = False,
@@ -192,21 +167,16 @@ def animate_mode(
 ) -> Path:
     """Write a film of a mode: GIF always, MP4 where the program ffmpeg is installed.
 
+    For another amplitude or number of periods, animate what `flockana.stability.mode_motion` gives.
+
     Parameters
     ----------
     linearisation : Linearisation
         Where the mode is from.
     path : path-like
         File to write, ``.gif`` or ``.mp4``.
-    amplitude, periods, damped : object
-        As for `flockana.stability.mode_motion`.
     seconds, fps, velocities, progress : object
         As for `flockana.plots.animate`.
-
-    Raises
-    ------
-    ArgumentError, FileError
-        As `flockana.plots.animate`.
     """
-    run = mode_motion(linearisation, mode, amplitude=amplitude, periods=periods, damped=damped)
+    run = mode_motion(linearisation, mode)
     return animate(run, path, seconds=seconds, fps=fps, velocities=velocities, progress=progress)

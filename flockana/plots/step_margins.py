@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from flockana.base.checks import ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.kinds import check_kinds
-from flockana.plots.style import BLUE, INK, VERMILLION, ensure_axes, finish
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from flockana.plots.palette import BLUE, INK, VERMILLION
+from flockana.plots.style import ensure_axes, finish
 
 _HEIGHT, _HATCH = 0.6, "///"  # height of a bar; hatch of an unstable one, visible in grey
 
@@ -27,17 +26,11 @@ def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = 
     ----------
     steps : mapping of str to (float, float)
         By name, the largest stable step and the step in use, such as ``(margin.period, dt)`` of a `SamplingMargin`.
-
-    Raises
-    ------
-    ArgumentError
-        If there is none, or a step is not positive.
     """
     if not steps:
         raise ArgumentError("steps is empty: expected (largest stable step, step in use) by name")
-    ratios = [
-        ensure_positive(f"{name}: margin", a) / ensure_positive(f"{name}: dt", b) for name, (a, b) in steps.items()
-    ]
+    pairs = [(ensure_positive(f"{k}: margin", a), ensure_positive(f"{k}: dt", b)) for k, (a, b) in steps.items()]
+    ratios = [largest / used for largest, used in pairs]
     axes, places = ensure_axes(ax), -np.arange(len(ratios))
     for place, ratio in zip(places, ratios, strict=True):
         stable = ratio > 1.0
@@ -47,9 +40,8 @@ def step_margins(steps: Mapping[str, tuple[float, float]], *, ax: Axes | None = 
         axes.annotate(f"{ratio:.3g}", (ratio, place), textcoords="offset points", va="center", fontsize=8.0, **where)
     axes.axvline(1.0, color=INK, linewidth=1.0)
     axes.set_xscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    ticks: dict[str, Any] = {"major_locator": LogLocator(subs=(1.0, 2.0, 5.0)), "major_formatter": "{x:g}"}
+    axes.xaxis.set(minor_formatter=NullFormatter(), **ticks)
     axes.set_xlim(min(0.4, 0.6 * min(ratios)), 1.8 * max(2.0, *ratios))
     axes.set_yticks(places, list(steps))
-    return finish(axes, "largest stable step over the step in use", "")
+    return finish(axes, "largest stable step over the step in use")

@@ -1,39 +1,26 @@
 """Figure style as a context, without changes to matplotlib's global settings."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import update_wrapper
 from inspect import signature
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from flockana.base.checks import FloatArray, ensure_count
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.palette import BLUE, GREEN, INK, MUTED, PURPLE, VERMILLION
 from flockana.plots.paper import column_size
 from flockana.plots.symbols import typeset
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
-
-# Okabe and Ito's colours, distinguishable with every common colour vision; always paired with a dash
-BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7"
-INK, MUTED, FAINT = "#222222", "#6b6b6b", "#d9d9d9"
-
-# lightness rises from compressed to stretched, so that it reads in grey; the middle is grey, not white, so that
-# a link at its desired length shows on paper
-STRAIN = LinearSegmentedColormap.from_list("strain", ["#00356b", "#2f6fb0", "#8a8a8a", "#d98a2b", "#f5b83d"])
 
 _STYLE = {
     "axes.prop_cycle": cycler(color=[BLUE, VERMILLION, GREEN, PURPLE, INK])
@@ -70,6 +57,7 @@ _STYLE = {
 
 
 LEGEND: dict[str, Any] = {"fontsize": 8, "framealpha": 0.85, "edgecolor": "none"}  # wherever the axes were made
+ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
 
 
 @contextmanager
@@ -201,6 +189,16 @@ def levels(ax: Any, styles: Iterable[tuple[float, str, str, str]]) -> None:
         ax.axhline(value, color=colour, linestyle=dash, linewidth=1.1, label=label)
 
 
+def mark(
+    ax: Any, x: float, name: str = "", *, offset: tuple[float, float] = (3, 4), height: float = 0.0, **look: Any
+) -> None:
+    """Draw a dotted line at x, and its name beside it at a height of the axes; `width` is the line's."""
+    ax.axvline(x, color=MUTED, linewidth=look.pop("width", 0.8), linestyle=":")
+    if name:
+        look |= {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points"}
+        ax.annotate(typeset(name), (x, height), offset, **look)
+
+
 def finish_empty(ax: Any, y: str, reason: str) -> Axes:
     """Show a reason in the middle of empty axes, and return them."""
     ax.set_xticks([])
@@ -218,18 +216,9 @@ def write_title(ax: Any, title: str, **look: Any) -> None:
 def place_legend(ax: Any) -> None:
     """Put the legend above the axes, in as many columns as fit their width."""
     handles, labels = ax.get_legend_handles_labels()
+    look = LEGEND | ABOVE | {"handlelength": 1.8, "columnspacing": 1.2}
     for columns in range(min(len(handles), 3 if len(handles) in (3, 5, 6) else 4), 0, -1):
-        legend = ax.legend(
-            handles,
-            [typeset(label) for label in labels],
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.0),
-            ncols=columns,
-            borderaxespad=0.2,
-            handlelength=1.8,
-            columnspacing=1.2,
-            **LEGEND,
-        )
+        legend = ax.legend(handles, [typeset(label) for label in labels], ncols=columns, **look)
         if columns == 1 or legend.get_window_extent().width <= _WIDER * ax.get_window_extent().width:
             return
 
@@ -242,6 +231,19 @@ def colour_bar(ax: Any, colours: Any, label: str, *, extend: str = "neither", sh
     beside.tick_params(labelsize=_STYLE["ytick.labelsize"], colors=MUTED)
     beside.yaxis.label.set(size=_STYLE["axes.labelsize"], color=INK)
     return scale
+
+
+def star(ax: Any, places: FloatArray, **look: Any) -> None:
+    """Draw targets or leaders as stars."""
+    look = {"s": 110, "color": VERMILLION, "zorder": 4} | look
+    ax.scatter(*places.T, marker="*", edgecolors="white", linewidths=0.6, **look)
+
+
+def hairlines(ax: Any, x: Any, values: FloatArray, label: str, *, colour: str = BLUE, crowd: int = 1) -> None:
+    """Draw a faint line for each column, fainter the more there are, and one entry of the legend."""
+    width, alpha = line_width_and_opacity(crowd * max(1, values.shape[1]))
+    ax.plot(x, values, color=colour, linestyle="-", linewidth=width, alpha=alpha)
+    ax.plot([], [], color=colour, linestyle="-", linewidth=0.8, label=label)
 
 
 def line_width_and_opacity(n: int) -> tuple[float, float]:
@@ -261,19 +263,22 @@ def lines(segments: Any, **look: Any) -> Any:
 
 def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
     """Label the axes of space and scale them equally."""
+    ax.set(**{f"{name}label": typeset(f"{name} (length)") for name in "xyz"[:m]})
     if m == 1:
-        ax.set(xlabel=typeset("x (length)"), yticks=[], ylim=(-1.0, 1.0))
-        return ax  # type: ignore[no-any-return]
-    names = "xyz"[:m]
-    for name in names:
-        getattr(ax, f"set_{name}label")(typeset(f"{name} (length)"))
-    if m == 2:
+        ax.set(yticks=[], ylim=(-1.0, 1.0))
+    elif m == 2:
         ax.set_aspect("equal", adjustable="datalim")
-        return ax  # type: ignore[no-any-return]
-    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.82)  # a cube, with room for the labels, which the layout does not measure
-    low, high = points.min(axis=0), points.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
-    for name, centre in zip(names, middle.tolist(), strict=True):
-        getattr(ax, f"set_{name}lim")(centre - half, centre + half)
-        getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(4))
+    else:
+        # a cube, with room for the labels, which the layout does not measure
+        ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.82)
+        low, high = points.min(axis=0), points.max(axis=0)
+        middle, half = 0.5 * (low + high), 0.53 * float((high - low).max()) or 1.0
+        limit(ax, middle - half, middle + half)
+        for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+            axis.set_major_locator(MaxNLocator(4))
     return ax  # type: ignore[no-any-return]
+
+
+def limit(ax: Any, low: FloatArray, high: FloatArray) -> None:
+    """Limit axes of the plane or of space to a box."""
+    ax.set(**{f"{name}lim": ends for name, *ends in zip("xyz", low.tolist(), high.tolist(), strict=False)})

@@ -1,30 +1,16 @@
 """Paths in space: of every agent, and of the centre of mass against the γ-agent."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.predicates import ensure_run
-from flockana.plots.style import (
-    BLUE,
-    INK,
-    MUTED,
-    VERMILLION,
-    ensure_axes,
-    finish,
-    frame_space,
-    line_width_and_opacity,
-    lines,
-)
+from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.palette import BLUE, INK, MUTED, VERMILLION
+from flockana.plots.style import ensure_axes, finish, frame_space, limit, line_width_and_opacity, lines, star
 from flockana.plots.symbols import typeset
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
 
 _STILL = 1e-6  # of the flock's extent: a centre that moves by less stands still
 
@@ -63,8 +49,7 @@ def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
     if trajectory.m > 1 and float(np.ptp(points, axis=0).max()) < _STILL * size:
         if trajectory.m == 2:
             ax.set_aspect("equal", adjustable="box")  # else the limits below are for matplotlib to change
-        for name, middle in zip("xyz", points[0].tolist(), strict=False):
-            getattr(ax, f"set_{name}lim")(middle - 0.5 * size, middle + 0.5 * size)
+        limit(ax, points[0] - 0.5 * size, points[0] + 0.5 * size)
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
@@ -79,7 +64,7 @@ def _target(ax: Any, trajectory: Trajectory) -> tuple[FloatArray, ...]:
         return ()
     path = _plane(trajectory.t, np.array([target.position(t) for t in trajectory.t.tolist()]))
     ax.plot(*path.T, color=VERMILLION, linestyle="--", linewidth=1.4, label="γ-agent", zorder=4)
-    ax.scatter(*path[-1:].T, s=90, marker="*", color=VERMILLION, edgecolors="white", linewidths=0.6, zorder=5)
+    star(ax, path[-1:], s=90, zorder=5)
     return (path,)
 
 

@@ -1,12 +1,11 @@
 """Zone-based flocking: snapshots with obstacle zones, box and aliens, and series against their bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import combinations, product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 
@@ -14,37 +13,17 @@ from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import lengths
 from flockana.dynamics.predicates import ensure_run
+from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.zone_world import ZoneWorld
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import links
 from flockana.plots.obstacles import bounds
 from flockana.plots.obstacles import obstacles as draw_obstacles
+from flockana.plots.palette import BLUE, FAINT, GREEN, INK, MUTED, ORANGE, PURPLE, VERMILLION
 from flockana.plots.series import pair_distances
 from flockana.plots.snapshot import configuration, draw_sample, in_view, nearest_sample, velocity_arrows
-from flockana.plots.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    PURPLE,
-    VERMILLION,
-    curves,
-    ensure_axes,
-    frame_space,
-    levels,
-    line_width_and_opacity,
-    lines,
-    over_time,
-    write_title,
-)
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from flockana.dynamics.trajectory import Trajectory
+from flockana.plots.style import curves, ensure_axes, frame_space, hairlines, levels, lines, over_time, write_title
 
 _AS_LINES = 5000  # pairs
 
@@ -67,11 +46,6 @@ def zones(
     ----------
     time : float, optional
         By default the end.
-
-    Raises
-    ------
-    ArgumentError
-        If it is a run of another law, or of agents on a line, or on a time that is not of the run.
     """
     ensure_run(trajectory)
     law, m = _law(trajectory), trajectory.m
@@ -137,23 +111,21 @@ def _triangles(ax: Any, q: FloatArray, p: FloatArray, heading: FloatArray, law: 
 
 def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> None:
     """Draw obstacles, buffers, territories and box."""
+    grey: dict[str, Any] = {"facecolor": FAINT, "edgecolor": MUTED, "linewidth": 0.8, "zorder": 1}
     for solid in world.obstacles:
         disc = solid if isinstance(solid, Sphere) else solid.enclosing_circle()
         if isinstance(solid, Sphere):
-            ax.add_patch(Circle(disc.centre, disc.radius, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
+            ax.add_patch(Circle(disc.centre, disc.radius, **grey))
         else:
-            ax.add_patch(Polygon(solid.vertices, facecolor=FAINT, edgecolor=MUTED, linewidth=0.8, zorder=1))
+            ax.add_patch(Polygon(solid.vertices, **grey))
         if buffer:
             ax.add_patch(Circle(disc.centre, disc.radius, fill=False, edgecolor=PURPLE, linestyle="--", linewidth=1.0))
     for alien in world.aliens:
-        if alien.territory is not None:
-            ax.add_patch(
-                Polygon(alien.territory.vertices, facecolor=ORANGE, edgecolor=ORANGE, alpha=0.25, linewidth=0.8)
-            )
+        if (land := alien.territory) is not None:
+            ax.add_patch(Polygon(land.vertices, facecolor=ORANGE, edgecolor=ORANGE, alpha=0.25, linewidth=0.8))
     if world.box is not None:
-        low, high = np.array(world.box.low), np.array(world.box.high)
-        width, height = (high - low).tolist()
-        ax.add_patch(Rectangle(world.box.low, width, height, fill=False, edgecolor=INK, linewidth=1.2))
+        size = np.subtract(world.box.high, world.box.low).tolist()
+        ax.add_patch(Rectangle(world.box.low, *size, fill=False, edgecolor=INK, linewidth=1.2))
 
 
 def _space(ax: Any, world: ZoneWorld) -> None:
@@ -177,7 +149,7 @@ def zone_distances(trajectory: Trajectory, ax: Any) -> None:
         pair_distances(trajectory, ax=ax)
     else:
         apart = lengths(trajectory.q[:, first] - trajectory.q[:, second])
-        _hairlines(ax, t, apart, "pairs")
+        hairlines(ax, t, apart, "pairs", crowd=2)
         curves(ax, t, [(apart.min(axis=1), "least (D)", INK, "-")] if first.size else ())
     levels(ax, zip(law.radii.reach, "rca", (VERMILLION, PURPLE, GREEN), ("--", "-.", ":"), strict=True))
     ax.set_ylim(bottom=0.0)
@@ -199,11 +171,8 @@ def zone_controls(trajectory: Trajectory, ax: Any) -> None:
 @over_time("least distance (length)")
 def zone_safety(trajectory: Trajectory, ax: Any) -> str | None:
     """Draw the distance of the flock from obstacles (bounded between the steps too), walls and aliens."""
-    shown = (
-        ("obstacle_clearance_bound", "obstacle", BLUE, "-"),
-        ("wall_distance", "wall", GREEN, "-."),
-        ("alien_distance", "alien", VERMILLION, "--"),
-    )
+    shown = [("obstacle_clearance_bound", "obstacle", BLUE, "-"), ("wall_distance", "wall", GREEN, "-.")]
+    shown.append(("alien_distance", "alien", VERMILLION, "--"))
     if not _measured(ax, trajectory, shown):
         return "nothing to keep clear of"
     ax.axhline(0.0, color=INK, linewidth=0.8, linestyle="-")
@@ -229,14 +198,7 @@ def _measured(ax: Any, trajectory: Trajectory, styles: Iterable[tuple[str, str, 
 
 def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, others: Any = ()) -> None:
     """Draw the values of all agents, their mean and the bound."""
-    _hairlines(ax, t, values, "agents")
+    hairlines(ax, t, values, "agents", crowd=2)
     curves(ax, t, [(values.mean(axis=1), "mean", INK, "-")])
     levels(ax, [*others, (bound, "bound", VERMILLION, "--")])
     ax.set_ylim(0.0, 1.08 * bound)
-
-
-def _hairlines(ax: Any, t: FloatArray, values: FloatArray, label: str) -> None:
-    """Draw a faint line for each column, and one entry of the legend."""
-    width, alpha = line_width_and_opacity(2 * max(1, values.shape[1]))
-    ax.plot(t, values, color=BLUE, linestyle="-", linewidth=width, alpha=alpha)
-    ax.plot([], [], color=BLUE, linestyle="-", linewidth=0.8, label=label)

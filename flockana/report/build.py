@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable
 from contextlib import ExitStack
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from importlib.resources import files
 from itertools import count
 from pathlib import Path
@@ -50,11 +50,8 @@ def ensure_directory(directory: str | os.PathLike[str]) -> Path:
         with tempfile.TemporaryFile(dir=path):
             pass
     except OSError as error:
-        reason = (
-            "there is a file of that name"
-            if os.path.exists(path) and not os.path.isdir(path)
-            else error.strerror or error
-        )
+        taken = os.path.exists(path) and not os.path.isdir(path)
+        reason = "there is a file of that name" if taken else error.strerror or error
         raise FileError(f"cannot write to {path}: {reason}; choose a folder you may write to") from error
     return path
 
@@ -105,7 +102,8 @@ def write_report(
         folder = ensure_directory(folder / UNFINISHED)
     pages = [page(r) if isinstance(r, ScenarioResult | FixedResult) else r for r in results]
     run = _run_facts(seed, seconds, complete) | {"of": of}
-    texts = {JSON: _json(pages, run, statistics), HTML: _html(pages, run, statistics, comparison, flocks)}
+    html = _html(pages, run, flocks, statistics=statistics, comparison=comparison)
+    texts = {JSON: _json(pages, run, statistics), HTML: html}
     with ExitStack() as both:  # neither takes its place before both are whole
         partials = {name: both.enter_context(atomic_write(folder / name, remedy=_REMEDY)) for name in texts}
         for name, text in texts.items():
@@ -126,11 +124,9 @@ def verdicts_json(
 
 
 def _json(pages: list[Page], run: dict[str, Any], statistics: StatisticsSection | None) -> str:
-    data = run | {
-        "surprises": [text for page in pages for text in page.surprises],
-        "verdicts": [finding.to_dict() for page in pages for finding in page.findings],
-        "statistics": None if statistics is None else statistics.to_dict(),
-    }
+    data = run | {"surprises": [text for page in pages for text in page.surprises]}
+    data["verdicts"] = [finding.to_dict() for page in pages for finding in page.findings]
+    data["statistics"] = None if statistics is None else statistics.to_dict()
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -142,15 +138,8 @@ def _run_facts(seed: int, seconds: float | None, complete: bool) -> dict[str, An
         "seconds": None if seconds is None else round(seconds, 2),
         "complete": complete,
         "python": platform.python_version(),
-        "libraries": {name: _version(name) for name in _LIBRARIES},
+        "libraries": {name: version(name) for name in _LIBRARIES},
     }
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "unknown"
 
 
 def page_environment() -> Environment:
@@ -169,15 +158,10 @@ def page_environment() -> Environment:
     return environment
 
 
-def _html(
-    pages: list[Page],
-    run: dict[str, Any],
-    statistics: StatisticsSection | None,
-    comparison: ComparisonSection | None,
-    flocks: LinearisedFlocks,
-) -> str:
-    findings = [finding for page in pages for finding in page.findings]
-    counts: Counter[str] = Counter(finding.verdict.status for finding in findings)
+def _html(pages: list[Page], run: dict[str, Any], flocks: LinearisedFlocks, **sections: Any) -> str:
+    shown = [(page, f, verdict_id(page.subject, f.verdict.theorem)) for page in pages for f in page.findings]
+    counts: Counter[str] = Counter(finding.verdict.status for _, finding, _ in shown)
+    verdicts, whole = [finding.verdict for _, finding, _ in shown], run["of"] is None
     return (
         page_environment()
         .get_template("template.html.j2")
@@ -186,45 +170,34 @@ def _html(
             scenarios=[page for page in pages if isinstance(page, ScenarioPage)],
             fixed=[page for page in pages if isinstance(page, FixedPage)],
             lattices=lattice_section(pages),
-            statistics=statistics,
-            comparison=comparison,
             stability=stability_section(pages, flocks),
             errata=errata(),
             sorts=SORTS,
             foreword=FOREWORD,
-            checked=_checked(pages),
-            coverage={"sources": coverage(), "anchors": anchors(pages)} if run["of"] is None else None,
-            front=front_findings(pages) if run["of"] is None else (),
+            checked={finding.verdict.theorem: anchor for _, finding, anchor in reversed(shown)},  # where it is first
+            coverage={"sources": coverage(), "anchors": anchors(pages)} if whole else None,
+            front=front_findings(pages) if whole else (),
             counts=[(status, counts[status]) for status in _STATUSES],
             surprises=_unexpected(pages),
-            sources=sorted({source_name(f.references[0]) for f in findings if f.references}),
-            rigours=sorted({f.verdict.rigour for f in findings}),
+            sources=sorted({source_name(f.references[0]) for _, f, _ in shown if f.references}),
+            rigours=sorted({verdict.rigour for verdict in verdicts}),
             player_style=Markup(style()),
             player_script=Markup(script()),
             report_script=Markup((files("flockana.report") / "report.js").read_text(encoding="utf-8")),
             report_style=Markup((files("flockana.report") / "report.css").read_text(encoding="utf-8")),
-            tolerances=[tolerance_rows(t) for t in dict.fromkeys(f.verdict.tolerances for f in findings)],
+            tolerances=[tolerance_rows(t) for t in dict.fromkeys(verdict.tolerances for verdict in verdicts)],
+            **sections,
         )
     )
-
-
-def _checked(pages: list[Page]) -> dict[str, str]:
-    """Return the anchor in the page at which each theorem is first checked."""
-    found: dict[str, str] = {}
-    for each in pages:
-        subject = each.name if isinstance(each, ScenarioPage) else "fixed"
-        for finding in each.findings:
-            found.setdefault(finding.verdict.theorem, verdict_id(subject, finding.verdict.theorem))
-    return found
 
 
 def _unexpected(pages: list[Page]) -> list[tuple[str, str]]:
     """Return (anchor in the page, text) of each difference from the expected statuses."""
     found = []
     for each in pages:
-        subject = each.name if isinstance(each, ScenarioPage) else "fixed"
         if isinstance(each, ScenarioPage) and each.early_end:
             found.append((scenario_id(each.name), each.early_end))
         for finding in each.findings:
-            found += [(verdict_id(subject, finding.verdict.theorem), text) for text in finding.surprises]
+            anchor = verdict_id(each.subject, finding.verdict.theorem)
+            found += [(anchor, text) for text in finding.surprises]
     return found

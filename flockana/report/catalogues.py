@@ -43,19 +43,10 @@ def theorem_entries() -> list[dict[str, Any]]:
             if key in expected:
                 expected[key].add(status)
     entries = []
-    for name in theorems():
-        known = theorem(name)
+    for name, known in ((name, theorem(name)) for name in theorems()):
         statuses = expected[name] | {status for key, status in known.expected.items() if key == name}
-        entries.append(
-            {
-                "name": name,
-                "title": known.title,
-                "source": _first(known.references),
-                "printed": known.source,
-                "checked on": _KINDS[known.kind],
-                "statuses": sorted(statuses),
-            }
-        )
+        entry = {"name": name, "title": known.title, "source": _first(known.references), "printed": known.source}
+        entries.append(entry | {"checked on": _KINDS[known.kind], "statuses": sorted(statuses)})
     return entries
 
 
@@ -105,10 +96,8 @@ def scenario_table(names: Iterable[str]) -> Table:
 
 def theorem_table(names: Iterable[str]) -> Table:
     """Return theorems with title, what each is checked on, source."""
-    name_column = Column("theorem", no_wrap=True, style="bold")
-    table = headed_table(
-        name_column, Column("what, and where it is printed", ratio=1, overflow="fold"), column("checked on")
-    )
+    what = Column("what, and where it is printed", ratio=1, overflow="fold")
+    table = headed_table(Column("theorem", no_wrap=True, style="bold"), what, column("checked on"))
     for name in names:
         item = theorem(name)
         table.add_row(name, Text.assemble(item.title, "\n", (item.source, "bright_black")), _KINDS[item.kind])

@@ -68,15 +68,11 @@ class Chart:
             drawn = _path(np.asarray(x(self.t[keep])), np.asarray(y(heights)))
             parts.append(f'<path class="curve c{k}" d="{drawn}"/>')
         words = escape(self.words, quote=True)
-        drawing = (
-            f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">{"".join(parts)}</svg>'
-        )
-        return f'<div class="chart"><p class="axis">{words}</p>{drawing}{self._legend()}</div>'
-
-    def _legend(self) -> str:
+        head = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{words} over time">'
         named = [(k, curve.label) for k, curve in enumerate(self.curves) if curve.label]
         keys = "".join(f'<span><i class="key c{k}"></i>{escape(label)}</span>' for k, label in named)
-        return f'<p class="legend">{keys}</p>' if keys else ""
+        legend = f'<p class="legend">{keys}</p>' if keys else ""
+        return f'<div class="chart"><p class="axis">{words}</p>{head}{"".join(parts)}</svg>{legend}</div>'
 
 
 def panels(charts: Sequence[Chart]) -> str:

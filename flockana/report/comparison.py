@@ -1,11 +1,12 @@
 """The report's section on one start under many laws: what each theorem promises, and what happened."""
 
+from collections import namedtuple
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from flockana.report.figures import Picture
+from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg
 from flockana.report.section import MANY_LAWS
 from flockana.scenarios.one_start import UNTIL, Outcome, compare
@@ -16,19 +17,10 @@ _SIZE = 3.1  # inches of a panel
 _SETTLED = 1e-9  # of the start: what a table calls 0
 
 
-@dataclass(frozen=True)
-class Row:
-    """A law, its theorem and what happened, as text."""
-
-    name: str  # name, theorem, promise: of the law and the theorem
-    theorem: str
-    promise: str
-    status: str
-    reason: str  # what is refuted or open, or the first unmet hypothesis; empty if there is none of these
-    velocities: str  # velocities, positions: Diameters at the end over those at the start
-    positions: str
-    groups: str  # groups, nearest: Components of the net at the end, and the least distance
-    nearest: str
+# A law, its theorem and what happened, as text. Reason: what is refuted or open, or the first unmet hypothesis.
+# Velocities, positions: diameters at the end over those at the start. Groups, nearest: components of the net at the
+# end, and the least distance.
+Row = namedtuple("Row", "name theorem promise status reason velocities positions groups nearest")
 
 
 @dataclass(frozen=True)
@@ -48,18 +40,10 @@ def comparison_section(seed: int = 0) -> ComparisonSection:
 
 
 def _row(outcome: Outcome) -> Row:
-    share = outcome.velocity_share
-    return Row(
-        outcome.entry.name,
-        outcome.entry.theorem,
-        outcome.entry.promise,
-        outcome.verdict.status,
-        _reason(outcome.verdict),
-        f"{share:.2g}" if share > _SETTLED else "0",
-        f"{outcome.position_share:.3g}",
-        str(outcome.groups),
-        f"{outcome.least_distance:.3g}",
-    )
+    entry, verdict, share = outcome.entry, outcome.verdict, outcome.velocity_share
+    velocities, positions = f"{share:.2g}" if share > _SETTLED else "0", f"{outcome.position_share:.3g}"
+    found = velocities, positions, str(outcome.groups), f"{outcome.least_distance:.3g}"
+    return Row(entry.name, entry.theorem, entry.promise, verdict.status, _reason(verdict), *found)
 
 
 def _reason(verdict: Verdict) -> str:
@@ -88,8 +72,10 @@ def _pictures(outcomes: Sequence[Outcome]) -> tuple[Picture, ...]:
             "with their links at the end. Above each the theorem and its verdict.",
             svg(paths, (_SIZE * columns, (_SIZE + 0.3) * rows)),
         ),
-        Picture(
+        drawn(
             f"Greatest difference of two velocities over that at the start: {names}. Flocking is its fall to 0.",
-            svg(lambda figure: plots().velocity_diameters(outcomes, ax=figure.subplots()), (8.0, 4.2)),
+            (8.0, 4.2),
+            plots().velocity_diameters,
+            outcomes,
         ),
     )

@@ -27,9 +27,8 @@ def _status(status: str) -> Text:
 
 
 def _expectation(finding: Finding) -> Text:
-    if finding.as_expected is None:
-        return Text("—", style="bright_black")
-    return Text("yes", style="bright_black") if finding.as_expected else Text("NO", style="bold red")
+    text = {None: "—", True: "yes", False: "NO"}[finding.as_expected]
+    return Text(text, style="bold red" if text == "NO" else "bright_black")
 
 
 def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
@@ -42,19 +41,13 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
     columns = (column(heading, width=width, wraps=width is None) for heading, width in widths.items())
     table = headed_table(*columns, collapse_padding=True)
     for page in pages:
-        if isinstance(page, ScenarioPage):
+        indent = "  " if isinstance(page, ScenarioPage) else ""
+        if indent:
             table.add_row(Text(page.name, style="bold"))
         for finding in page.findings:
-            verdict = finding.verdict
-            indent = "  " if isinstance(page, ScenarioPage) else ""
-            cells = {
-                "theorem": Text(indent + verdict.theorem),
-                "status": _status(verdict.status),
-                "rigour": Text(verdict.rigour),
-                "claims": Text(_share(verdict), style="bright_black"),
-                "expected": _expectation(finding),
-            }
-            table.add_row(*(cells[heading] for heading in widths))
+            verdict, name = finding.verdict, Text(indent + finding.verdict.theorem)
+            how = Text(_share(verdict), style="bright_black"), Text(verdict.rigour)
+            table.add_row(name, _status(verdict.status), *(how if "claims" in widths else ()), _expectation(finding))
     return table
 
 

@@ -35,12 +35,8 @@ def control_pictures() -> tuple[Picture, ...]:
     gains = Gains()
     centre = CentreOfMass(gains)
     t = np.linspace(0.0, 12.0 * pi / centre.natural_frequency / 2.0, 300)
-    step = Chart(
-        "centre of mass after a unit step of the γ-agent",
-        t,
-        (Curve(np.ravel(centre.step_response(t).y)),),
-        levels=((1.0, "γ-agent"),),
-    )
+    response = Curve(np.ravel(centre.step_response(t).y))
+    step = Chart("centre of mass after a unit step of the γ-agent", t, (response,), levels=((1.0, "γ-agent"),))
     locus, _ = centre_locus(gains, "c1_gamma", np.linspace(0.0, 3.0 * gains.c1_gamma, 61))
     table = norms_against_size(Algorithm1(), _SIZES)
 
@@ -71,10 +67,8 @@ def state_space(flock: Linearisation, name: str, words: str) -> Download:
     """Return a linearised flock as JSON: entries of A in the order (δq, δp), agent by agent."""
     matrix = flock.A_sparse.tocoo()
     kept = np.abs(matrix.data) > 0.0
-    entries = [
-        [int(i), int(j), float(v)]
-        for i, j, v in zip(matrix.row[kept], matrix.col[kept], matrix.data[kept], strict=True)
-    ]
+    columns = (values[kept].tolist() for values in (matrix.row, matrix.col, matrix.data))
+    entries = [list(entry) for entry in zip(*columns, strict=True)]
     data = {
         "what": words,
         "state": "(q.ravel(), p.ravel()), deviations from the equilibrium",

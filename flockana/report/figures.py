@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from flockana.base.modules import modules
 from flockana.base.vectors import lengths
 from flockana.dynamics.trajectory import Trajectory
 from flockana.report.charts import Chart, Curve, panels
+from flockana.report.image import svg
 from flockana.report.stills import stills
 from flockana.scenarios.findings import PANEL, component_counts, has_metric
 
@@ -21,6 +23,11 @@ class Picture:
 
     caption: str  # what it shows and how to read it
     source: str  # SVG elements, in HTML, in the page's own colours
+
+
+def drawn(caption: str, size: tuple[float, float], draw: Callable[..., object], *given: Any, **options: Any) -> Picture:
+    """Return a picture by a plot function that draws on one set of axes."""
+    return Picture(caption, svg(lambda figure: draw(*given, ax=figure.subplots(), **options), size))
 
 
 @cache
@@ -34,12 +41,10 @@ def pictures(trajectory: Trajectory, instants: Sequence[float] = ()) -> tuple[Pi
     drawn = trajectory.law, trajectory.law.continuous  # of a map that steps another law, that one's figures will do
     owners = ((law, laws, own) for law in drawn for laws, own in pictures_of_laws())
     draw = next((own for law, laws, own in owners if isinstance(law, laws)), flock_pictures)
-    return (*((_source_instants(trajectory, instants),) if len(instants) else ()), *draw(trajectory))
-
-
-def _source_instants(run: Trajectory, instants: Sequence[float]) -> Picture:
-    shown = f"The {len(instants)} instants that the source shows"
-    return Picture(f"{shown}: the sample nearest to each. {_WORDS}", stills(run, instants))
+    if not len(instants):
+        return draw(trajectory)
+    caption = f"The {len(instants)} instants that the source shows: the sample nearest to each. {_WORDS}"
+    return (Picture(caption, stills(trajectory, instants)), *draw(trajectory))
 
 
 _WORDS = "Links shorter than desired by more than a tenth are blue, longer ones orange; a star is a γ-agent."
@@ -50,7 +55,7 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     run, times = trajectory, trajectory.t[[0, middle_sample(trajectory), -1]].tolist()
     blocked = bool((run.law.continuous or run.law).obstacles)
     middle = "middle (of a flock that splits: where it is most split)" if blocked else "middle"
-    drawn = [
+    made = [
         Picture(f"Start, {middle} and end. {_WORDS}", stills(run, times)),
         Picture(
             "C = 1 exactly when the net is connected; R is the largest distance from the centre of mass; Ẽ is zero "
@@ -69,8 +74,8 @@ def flock_pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             "Least clearance of any agent from an obstacle; the number of components of the net, which is above 1 "
             "where the flock splits."
         )
-        drawn.append(Picture(words, panels(_clearances(run))))
-    return tuple(drawn)
+        made.append(Picture(words, panels(_clearances(run))))
+    return tuple(made)
 
 
 def measured(run: Trajectory, name: str) -> Chart:
@@ -81,19 +86,18 @@ def measured(run: Trajectory, name: str) -> Chart:
 
 def speeds(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
     """Return the chart of greatest, mean and least speed over time."""
-    return _spread("speeds (length/time)", run.t, lengths(run.p), levels)
+    return Chart("speeds (length/time)", run.t, spread(lengths(run.p)), levels=levels)
 
 
 def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
     """Return the chart of greatest and mean control effort ‖u‖ over time."""
-    size = lengths(run.u)
-    curves = Curve(size.max(axis=1), "greatest"), Curve(size.mean(axis=1), "mean")
-    return Chart("control effort ‖u‖ (length/time²)", run.t, curves, levels=levels)
+    return Chart("control effort ‖u‖ (length/time²)", run.t, spread(lengths(run.u))[:2], levels=levels)
 
 
-def _spread(words: str, t: FloatArray, values: FloatArray, levels: Sequence[tuple[float, str]]) -> Chart:
-    of = (("greatest", values.max(axis=1)), ("mean", values.mean(axis=1)), ("least", values.min(axis=1)))
-    return Chart(words, t, tuple(Curve(series, name) for name, series in of), levels=levels)
+def spread(values: FloatArray) -> tuple[Curve, ...]:
+    """Return the curves of the greatest, the mean and the least of all agents."""
+    of = {"greatest": values.max(axis=1), "mean": values.mean(axis=1), "least": values.min(axis=1)}
+    return tuple(Curve(series, name) for name, series in of.items())
 
 
 def middle_sample(run: Trajectory) -> int:
@@ -107,8 +111,7 @@ def middle_sample(run: Trajectory) -> int:
 
 
 def _energy(run: Trajectory) -> list[Chart]:
-    energy = run.energy()
-    if not np.isfinite(energy).any():
+    if not np.isfinite(energy := run.energy()).any():
         return []
     charts = [Chart("energy H", run.t, (Curve(energy),))]
     if "work" in run.extra:

@@ -9,11 +9,7 @@ from flockana.report.pages import ScenarioPage
 FINDINGS = (
     ("hexagon", "os-1", "Seven agents settle on a hexagon, and stay: Theorem 1 holds, certified for t → ∞."),
     ("three-agents-1d", "os-3", "One agent runs through two others in turn: Theorem 3(iv) as printed fails over time."),
-    (
-        "collapse",
-        "E11",
-        "Equal gains squeeze 150 agents until pairs coincide: Algorithm 2 needs a weak γ-agent.",
-    ),
+    ("collapse", "E11", "Equal gains squeeze 150 agents until pairs coincide: Algorithm 2 needs a weak γ-agent."),
     ("dead-zone-wide-start", "dead-zone-1-printed", "From a wide start the dead-zone flock stays in pieces."),
     ("zone-tree", "zone-1-printed", "On a tree, edges take their desired lengths and do not vanish, as was printed."),
 )

@@ -5,8 +5,8 @@ import numpy as np
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import windows_of
-from flockana.report.charts import Chart, Curve, panels
-from flockana.report.figures import Picture, measured
+from flockana.report.charts import Chart, panels
+from flockana.report.figures import Picture, measured, spread
 from flockana.report.stills import stills
 from flockana.scenarios.findings import has_metric
 
@@ -18,8 +18,6 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     """Draw start, middle, end as of any flock; headings, connectivity and their span."""
     early = trajectory.window(float(trajectory.t[0]), _until(trajectory))
     times = float(trajectory.t[0]), float(early.t[len(early.t) // 2]), float(trajectory.t[-1])
-    heading = early.extra["heading"]
-    of = (("greatest", heading.max(axis=1)), ("mean", heading.mean(axis=1)), ("least", heading.min(axis=1)))
     windows = windows_of(trajectory)
     longest = max((stop - start for start, stop in windows), default=0)
     return (
@@ -33,7 +31,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
             f"are jointly connected over each of {len(windows)} contiguous windows, the longest of {longest} steps.",
             panels(
                 [
-                    Chart("heading (radians)", early.t, [Curve(values, name) for name, values in of]),
+                    Chart("heading (radians)", early.t, spread(early.extra["heading"])),
                     *(measured(early, name) for name in ("connectivity",) if has_metric(early, name)),
                     measured(trajectory, "heading_spread"),
                 ]

@@ -1,16 +1,11 @@
 """A drawn figure as SVG in the page's own colours, with texts that can be searched."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from html import escape
 from io import StringIO
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from typing import Any
 
 _MEASURED_DPI = 72  # that of SVG: texts are as long where they are measured as where they are drawn
 _COLOURS = {
@@ -38,30 +33,22 @@ def plots() -> ModuleType:
     return plots
 
 
-def svg(draw: Callable[[Figure], None], size: tuple[float, float]) -> str:
+def svg(draw: Callable[[Any], object], size: tuple[float, float]) -> str:
     """Return a figure in flockana's style as an ``<svg>`` element."""
     import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
+    # the height of titles is given, else matplotlib asks all axes where it may stand
     with plots().style(), mpl.rc_context({"axes.titley": 1.0, "svg.fonttype": "none", "path.simplify_threshold": 0.3}):
-        figure = _placed(draw, size, _MEASURED_DPI).figure
+        figure = placed(draw, size, _MEASURED_DPI).figure
         text = StringIO()
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(text, metadata={"Date": None})
     return _adapt_svg(text.getvalue())
 
 
-def drawn(draw: Callable[[Figure], None], size: tuple[float, float], *, dpi: float = 125) -> Any:
-    """Return the drawn canvas of a figure in flockana's style."""
-    import matplotlib as mpl
-
-    with plots().style(), mpl.rc_context({"axes.titley": 1.0}):  # else matplotlib asks all axes where it may stand
-        canvas = _placed(draw, size, dpi)
-        canvas.draw()
-    return canvas
-
-
-def _placed(draw: Callable[[Figure], None], size: tuple[float, float], dpi: float) -> Any:
+def placed(draw: Callable[[Any], object], size: tuple[float, float], dpi: float) -> Any:
+    """Return the canvas of a figure whose axes have what room their texts leave."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -1,16 +1,14 @@
 """Report section on lattices and equilibria, made from the verdicts alone."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
+from scipy.spatial.distance import pdist
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.report.figures import Picture
-from flockana.report.image import plots, svg
+from flockana.report.figures import Picture, drawn
+from flockana.report.image import plots
 from flockana.report.pages import Page
 from flockana.theorems import Verdict
 
@@ -18,8 +16,7 @@ _SIZES = range(3, 21)
 _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
 
 
-@dataclass(frozen=True)
-class EndState:
+class EndState(NamedTuple):
     """Net of a run's last state."""
 
     scenario: str
@@ -47,28 +44,18 @@ def lattice_section(pages: Iterable[Page]) -> LatticeSection | None:
     verdicts = [(name, verdict) for name, verdict in verdicts if verdict.theorem in _TOPICS]
     if not verdicts:
         return None
-    ends = (_end(name, verdict) for name, verdict in verdicts if verdict.theorem == "os-5-terminal")
-    spirals = tuple((n, _links(hexagonal_spiral(n, 7.0), 8.4), harborth(n)) for n in _SIZES)
-    pictures = (_collapse([v for _, v in verdicts]), _barrier([v for _, v in verdicts]))
-    return LatticeSection(
-        tuple(end for end in ends if end is not None),
-        spirals,
-        tuple(picture for picture in pictures if picture is not None),
-    )
+    ends = (end for name, v in verdicts if v.theorem == "os-5-terminal" for end in _end(name, v))
+    spirals = tuple((n, int((pdist(hexagonal_spiral(n, 7.0)) < 8.4).sum()), harborth(n)) for n in _SIZES)
+    every = [verdict for _, verdict in verdicts]
+    return LatticeSection(tuple(ends), spirals, (*_collapse(every), *_barrier(every)))
 
 
-def _links(q: FloatArray, r: float) -> int:
-    """Return the number of pairs closer than r, without kernels."""
-    return int(np.count_nonzero(lengths(q[:, None] - q) < r) - len(q)) // 2
-
-
-def _end(name: str, verdict: Verdict) -> EndState | None:
+def _end(name: str, verdict: Verdict) -> Iterator[EndState]:
     claims = {claim.name: claim for claim in verdict.claims}
-    kinds = [h.detail for h in verdict.hypotheses if h.name == "q is an α-lattice"]
-    if not kinds or "ii-sharp" not in claims:
-        return None
-    printed, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
-    return EndState(name, kinds[0], str(count), str(printed.computed), printed.status, extension.status)
+    for kind in (h.detail for h in verdict.hypotheses if h.name == "q is an α-lattice"):
+        if "ii-sharp" in claims:
+            printed, extension, count = claims["i"], claims["extension"], claims["ii-sharp"].computed
+            yield EndState(name, kind, str(count), str(printed.computed), printed.status, extension.status)
 
 
 def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
@@ -77,30 +64,24 @@ def _computed(verdicts: Sequence[Verdict], theorem: str, claim: str) -> Any:
     return next((c.computed for c in claims if c.computed is not None), None)
 
 
-def _collapse(verdicts: Sequence[Verdict]) -> Picture | None:
+def _collapse(verdicts: Sequence[Verdict]) -> Iterator[Picture]:
     brackets = _computed(verdicts, "E11", "threshold")
-    if brackets is None:
-        return None
-
     text = (
         "Algorithm 2 on hexagonal patches (E11): up to the lower mark of the ratio of gains all agents stay apart, "
         "from the upper mark on some coincide permanently. Both fall with the number of agents."
     )
-    return Picture(text, svg(lambda figure: plots().collapse_brackets(brackets, ax=figure.subplots()), (6.5, 3.4)))
+    if brackets is not None:
+        yield drawn(text, (6.5, 3.4), plots().collapse_brackets, brackets)
 
 
-def _barrier(verdicts: Sequence[Verdict]) -> Picture | None:
+def _barrier(verdicts: Sequence[Verdict]) -> Iterator[Picture]:
     computed = _computed(verdicts, "E4", "barrier")
     witness = next((c.witness for v in verdicts if v.theorem == "E4" for c in v.claims if c.name == "found"), None)
-    if computed is None or witness is None:
-        return None
-    together, lowest = ({n: energies[key] for n, energies in computed.items()} for key in ("together", "ground"))
-
     text = (
         "The barrier against collisions (E4), found numerically. V < c* excludes collisions, but the least V of all "
         "states rises with n until none is below c*. The barrier is the least V with two agents coincident minus the "
         "least V of all states; it stays near c*."
     )
-    return Picture(
-        text, svg(lambda figure: plots().barrier(together, lowest, witness["c*"], ax=figure.subplots()), (6.5, 3.4))
-    )
+    if computed is not None and witness is not None:
+        energies = ({n: found[key] for n, found in computed.items()} for key in ("together", "ground"))
+        yield drawn(text, (6.5, 3.4), plots().barrier, *energies, witness["c*"])

@@ -52,10 +52,8 @@ def place_axes(figure: Any, renderer: Any, scales: Scales) -> None:
 def _place(ax: Any) -> _Place:
     spec = ax.get_subplotspec()
     grid = spec.get_gridspec()
-    widths, heights = (
-        np.ones(count) if ratios is None else np.asarray(ratios, dtype=np.float64)
-        for count, ratios in ((grid.ncols, grid.get_width_ratios()), (grid.nrows, grid.get_height_ratios()))
-    )
+    widths = np.asarray(grid.get_width_ratios(), dtype=np.float64)
+    heights = np.asarray(grid.get_height_ratios(), dtype=np.float64)
     columns, rows = (spec.colspan.start, spec.colspan.stop - 1), (spec.rowspan.start, spec.rowspan.stop - 1)
     return _Place(ax, columns, rows, widths, heights)
 
@@ -70,12 +68,8 @@ def _around(ax: Any, renderer: Any, scales: Scales) -> tuple[float, ...]:
         bar.apply_aspect(bar.get_axes_locator()(bar, renderer))
         boxes.append(_extents(bar, renderer, scales))
     outer = np.array(boxes)
-    sides = (
-        inner.x0 - outer[:, 0].min(),
-        outer[:, 1].max() - inner.x1,
-        inner.y0 - outer[:, 2].min(),
-        outer[:, 3].max() - inner.y1,
-    )
+    (left, _, low, _), (_, right, _, high) = outer.min(axis=0), outer.max(axis=0)
+    sides = inner.x0 - left, right - inner.x1, inner.y0 - low, high - inner.y1
     return tuple(max(float(side), 0.0) / figure.dpi for side in sides)
 
 
@@ -91,15 +85,12 @@ def _extents(ax: Any, renderer: Any, scales: Scales) -> tuple[float, ...]:
         extent = artist.get_window_extent(renderer)
         left, right = min(left, extent.x0), max(right, extent.x1)
         low, high = min(low, extent.y0), max(high, extent.y1)
-    for title in _titles(ax):
+    for title in (text for text in ax.get_children() if isinstance(text, Text) and text not in ax.texts):
+        if not title.get_text():
+            continue
         title.set_y(1.0 + rooms[3] / box.height)  # above what else is there
         high = max(high, title.get_window_extent(renderer).y1)
     return left, right, low, high
-
-
-def _titles(ax: Any) -> list[Text]:
-    texts = [child for child in ax.get_children() if isinstance(child, Text) and child not in ax.texts]
-    return [text for text in texts if text.get_text()]
 
 
 def _set_positions(places: list[_Place], around: FloatArray, size: FloatArray) -> None:

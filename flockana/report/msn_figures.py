@@ -17,10 +17,9 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
     run = trajectory
     shown = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
     nets = [links(run.q[k], run.law.pair.range) for k in shown]
-    curves = [
-        Curve(np.array([printed_rank_connectivity(run.n, net, typeset=typeset) for net in nets]), name)
-        for typeset, name in ((False, "rank(A)/n"), (True, "rank(A)/n as typeset"))
-    ]
+    curves = []
+    for typeset, name in ((False, "rank(A)/n"), (True, "rank(A)/n as typeset")):
+        curves.append(Curve(np.array([printed_rank_connectivity(run.n, net, typeset=typeset) for net in nets]), name))
     curves.append(Curve(run.metric("connectivity")[shown], "C = rank(L)/(n − 1)"))
     return (
         *flock_pictures(run),

@@ -1,10 +1,8 @@
 """Results of the report as plain data, cheap to send between processes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flockana.base.errors import ArgumentError
 from flockana.dynamics.trajectory import Trajectory
@@ -12,6 +10,7 @@ from flockana.laws.discrete import DiscreteLaw
 from flockana.player.marks import marks_of
 from flockana.player.page import text_of
 from flockana.player.scene import scene
+from flockana.report.figures import Picture, pictures
 from flockana.report.stills import still
 from flockana.report.text import parameters
 from flockana.scenarios import Scenario
@@ -19,9 +18,6 @@ from flockana.scenarios.checks import SOURCE
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Theorem, Verdict, theorem
 from flockana.theorems.theorem import Status
-
-if TYPE_CHECKING:
-    from flockana.report.figures import Picture
 
 _VALUES = 24_000  # numbers of places and velocities of a run in the page: all runs together take 2 MB of it
 _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight lines; so many it gets then
@@ -64,12 +60,8 @@ class Finding:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        return self.verdict.to_dict() | {
-            "title": self.title,
-            "expected": dict(self.expected),
-            "as_expected": self.as_expected,
-            "surprises": list(self.surprises),
-        }
+        judged = {"as_expected": self.as_expected, "surprises": list(self.surprises)}
+        return self.verdict.to_dict() | {"title": self.title, "expected": dict(self.expected)} | judged
 
 
 @dataclass(frozen=True)
@@ -88,6 +80,11 @@ class ScenarioPage:
     thumbnail: str = ""  # the flock at the end, as SVG; empty if there are no figures
 
     @property
+    def subject(self) -> str:
+        """What the verdicts are on, in ids of the page."""
+        return self.name
+
+    @property
     def surprises(self) -> tuple[str, ...]:
         """Return a line for each difference from the expected, including a run that ended early."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
@@ -99,6 +96,7 @@ class FixedPage:
     """Page of a theorem or erratum without a run."""
 
     finding: Finding
+    subject = "fixed"
 
     @property
     def name(self) -> str:
@@ -131,7 +129,7 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
         scenario.source,
         _facts(scenario, run),
         tuple(_scenario_finding(scenario, verdict) for verdict in result.verdicts),
-        _pictures(scenario, run) if figures else (),
+        pictures(run, scenario.instants) if figures else (),
         early_end,
         tuple(scenario.references),
         _play(scenario, run, result.verdicts) if figures else "",
@@ -139,34 +137,17 @@ def page(result: ScenarioResult | FixedResult, *, figures: bool = True) -> Page:
     )
 
 
-def _pictures(scenario: Scenario, run: Trajectory) -> tuple[Picture, ...]:
-    """Return the figures of a run, importing matplotlib only if they are drawn."""
-    from flockana.report.figures import pictures
-
-    return pictures(run, scenario.instants)
-
-
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
     """Return the player's data of a run, with instants of the source and of the claims marked."""
-    # Empty where places or velocities are so large that the player's numbers have no room for them.
-    named = marks_of(run, verdicts, scenario.instants)
+    marks, title, played = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
+    if 1 < len(run.t) < _FEW_SAMPLES and not isinstance(run.law, DiscreteLaw):
+        from flockana.plots.animation import equal_times
+
+        played = equal_times(run, _ENOUGH)  # cubics that match places and velocities
     try:
-        played = scene(
-            _dense(run), values=_VALUES, exact=False, title=f"{scenario.name}: {scenario.title}", marks=named
-        )
-    except ArgumentError:
+        return text_of(scene(played, values=_VALUES, exact=False, title=title, marks=marks))
+    except ArgumentError:  # places or velocities are so large that the player's numbers have no room for them
         return ""
-    return text_of(played)
-
-
-def _dense(run: Trajectory) -> Trajectory:
-    """Return a run with enough samples to play: between few of them, cubics that match places and velocities."""
-    few = 1 < len(run.t) < _FEW_SAMPLES and not isinstance(run.law, DiscreteLaw)
-    if not few:
-        return run
-    from flockana.plots.animation import equal_times
-
-    return equal_times(run, _ENOUGH)
 
 
 def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
@@ -174,15 +155,8 @@ def _scenario_finding(scenario: Scenario, verdict: Verdict) -> Finding:
     if verdict.theorem != SOURCE:
         return _finding(verdict, theorem(verdict.theorem), expected)
     reports = " ".join(f"{report.name}: {report.text.rstrip('.')}." for report in scenario.reports)
-    return Finding(
-        verdict,
-        "What the source reports",
-        reports,
-        scenario.source,
-        expected,
-        differences(verdict, expected),
-        scenario.references,
-    )
+    said = "What the source reports", reports, scenario.source, expected
+    return Finding(verdict, *said, differences(verdict, expected), scenario.references)
 
 
 def _finding(verdict: Verdict, item: Theorem, expected: Mapping[str, Status]) -> Finding:

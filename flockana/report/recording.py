@@ -1,27 +1,24 @@
 """Page about a recording: player, measures with errors, comparison with a law, fit and verdicts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from html import escape
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray
+from matplotlib.figure import Figure
 
 from flockana import plots
 from flockana.base.tables import html_table
-from flockana.player.page import script, style, text_of
+from flockana.dynamics.trajectory import Trajectory
+from flockana.player.page import played, style, text_of
 from flockana.player.scene import scene
-
-if TYPE_CHECKING:
-    import xarray
-
-    from flockana.dynamics.trajectory import Trajectory
-    from flockana.recorded.compare import Comparison
-    from flockana.recorded.fit import Fit
-    from flockana.recorded.recording import Recording
-    from flockana.theorems import Verdict
+from flockana.plots.recording import recorded_measure, residuals
+from flockana.recorded.compare import Comparison
+from flockana.recorded.fit import Fit
+from flockana.recorded.recording import Recording
+from flockana.theorems import Verdict
 
 MEASURES = ("cohesion_radius", "normalised_velocity_mismatch", "connectivity", "min_distance")
 _LOOK = (
@@ -47,16 +44,20 @@ def recording_page(
     title = f"Recording {rec.source}".strip()
     parts = [f"<h1>{escape(title)}</h1>", f"<p>{escape(repr(rec).strip('<>'))}.</p>"]
     parts += [f"<p>{escape(note)}</p>" for note in notes]
+
+    def draw(figure: Any) -> None:
+        for ax, name in zip(figure.subplots(2, 2).ravel(), MEASURES, strict=True):
+            recorded_measure(seen, name, ax=ax)
+
     if trajectory is not None:
         parts.append('<h2>The flock</h2><div id="player"></div>')
-    parts.append(f"<h2>Measures</h2>{_figure(lambda figure: _draw_measures(figure, seen), 'Measures over time')}")
+    parts.append(f"<h2>Measures</h2>{_figure('Measures over time', draw)}")
     parts.append(html_table(measure_rows(seen), ("measure", "at the start", "at the end")))
     if comparison is not None:
         parts += _compared(comparison)
     if fitted is not None:
-        rows = [
-            (name, f"{fitted.values[name]:.5g}", f"{a:.5g} to {b:.5g}") for name, (a, b) in fitted.intervals.items()
-        ]
+        ends = {name: f"{low:.5g} to {high:.5g}" for name, (low, high) in fitted.intervals.items()}
+        rows = [(name, f"{fitted.values[name]:.5g}", interval) for name, interval in ends.items()]
         parts.append("<h2>Fit</h2>" + html_table(rows, ("parameter", "value", "95 % interval")))
         parts += [f"<p>{escape(text)}</p>" for text in fitted.unidentifiable]
     for verdict in verdicts:
@@ -72,13 +73,10 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
     rows = []
     for name in MEASURES:
         values, errors = seen[name].values, seen[f"{name}_error"].values
-        first, last = (_with_error(values[k], errors[k]) for k in (0, -1))
+        known = [f" ± {error:.2g}" if np.isfinite(error) else "" for error in errors]
+        first, last = (f"{values[k]:.4g}{known[k]}" for k in (0, -1))
         rows.append((str(seen[name].attrs["long_name"]), first, last))
     return rows
-
-
-def _with_error(value: float, error: float) -> str:
-    return f"{value:.4g}" + (f" ± {error:.2g}" if np.isfinite(error) else "")
 
 
 def _compared(comparison: Comparison) -> list[str]:
@@ -91,27 +89,12 @@ def _compared(comparison: Comparison) -> list[str]:
         parts.append("<ul>" + "".join(f"<li>{escape(text)}</li>" for text in comparison.findings) + "</ul>")
     rows = [(s.text, s.symbol, f"{s.found:.5g}", f"{s.stated:.5g}", f"{s.share:.1%}") for s in comparison.shares]
     parts.append(html_table(rows, ("part", "gain", "here", "in the law", "share")))
-    parts.append(_figure(lambda figure: _draw_residuals(figure, comparison), "Residual by agent and time"))
+    parts.append(_figure("Residual by agent and time", lambda figure: residuals(comparison, ax=figure.subplots())))
     return parts
 
 
-def _draw_measures(figure: Any, seen: xarray.Dataset) -> None:
-    from flockana.plots.recording import recorded_measure
-
-    for ax, name in zip(figure.subplots(2, 2).ravel(), MEASURES, strict=True):
-        recorded_measure(seen, name, ax=ax)
-
-
-def _draw_residuals(figure: Any, comparison: Comparison) -> None:
-    from flockana.plots.recording import residuals
-
-    residuals(comparison, ax=figure.subplots())
-
-
-def _figure(draw: Any, caption: str) -> str:
+def _figure(caption: str, draw: Any) -> str:
     """A figure as a PNG in the page."""
-    from matplotlib.figure import Figure
-
     with plots.style():
         figure = Figure(figsize=(9.0, 5.2), dpi=110, layout="constrained")
         draw(figure)
@@ -123,11 +106,7 @@ def _figure(draw: Any, caption: str) -> str:
 def _page(title: str, body: str, trajectory: Trajectory | None) -> str:
     code = ""
     if trajectory is not None:
-        start = (
-            "flockanaPlayer(document.getElementById('player'),bytesOfText(document.getElementById('run').textContent));"
-        )
-        run = f'<script type="text/plain" id="run">{text_of(scene(trajectory))}</script>'
-        code = f"{run}<script>(() => {{\n{script()}{start}\n}})();</script>"
+        code = played(scene(trajectory))
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'

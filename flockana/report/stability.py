@@ -1,5 +1,6 @@
 """The report's section on linearised stability."""
 
+from collections import namedtuple
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
@@ -13,7 +14,7 @@ from flockana.equilibria import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.report.control import Download, control_pictures, state_space
-from flockana.report.figures import Picture
+from flockana.report.figures import Picture, drawn
 from flockana.report.image import plots, svg
 from flockana.report.pages import Page
 from flockana.report.section import DECAYS, LINEARISED, MARGINS
@@ -29,21 +30,11 @@ _LONGER = (
 )
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the table of decay rates, as text."""
-
-    name: str  # name, mode: of the equilibrium and its slowest mode
-    mode: str
-    n: str  # agents
-    frequency: str
-    predicted: str
-    measured: str
-    error: str
-    difference: str
-    random_linear: str
-    random_measured: str
-    status: str  # of the verdict that it is from
+# A row of the table of decay rates, as text: an equilibrium and its slowest mode, and the status of the verdict.
+Row = namedtuple(
+    "Row", "name mode n frequency predicted measured error difference random_linear random_measured status"
+)
+_FORMATS = {"mode": "", "n": "", "frequency": ".3f", "predicted": ".5f", "measured": ".5f", "error": ".0e"}
 
 
 @dataclass(frozen=True)
@@ -80,24 +71,16 @@ def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks = NO_FLOCK
     margin_texts = [claim.detail for v in margins for claim in v.claims]
     if any(v.theorem == "heterogeneous-gains" for v in margins):
         margin_texts.append(_LONGER)
-    return StabilitySection(
-        flocks,
-        tuple(row for name, v in decays for row in _rows(name, v)),
-        tuple(picture for picture in pictures if picture is not None),
-        tuple(margin_texts),
-    )
+    rows = tuple(row for name, v in decays for row in _rows(name, v))
+    return StabilitySection(flocks, rows, tuple(filter(None, pictures)), tuple(margin_texts))
 
 
 def linearised_flocks() -> LinearisedFlocks:
     """Return the linearised flocks of the section, with drawings."""
     flocks = _flocks()
-    return LinearisedFlocks(
-        flock_pictures(flocks),
-        control_pictures(),
-        tuple(
-            state_space(flock, f"{name}.json".lower().replace(" ", "-"), f"19 agents, {name}") for name, flock in flocks
-        ),
-    )
+    files = {name: f"{name}.json".lower().replace(" ", "-") for name, _ in flocks}
+    spaces = tuple(state_space(flock, files[name], f"19 agents, {name}") for name, flock in flocks)
+    return LinearisedFlocks(flock_pictures(flocks), control_pictures(), spaces)
 
 
 def _rows(name: str, verdict: Verdict) -> list[Row]:
@@ -106,18 +89,14 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
         return []
     terminal = verdict.theorem == DECAYS[1]
     return [
-        Row(
-            f"{name}, last state" if terminal else label,
-            decay["mode"],
-            str(decay["n"]),
-            f"{decay['frequency']:.3f}",
-            f"{decay['predicted']:.5f}",
-            f"{decay['measured']:.5f}",
-            f"{decay['error']:.0e}",
-            f"{abs(decay['measured'] / decay['predicted'] - 1.0):.0e}",
-            f"{decay['random, linear']:.5f}",
-            f"{decay['random, measured']:.5f}",
-            claim.status,
+        Row._make(
+            (
+                f"{name}, last state" if terminal else label,
+                *(f"{decay[key]:{how}}" for key, how in _FORMATS.items()),
+                f"{abs(decay['measured'] / decay['predicted'] - 1.0):.0e}",
+                *(f"{decay[f'random, {kind}']:.5f}" for kind in ("linear", "measured")),
+                claim.status,
+            )
         )
         for label, decay in claim.computed.items()
     ]
@@ -125,14 +104,9 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
 
 def _flocks() -> list[tuple[str, Linearisation]]:
     """Return a hexagon of 19 agents under both algorithms, linearised."""
-    laws = Algorithm1(), Algorithm2(target=StaticTarget((0.0, 0.0)))
-    return [
-        (
-            f"Algorithm {type(law).__name__[-1]}",
-            linearise(law, find_equilibrium(law, hexagonal_patch(2, law.alpha.length))),
-        )
-        for law in laws
-    ]
+    laws: dict[str, Any] = {"Algorithm 1": Algorithm1(), "Algorithm 2": Algorithm2(target=StaticTarget((0.0, 0.0)))}
+    patch = hexagonal_patch(2, 7.0)
+    return [(name, linearise(law, find_equilibrium(law, patch))) for name, law in laws.items()]
 
 
 def flock_pictures(flocks: Iterable[tuple[str, Linearisation]]) -> tuple[Picture, ...]:
@@ -161,11 +135,9 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
     claim = next((c for v in verdicts for c in v.claims if c.name == "range" and c.computed), None)
     if claim is None:
         return None
-    curves = {
-        name: (curve["amplitudes"], curve["deviations"], curve["net changes"]) for name, curve in claim.computed.items()
-    }
+    keys = "amplitudes", "deviations", "net changes"
+    curves = {name: tuple(curve[key] for key in keys) for name, curve in claim.computed.items()}
     bend = claim.witness["σ₁ bends at"]
-
     exponents = ", ".join(f"{curve['exponent']:.3f}" for curve in claim.computed.values())
     text = (
         "How far the linearisation holds: largest distance ever between a run and the linear motion of its slowest "
@@ -173,10 +145,7 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
         f"(exponents {exponents}), until σ₁ saturates: a link that is off by {bend:.2g} d no longer pulls in "
         "proportion. White marks: a link formed or broke on the way."
     )
-    return Picture(
-        text,
-        svg(lambda figure: plots().linear_range(curves, marks={"σ₁ bends": bend}, ax=figure.subplots()), (6.5, 4.0)),
-    )
+    return drawn(text, (6.5, 4.0), plots().linear_range, curves, marks={"σ₁ bends": bend})
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
@@ -185,11 +154,8 @@ def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
     if not claims:
         return None
     steps = {c.name: (c.computed["margin"], c.computed["dt"]) for c in claims}
-
-    text = (
-        "Margins of the sources: the largest step for which the linearised map is stable, over the step of the source."
-    )
-    return Picture(text, svg(lambda figure: plots().step_margins(steps, ax=figure.subplots()), (6.5, 3.0)))
+    text = "Margins of the sources: the largest step for which the linearised map is stable, over the source's step."
+    return drawn(text, (6.5, 3.0), plots().step_margins, steps)
 
 
 class _Response(NamedTuple):
@@ -214,18 +180,16 @@ def bode_picture(verdicts: Sequence[tuple[str, Verdict]]) -> Picture | None:
         for kind, label, f in (("predicted", "as handed over", factor), ("consistent", "true", 1.0)):
             points[f"{name}, p_r {label}"] = (omega, float(claims[kind].computed))
             centres[f"p_r = {f:.3g} dq_r/dt"] = CentreOfMass(law.gains, f)
-            words.append(
-                f"{name}, p_r {label}: {claims[kind].computed:.4f} measured, {claims[kind].stated:.4f} predicted"
-            )
+            measured, predicted = claims[kind].computed, claims[kind].stated
+            words.append(f"{name}, p_r {label}: {measured:.4f} measured, {predicted:.4f} predicted")
     if not points:
         return None
     omegas = np.geomspace(0.3, 30.0, 200)
 
+    responses = {name: _Response(omegas, centre.response(omegas)) for name, centre in centres.items()}
+
     def draw(figure: Any) -> None:
-        axes = plots().bode(
-            {k: _Response(omegas, c.response(omegas)) for k, c in centres.items()},
-            ax=figure.subplots(2, 1, sharex=True),
-        )
+        axes = plots().bode(responses, ax=figure.subplots(2, 1, sharex=True))
         plots().measured_gains(points, ax=axes[0])
 
     centre = next(iter(centres.values()))

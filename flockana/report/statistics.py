@@ -1,27 +1,23 @@
 """Report section on many seeds: shares of seeds in which claims hold, with intervals."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from math import nan
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from flockana.base.binomial import clopper_pearson
 from flockana.ensemble.work import COMPLETE, Record
+from flockana.report.figures import Picture
+from flockana.report.image import svg
 from flockana.report.surveys import Survey, SurveyResult
 from flockana.scenarios import Scenario, scenario
 from flockana.scenarios.checks import SOURCE
 from flockana.theorems import theorem
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from flockana.report.figures import Picture
-
+_LEVEL = 0.95  # confidence of each interval
 TEMPLATE = "statistics.html.j2"  # takes `statistics`, the section
 
 
@@ -87,19 +83,17 @@ class StatisticsSection:
         return {"level": self.level, "scenarios": [asdict(entry) for entry in self.entries]}
 
 
-def gather(
-    asked: Sequence[Survey], made: Iterable[SurveyResult], *, level: float = 0.95, figures: bool = True
-) -> StatisticsSection | None:
+def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
     """Return the section on the scenarios with complete surveys, or None."""
     records = {result.survey: result.records for result in made}
     entries = []
     for name in dict.fromkeys(survey.scenario for survey in asked):
         batches = [survey for survey in asked if survey.scenario == name]
         if all(survey in records for survey in batches):  # half a table is not shown as if it were whole
-            entries.append(entry_of(name, [record for survey in batches for record in records[survey]], level))
+            entries.append(entry_of(name, [record for survey in batches for record in records[survey]], _LEVEL))
     if not entries:
         return None
-    return StatisticsSection(level, tuple(entries), _picture(entries, level) if figures else None)
+    return StatisticsSection(_LEVEL, tuple(entries), _picture(entries) if figures else None)
 
 
 def entry_of(name: str, records: Sequence[Record], level: float) -> ScenarioShares:
@@ -124,39 +118,27 @@ def _row(item: Scenario, label: str, records: Sequence[Record], level: float) ->
     name, _, claim = label.partition(":")
     statuses = Counter(record.claims[label][0] for record in records if label in record.claims)
     runs = statuses.total()
-    verified, refuted = (
-        Share(statuses[of], runs, *map(float, clopper_pearson(statuses[of], runs, level=level)))
-        for of in ("verified", "refuted")
-    )
+    ends = {of: clopper_pearson(statuses[of], runs, level=level) for of in ("verified", "refuted")}
+    verified, refuted = (Share(statuses[of], runs, *map(float, both)) for of, both in ends.items())
     others = statuses["vacuous"], statuses["inconclusive"]
-    return Row(name, claim, _text(item, name, claim), verified, refuted, *others, item.expected.get(label, ""))
+    reported = {report.name: report.text for report in item.reports}
+    text = theorem(name).title if name != SOURCE else reported.get(claim, claim)
+    return Row(name, claim, text, verified, refuted, *others, item.expected.get(label, ""))
 
 
-def _text(item: Scenario, name: str, claim: str) -> str:
-    """Return the text of a source report, or the title of a theorem."""
-    if name != SOURCE:
-        return theorem(name).title
-    return next((report.text for report in item.reports if report.name == claim), claim)
-
-
-def _picture(entries: Sequence[ScenarioShares], level: float) -> Picture | None:
+def _picture(entries: Sequence[ScenarioShares]) -> Picture | None:
     from flockana.plots.ensemble import draw_bars
-    from flockana.report.figures import Picture
-    from flockana.report.image import svg
 
     rows = {f"{entry.scenario}: {row.claim}": row for entry in entries for row in entry.rows}
     if not rows:
         return None
 
-    def draw(figure: Figure) -> None:
-        shares = {
-            of: np.array([(each.share, each.low, each.high) for each in (getattr(row, of) for row in rows.values())]).T
-            for of in ("verified", "refuted")
-        }
-        draw_bars(figure.subplots(), [*rows], shares, [row.verified.runs for row in rows.values()], level)
-
+    both = {of: [getattr(row, of) for row in rows.values()] for of in ("verified", "refuted")}
+    shares = {of: np.array([(each.share, each.low, each.high) for each in found]).T for of, found in both.items()}
+    runs = [each.runs for each in both["verified"]]
     text = (
         "In which share of the seeds each claim is verified (discs) and refuted (squares), with intervals; the "
         "rest is vacuous or inconclusive. The tables below say what each claim is."
     )
-    return Picture(text, svg(draw, (7.5, 1.1 + 0.19 * len(rows))))
+    size = 7.5, 1.1 + 0.19 * len(rows)
+    return Picture(text, svg(lambda figure: draw_bars(figure.subplots(), [*rows], shares, runs, _LEVEL), size))

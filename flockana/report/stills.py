@@ -23,9 +23,8 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
     around = world(run.law.continuous or run.law, run, samples)
     places = [_project(run.q[k]) for k in samples]
     others = [_project(x[j]) for x in (around.stars, around.crosses) if x is not None for j in range(len(samples))]
-    balls = [
-        _project(np.array([s.centre])) + d * s.radius for s in around.solids if isinstance(s, Sphere) for d in (-1, 1)
-    ]
+    spheres = [solid for solid in around.solids if isinstance(solid, Sphere)]
+    balls = [_project(np.array([each.centre])) + d * each.radius for each in spheres for d in (-1, 1)]
     wires = around.outlines + outlines(around.solids)
     lines = [_project(line) for line in wires]
     every = np.concatenate([*places, *others, *balls, *lines])
@@ -93,9 +92,7 @@ def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
     ends, text = put(_project(q)), ""
     for kind, name in ((-1, "short"), (1, "long"), (0, "even")):
         a, b = (ends[pairs[kinds == kind, c]] for c in (0, 1))
-        path = "".join(
-            f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for (x, y), (u, v) in zip(a.tolist(), b.tolist(), strict=True)
-        )
+        path = "".join(f"M{x:.0f} {y:.0f}L{u:.0f} {v:.0f}" for x, y, u, v in np.hstack([a, b]).tolist())
         text += f'<path class="link {name}" d="{path}"/>' if path else ""
     return text
 

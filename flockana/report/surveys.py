@@ -44,9 +44,8 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
     elif not count:
         return ()
     elif name not in scenarios() or not scenario(name, seed).reports:
-        raise ArgumentError(
-            f"--seeds {count}: expected a scenario whose source reports an outcome, got {name}; leave --seeds out"
-        )
+        expected = f"expected a scenario whose source reports an outcome, got {name}"
+        raise ArgumentError(f"--seeds {count}: {expected}; leave --seeds out")
     else:
         wanted = {name: count}
     return tuple(
@@ -58,9 +57,5 @@ def surveys(name: str | None, count: int | None, *, seed: int = 0) -> tuple[Surv
 
 def make_survey(survey: Survey) -> SurveyResult:
     """Make and judge the runs of a survey in this process."""
-    return SurveyResult(survey, run_batch(request(survey.scenario), tuple(Job(seed) for seed in survey.seeds)))
-
-
-def request(name: str) -> Request:
-    """Return the request of every run: to be judged by the source's reports alone."""
-    return Request(name, (SOURCE,), ())
+    request = Request(survey.scenario, (SOURCE,), ())  # judged by the source's reports alone
+    return SurveyResult(survey, run_batch(request, tuple(Job(seed) for seed in survey.seeds)))

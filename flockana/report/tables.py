@@ -33,10 +33,8 @@ class FoldingTable(Table):
             if spare >= 0 or each.no_wrap:
                 continue
             cells = [heads[k], *(row[k] for row in rows)]
-            widest = max(
-                _clamped(each, cell.cell_len if "\n" not in cell else max(line.cell_len for line in cell.split()))
-                for cell in cells
-            )
+            widest = max(max((line.cell_len for line in cell.split()), default=0) for cell in cells)
+            widest = min(max(widest, each.min_width or 0), each.max_width or _WIDE)
             least = max(min(widest, _LEAST), *map(_longest_piece, cells))
             rooms[k] = max(least, widest + spare)
             spare += widest - rooms[k]
@@ -67,10 +65,6 @@ class FoldingTable(Table):
 
 def _text(console: Console, cell: RenderableType) -> Text:
     return cell if isinstance(cell, Text) else console.render_str(str(cell), highlight=False)
-
-
-def _clamped(each: Column, width: int) -> int:
-    return min(max(width, each.min_width or 0), each.max_width or _WIDE)
 
 
 def _indent(text: Text) -> int:

@@ -13,27 +13,22 @@ from flockana.theorems import Claim, Tolerances, Verdict
 
 MARKS = {"verified": "✓", "refuted": "✗", "vacuous": "∅", "inconclusive": "?"}
 _LONGEST = 6  # entries of a sequence that are written out
-_GAIN_OWNERS = {
-    "alpha": "alpha",
-    "beta": "beta",
-    "gamma": "target",
-}  # suffix of a gain: the field of the law it acts by
+_GAIN_OWNERS = {"alpha": "alpha", "beta": "beta", "gamma": "target"}  # suffix of a gain: the law's field it acts by
 
 
 def show(value: Any) -> str:
     """Return a claim's value as short text: numbers to four digits, long sequences by length."""
     if value is None:
         return "—"
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if isinstance(value, bool | str | int):
         return str(value)
     if isinstance(value, float):
         return f"{value + 0.0:.4g}"  # + 0.0 drops the sign of a negative zero
     if isinstance(value, Mapping):
-        return "; ".join(f"{key}: {_inner(item)}" for key, item in value.items())
+        items = ((key, f"({show(item)})" if isinstance(item, Mapping) else show(item)) for key, item in value.items())
+        return "; ".join(f"{key}: {text}" for key, text in items)
     if isinstance(value, list | tuple):
         if len(value) > _LONGEST:
             return f"{len(value)} values"
@@ -58,10 +53,6 @@ def source_name(key: str) -> str:
     """Return a key of the bibliography as a readable name."""
     *words, year = key.split("-") if key[-1:].isdigit() else (*key.split("-"), "")
     return f"{'-'.join(word.upper() if word in ('msn', 'ode') else word.capitalize() for word in words)} {year}".strip()
-
-
-def _inner(value: Any) -> str:
-    return f"({show(value)})" if isinstance(value, Mapping) else show(value)
 
 
 def deciding_claim(verdict: Verdict) -> Claim | None:

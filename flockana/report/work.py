@@ -95,10 +95,7 @@ def _section(task: Section) -> ComparisonSection | LinearisedFlocks:
 
 
 def check_all(
-    tasks: Sequence[Work],
-    *,
-    jobs: int = 1,
-    watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None,
+    tasks: Sequence[Work], *, jobs: int = 1, watch: Callable[[tuple[Work, ...]], None] = lambda under_way: None
 ) -> Iterator[Done]:
     """Run and verify tasks in parallel; yield results as they are done, and raise on Ctrl-C."""
     # A task that ends its process (for want of memory, say) is named in an error, when all others are done.
@@ -129,4 +126,4 @@ def _subject(task: Work) -> str:
 
 
 def _check_batch(tasks: tuple[Work, ...]) -> tuple[Done, ...]:
-    return tuple(check(task) for task in tasks)
+    return tuple(map(check, tasks))

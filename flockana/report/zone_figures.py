@@ -11,6 +11,7 @@ from flockana.report.stills import stills
 from flockana.scenarios.findings import component_counts, has_metric
 
 LAWS = (ZoneFlocking,)
+_DANGER = "distance to obstacle, wall, alien (length)"
 _DANGERS = (("obstacle_clearance_bound", "obstacle"), ("wall_distance", "wall"), ("alien_distance", "alien"))
 
 
@@ -46,11 +47,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
                 [
                     *(measured(run, name) for name in ("coordination", "cohesion_radius") if has_metric(run, name)),
                     Chart("components of the net", run.t, (Curve(component_counts(run).astype(float)),)),
-                    *(
-                        [Chart("distance to obstacle, wall, alien (length)", run.t, dangers, levels=[(0.0, "")])]
-                        if dangers
-                        else []
-                    ),
+                    *([Chart(_DANGER, run.t, dangers, levels=[(0.0, "")])] if dangers else []),
                 ]
             ),
         ),
@@ -58,11 +55,9 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
-    """Return the chart of greatest, median and least distance of two agents over time."""
-    profile = pair_distance_profile(run.q)
-    return tuple(
-        Curve(profile[:, k], name) for k, name in ((-1, "greatest"), (profile.shape[1] // 2, "median"), (0, "least"))
-    )
+    """Return the curves of greatest, median and least distance of two agents."""
+    least, _, median, _, greatest = pair_distance_profile(run.q).T
+    return Curve(greatest, "greatest"), Curve(median, "median"), Curve(least, "least")
 
 
 def _middle(run: Trajectory) -> int:

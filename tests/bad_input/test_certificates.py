@@ -1,5 +1,3 @@
-"""Damaged certificates, and what is no certificate: rejected in words, at once, and never by an error of another's."""
-
 import copy
 import json
 

@@ -1,5 +1,3 @@
-"""Damaged files: every one is refused in words, or gives what was written; none crashes, hangs or is believed."""
-
 import json
 import os
 import re
@@ -18,7 +16,6 @@ from flockana.equilibria.record import read_equilibrium, write_equilibrium
 from flockana.falsify import Counterexample
 
 LAW = Algorithm1()
-NESTED = ("[" * 100_000, '{"a":' * 100_000, '{"format": ' + "[" * 100_000 + "]" * 100_000 + "}")
 
 
 def flipped(content, count, seed=0):
@@ -76,15 +73,6 @@ def test_a_store_gives_the_runs_that_were_stored_or_fewer(tmp_path):
     assert outcomes(read, path, shortened(whole, 12), same) >= 11  # an empty file is a new store
 
 
-@pytest.mark.parametrize("text", [*NESTED, "null", "3", '{"digest": 1}'])
-def test_a_record_that_is_none_is_told(tmp_path, text, monkeypatch):
-    monkeypatch.setattr(Record, "to_json", lambda self, key="": text)
-    with Store(tmp_path / "runs.sqlite") as store:
-        store.add("pair", {"k": Record(Job(1), "complete")})
-        with pytest.raises(FileError, match="run k cannot be read"):
-            store.read(["k"])
-
-
 MADE_UP = Counterexample("os-1", "i", "made up", LAW, np.array([[0.0], [8.0]]), np.zeros((2, 1)), (0.0, 1.0))
 COUNTEREXAMPLE = sealed(MADE_UP)
 
@@ -125,12 +113,9 @@ def test_a_file_without_its_digest_or_with_a_key_twice_is_refused(tmp_path, pair
             {"options": {"progress": True}},
             "options progress: expected some of method, rtol, atol, dt, max_step, t_eval",
         ),
-        ({"options": {"law": 1, "q0": 2}}, "options law, q0: expected some of"),
         ({"tolerances": {"energy": float("nan")}}, "tolerances.energy = nan: expected a finite number"),
-        ({"tolerances": {"quasi": "0.1"}}, "tolerances.quasi = '0.1': expected one real number"),
         ({"tolerances": {"giant": 2.0}}, "tolerances.giant = 2: expected a share below 1"),
         ({"margin": [1.0]}, "is damaged"),
-        ({"eigest": "0"}, "it holds eigest: expected format, format_version,"),
         ({"q0": [[0.0], [8.5]]}, "its digest is not that of its contents"),
     ],
 )
@@ -162,15 +147,6 @@ def test_an_equilibrium_is_that_which_was_written(tmp_path, pair):
     path.write_text(json.dumps(moved))
     with pytest.raises(FileError, match="its digest is not that of its contents"):
         read_equilibrium(path)
-
-
-@pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium])
-@pytest.mark.parametrize("text", NESTED)
-def test_what_is_nested_too_deeply_is_told(tmp_path, read, text):
-    path = tmp_path / "it.json"
-    path.write_text(text)
-    with pytest.raises(FileError, match="nested too deeply"):
-        read(path)
 
 
 @pytest.mark.parametrize("read", [Counterexample.load, read_equilibrium, read_csv])

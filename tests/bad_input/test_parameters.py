@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flockana as fl
-from flockana import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains, PairInteraction, ZoneRadii
+from flockana import AlphaInteraction, BetaInteraction, DeadZoneInteraction, Gains, ZoneRadii
 from tests.bad_input.values import LAW, NOT_NEGATIVE, NUMBERS, POINTS, POSITIVE, VECTORS, refused, rows, without
 
 ORIGIN = (0.0, 0.0)
@@ -53,10 +53,6 @@ def cases():
     things = OTHERS | {"a class": fl.Algorithm1, "an array": np.zeros(2), "a list": [LAW]}
     yield "rescale item", things, lambda v: fl.rescale(v, length=2.0)
     yield "rescale time", POSITIVE, lambda v: fl.rescale(LAW, time=v)
-
-
-def test_there_is_an_interaction_to_derive_from():
-    assert issubclass(AlphaInteraction, PairInteraction)
 
 
 @pytest.mark.parametrize(("table", "call"), rows(cases()))

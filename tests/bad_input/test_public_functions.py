@@ -1,5 +1,3 @@
-"""Every public function, each of its arguments in turn something strange: refused in words, or taken for what it is."""
-
 import inspect
 from contextlib import suppress
 

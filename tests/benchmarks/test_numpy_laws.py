@@ -1,5 +1,3 @@
-"""The baselines in numpy are the law: else the ratio says nothing."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""The page of a record."""
-
 import json
 
 from benchmarks.__main__ import _merged
@@ -59,10 +57,6 @@ def test_page_json_and_pictures_are_written_and_the_page_can_be_written_again(tm
     assert "It is met." not in page
     again = write(json.loads(paths[0].read_text()), tmp_path / "again")
     assert again[1].read_text() == page
-
-
-def test_no_series_no_picture(tmp_path):
-    assert len(write(RECORD | {"series": {}}, tmp_path)) == 2
 
 
 def test_studies_measured_anew_replace_their_own_rows_only():

@@ -1,5 +1,3 @@
-"""Methods compared at equal error."""
-
 import pytest
 
 from benchmarks import before, precision
@@ -35,10 +33,3 @@ def test_runs_of_the_code_of_before_are_compared_in_the_same_way():
     assert rows[-1].ratio == pytest.approx(11.0, rel=1e-12)
     assert rows[-1].verdict == "yes"
     assert len(rows) == 7
-
-
-def test_without_the_history_the_code_of_before_is_left_out_with_a_notice(monkeypatch):
-    monkeypatch.setattr(before, "COMMIT", "no-such-commit")
-    found = before.study(quick=True)
-    assert not found.rows
-    assert len(found.notices) == 1

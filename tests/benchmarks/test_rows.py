@@ -1,5 +1,3 @@
-"""Rows of the table: what they promise, and that nothing is lost on the way to JSON and back."""
-
 import json
 
 import pytest

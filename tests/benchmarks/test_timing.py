@@ -1,5 +1,3 @@
-"""Functions that take turns."""
-
 import numpy as np
 
 from benchmarks.timing import interleaved, ratio

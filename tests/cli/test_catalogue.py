@@ -1,5 +1,3 @@
-"""Commands that start fewer threads and look for garbage seldom leave the process as they found it."""
-
 import gc
 import os
 
@@ -39,21 +37,6 @@ def test_a_command_seldom_looks_for_garbage_and_the_process_does_as_before(monke
         program.main([])
     assert [threshold[0] for threshold in seen] == [SELDOM]
     assert gc.get_threshold() == before
-
-
-def test_only_a_program_that_ends_takes_all_there_is_for_no_garbage(monkeypatch):
-    before = gc.get_freeze_count()
-    monkeypatch.setattr(program, "_app", lambda asked: lambda **given: None)
-    with pytest.raises(SystemExit):
-        program.main([])
-    assert gc.get_freeze_count() == before
-    monkeypatch.setattr("sys.argv", ["flockana"])
-    try:
-        with pytest.raises(SystemExit):
-            program.main()
-        assert gc.get_freeze_count() > before
-    finally:
-        gc.unfreeze()
 
 
 def test_verify_starts_one_thread_for_matrices_unless_told(monkeypatch):

@@ -1,5 +1,3 @@
-"""What all commands do with their arguments: no path is '', and what is refused is named."""
-
 import os
 
 import pytest
@@ -9,19 +7,12 @@ import pytest
     ("arguments", "message"),
     [
         (["export", "lammps", "hexagon", "-o", ""], "--out '': the name is empty; choose another name; this folder is"),
-        (["export", "lammps", "hexagon", "--out="], "--out '': the name is empty; choose another name; this folder is"),
         (["course", ""], "DIR '': the name is empty; choose another name; this folder is '.'"),
         (["prove", "-o", ""], "--output '': the name is empty; choose another name; this folder is '.'"),
         (["verify", "hexagon", "--report", ""], "--report '': the name is empty; choose another name; this folder is"),
-        (["verify", "hexagon", "--on", ""], "--on '': the name is empty; choose another name"),
         (["check", ""], "FILE '': the name is empty; choose another name"),
-        (["run", "hexagon", "-o", ""], "--output '': the name is empty; choose another name"),
-        (["lattice", "line:3", "-o", ""], "--output '': the name is empty; choose another name"),
-        (["ensemble", "hexagon", "--store", ""], "--store '': the name is empty; choose another name"),
         (["falsify", "--replay", ""], "--replay '': the name is empty; choose another name"),
-        (["stability", "line:3", "--plot", ""], "--plot '': the name is empty; choose another name"),
         (["lattice", ""], "cannot read '': the name is empty; choose another name"),
-        (["equilibrium", ""], "cannot read '': the name is empty; choose another name"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

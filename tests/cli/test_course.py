@@ -1,5 +1,3 @@
-"""`flockana course`."""
-
 import json
 import sys
 
@@ -43,24 +41,6 @@ def test_two_versions_at_once_are_refused(call, tmp_path):
     assert not (tmp_path / "new").exists()
 
 
-def test_slides(call, tmp_path):
-    code, said, _ = call("shown", "--slides")
-    assert code == 0
-    assert "notebook: shown/03_algorithm_2.ipynb" in said
-    assert "A1_four_cases" not in said
-    text = (tmp_path / "shown" / "03_algorithm_2.ipynb").read_text()
-    assert '"slide_type": "slide"' in text
-    assert "Exercises" not in text
-
-
-def test_masters_for_a_grader(call, tmp_path):
-    code, said, _ = call("masters", "--grader", "nbgrader")
-    assert code == 0
-    assert "notebook: masters/source/11_your_own_law/11_your_own_law.ipynb" in said
-    assert (tmp_path / "masters" / "source" / "11_your_own_law" / "own_law" / "law.py").is_file()
-    assert (tmp_path / "masters" / "nbgrader_config.py").is_file()
-
-
 @pytest.mark.parametrize(
     ("options", "book"),
     [
@@ -86,20 +66,6 @@ def test_answers_are_not_replaced(call, refused, tmp_path, options, book):
     )
     assert answered.read_text() == text
     assert not lost.exists()
-
-
-@pytest.mark.parametrize("name", ["map.md", "own_law/law.py", "proofs/proof.py"])
-def test_other_files_of_the_course_are_not_replaced_either(refused, tmp_path, name):
-    path = tmp_path / "own" / name
-    path.parent.mkdir(parents=True)
-    path.write_text("mine")
-    refused(f"own/{name} exists with other content", "own")
-    assert path.read_text() == "mine"
-    assert [each for each in (tmp_path / "own").rglob("*") if each.is_file()] == [path]
-
-
-def test_the_help_says_that_nothing_is_replaced(call):
-    assert "nothing is written; files that are the same" in " ".join(call("--help")[1].split())
 
 
 def test_without_the_extra_the_remedy_is_said(call, monkeypatch):

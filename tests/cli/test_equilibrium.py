@@ -7,7 +7,7 @@ import pytest
 from flockana.base.errors import SolverError
 from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CallableTarget, LinearTarget
-from flockana.equilibria.record import read_equilibrium, smallest_strained, write_equilibrium
+from flockana.equilibria.record import read_equilibrium
 from flockana.interactions import AlphaInteraction
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
@@ -42,15 +42,6 @@ def test_seven_agents_are_the_hexagon(found):
     law, q = Algorithm1(), np.array(one["q"])
     assert one["energy"] == pytest.approx(law.hamiltonian(0.0, q, 0.0 * q), rel=1e-12)
     assert min(one["hessian eigenvalues"]) > 0.0
-
-
-def test_a_chain_in_the_plane_has_soft_modes(call, tmp_path):
-    (tmp_path / "chain.csv").write_text("0,0\n7,0\n14,0\n")
-    code, out, err = call("chain.csv")
-    text = " ".join(out.split())
-    assert (code, err) == (0, "")
-    assert "chain.csv: degenerate" in text
-    assert "3 rigid, 1 soft; 0 negative" in text
 
 
 def test_algorithm_2_presses_and_the_scale_is_the_users(found):
@@ -96,12 +87,6 @@ def test_a_saved_run_brings_its_law(found, tmp_path):
         np.testing.assert_allclose(np.mean(one["q"], axis=0), [centre, 0.0], atol=1e-9)
 
 
-def test_strained_minima_stay_where_they_are(found, tmp_path):
-    write_equilibrium(smallest_strained(), tmp_path / "strained.json")
-    one = found("strained.json")
-    assert (one["kind"], one["links"], round(one["strain"], 4)) == ("minimum", 24, 0.0216)
-
-
 def test_a_failed_solve_is_3_one_line_and_no_result(call, monkeypatch, tmp_path):
     def failing(*arguments, **options):
         raise SolverError("no equilibrium found:\nInfeasible_Problem_Detected")
@@ -124,23 +109,14 @@ def test_a_run_that_fails_is_3_and_one_that_is_interrupted_130(call, catalogue, 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["none.csv"], "cannot read none.csv"),
-        (["none.nc"], "no file none.nc"),
         (["ragged.csv"], "ragged.csv, line 2: 1 values, expected 2"),
-        (["nan.csv"], "nan.csv, line 1: 'nan'"),
         (["pairs"], "unknown scenario, file or builder 'pairs'; did you mean 'pair'?"),
-        (["lime:3"], "did you mean 'line'?"),
-        (["line:3x3"], "'line:3x3': expected line:N"),
         (["line:99999"], "n = 99999: expected at most 30000 agents"),
         (["pair", "--d", "3"], "--d 3.0: pair has a law of its own"),
         (["pair", "--algorithm", "1"], "--algorithm 1: pair has a law of its own"),
         (["pair", "--time", "1"], "--time 1.0: pair has a law of its own"),
         (["other"], "expected a sum of a pair term and others whose forces are gradients"),
-        (["line:3", "--algorithm", "3"], "--algorithm"),
-        (["line:3", "--start", "middle"], "--start"),
-        (["line:3", "--r", "7"], "r"),
         (["line:3", "-o", "it.txt"], "it.txt: expected a file name that ends in .json"),
-        (["line:3", "-o", "."], ". is a folder"),
         (["line:3", "--picture", "nan.csv/it.png"], "cannot write to nan.csv"),
     ],
 )
@@ -171,10 +147,8 @@ def test_dead_zone_contacts_from_a_scenario_and_from_a_file(call, tmp_path):
     assert "of a contact's force" in text
     assert "|contact − d1|/d1 at most 0.0" in text
     assert (tmp_path / "contacts.png").exists()
-    code, out, err = call("contacts.json", "--json")
-    again = json.loads(out)
-    assert (code, again["kind"], again["coincident pairs"]) == (0, "minimum", 0)
-    assert 0.0 < again["strain"] < 0.1
+    again = json.loads(call("contacts.json", "--json")[1])
+    assert (again["kind"], again["coincident pairs"], 0.0 < again["strain"] < 0.1) == ("minimum", 0, True)
 
 
 def test_a_law_that_is_stepped_is_found_within_and_jumps_are_refused(call):

@@ -1,5 +1,3 @@
-"""`flockana export lammps`."""
-
 import pytest
 
 COMMAND = ("export",)
@@ -39,8 +37,10 @@ def test_bad_input_is_told_and_nothing_is_written(call, tmp_path, arguments, mes
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.parametrize("name", ["in.flock", "flock.data", "pair.table", "README.txt"])
-@pytest.mark.parametrize("text", ["", "my own\n", "3 agents of mine\n", "\n" * 2000])
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("in.flock", ""), ("flock.data", "my own\n"), ("pair.table", "\n" * 2000), ("README.txt", "3 agents of mine\n")],
+)
 def test_another_s_file_is_kept(refused, tmp_path, name, text):
     (tmp_path / name).write_text(text)
     refused(
@@ -56,7 +56,3 @@ def test_an_export_from_before_is_replaced(call, tmp_path):
     for scenario in ("hexagon", "three-agents-1d"):
         assert call("lammps", scenario, "--out", tmp_path, "--points", 50)[0] == 0
     assert "3 agents" in (tmp_path / "README.txt").read_text()
-
-
-def test_the_help_says_what_is_replaced(call):
-    assert "nothing is written." in " ".join(call("--help")[1].split())

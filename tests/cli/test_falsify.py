@@ -40,9 +40,6 @@ def test_a_replay_on_which_the_claim_holds_is_3(call, tmp_path):
     code, _, err = call("--replay", "c.json")
     assert (code, "its digest is not that of its contents" in err) == (2, True)
     del data["digest"]
-    (tmp_path / "c.json").write_text(json.dumps(data))
-    code, _, err = call("--replay", "c.json")
-    assert (code, "it has no digest, which every file is written with" in err) == (2, True)
     (tmp_path / "c.json").write_text(json.dumps(with_digest(data)))
     code, out, _ = call("--replay", "c.json")
     assert code == 3
@@ -99,17 +96,12 @@ def test_parameters_and_the_state_are_chosen(call):
     ("arguments", "message"),
     [
         ([], "expected THEOREM --on SCENARIO"),
-        (["os-1"], "expected THEOREM --on SCENARIO"),
-        (["os-9", "--on", "head-on"], "unknown theorem 'os-9'"),
-        (["os-1", "--on", "nowhere"], "unknown scenario 'nowhere'"),
         (["E8", "--on", "head-on"], "E8 is not about a run"),
         (["os-1", "--on", "head-on", "--claim", "x"], "unknown claim 'x'"),
         (["os-1", "--on", "head-on", "--vary", "x"], "expected 'q', 'p', both"),
         (["os-1", "--on", "head-on", "--set", "gains.c1_alpha=1"], "expected NAME=LOW,HIGH"),
-        (["os-1", "--on", "head-on", "--budget", "0"], "budget"),
         (["os-1", "--on", "head-on", "-o", "c.txt"], "expected a file name that ends in .json"),
         (["os-1", "--replay", "c.json"], "brings its own theorem"),
-        (["--replay", "none.json"], "cannot read none.json"),
     ],
 )
 def test_bad_input_is_2_and_one_line(refused, arguments, message):

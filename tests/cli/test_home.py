@@ -1,5 +1,4 @@
 import os
-import subprocess
 import sys
 
 import pytest
@@ -50,13 +49,3 @@ def test_a_home_that_can_be_written_and_a_users_choice_stay(prepared, tmp_path, 
     assert prepared(no_home, XDG_CONFIG_HOME=str(good)) is not None
     assert prepared(no_home, MPLCONFIGDIR="chosen") == "chosen"
     assert not good.exists()
-
-
-@pytest.mark.slow
-def test_matplotlib_says_nothing(no_home, tmp_path):
-    script = "from flockana.cli.home import prepare_home; prepare_home(); import matplotlib; matplotlib.get_cachedir()"
-    kept = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME")}
-    environment = {**kept, "HOME": str(no_home), "XDG_CONFIG_HOME": "", "TMPDIR": str(tmp_path)}
-    command = [sys.executable, "-c", script]
-    found = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100, check=True)
-    assert (found.stdout, found.stderr) == ("", "")

@@ -1,7 +1,3 @@
-"""`flockana observe`: measures, findings, verdicts and a page; bad input in one line."""
-
-from __future__ import annotations
-
 import pandas as pd
 import pytest
 
@@ -44,12 +40,6 @@ def test_a_formula_is_a_law_and_json_holds_everything(found, tracks):
     assert {verdict["theorem"] for verdict in data["verdicts"]} >= {"alpha-flocking", "os-5-terminal"}
 
 
-def test_gains_are_fitted_for_a_formula_too(call, tracks):
-    code, out, _ = call(tracks, "--formula", "(s**2-d**2)**2/1e3", "--d", "7", "--r", "8.4", "--fit", "--json")
-    assert code in (0, 3)
-    assert '"c1_alpha"' in out
-
-
 def test_bad_input_is_one_line(refused, tracks):
     refused("no file nothing.csv", "nothing.csv", "--d", "7")
     refused("expected --law NAME, or --d", tracks)
@@ -57,3 +47,10 @@ def test_bad_input_is_one_line(refused, tracks):
     refused("expected one of them", tracks, "--law", "algorithm-1", "--formula", "s")
     refused("unknown scenario 'nobody'", tracks, "--law", "nobody")
     refused("expected --d and --r", tracks, "--formula", "s**2")
+
+
+@pytest.mark.slow
+def test_gains_are_fitted_for_a_formula_too(call, tracks):
+    code, out, _ = call(tracks, "--formula", "(s**2-d**2)**2/1e3", "--d", "7", "--r", "8.4", "--fit", "--json")
+    assert code in (0, 3)
+    assert '"c1_alpha"' in out

@@ -5,15 +5,7 @@ import pytest
 
 from flockana.base.errors import FileError
 from flockana.cli.picture import ensure_file
-from flockana.cli.show import show, show_files, show_json
-from flockana.cli.status import print_error
-from flockana.report.tables import fact_table
-
-
-def test_a_title_has_its_tables_under_it(capsys):
-    show("[7] agents", fact_table([("links", "12")])).print("and more")
-    lines = [line.strip() for line in capsys.readouterr().out.splitlines() if line.strip()]
-    assert [" ".join(line.split()) for line in lines] == ["[7] agents", "links 12", "and more"]
+from flockana.cli.show import show_files, show_json
 
 
 def test_only_files_that_were_written_are_named_and_never_broken(capsys, monkeypatch):
@@ -30,11 +22,6 @@ def test_json_holds_letters_as_they_are_and_no_nan(capsys):
     assert "κ" in text
     with pytest.raises(ValueError, match="not JSON compliant"):
         show_json({"κ": float("nan")})
-
-
-def test_what_is_wrong_is_one_line_on_the_error_stream(capsys):
-    print_error(ValueError("two\n   lines"))
-    assert capsys.readouterr() == ("", "flockana: two lines\n")
 
 
 def test_a_file_that_is_not_asked_for_is_never_wrong(tmp_path):

@@ -1,5 +1,3 @@
-"""Lectures as notebooks: which cells a version keeps, what a student's copy gives away, and every check by answers."""
-
 import ast
 import json
 import re
@@ -275,15 +273,9 @@ def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
     [
         ("x = 1", "expected one call grade"),
         ("grade(x, right(), hint='')", "give a constant, or form="),
-        ("grade(x + 1, 2)", "expected one call grade"),
         ("import math\ngrade(x, 2)", "expected one call grade"),
     ],
 )
 def test_a_check_that_cannot_be_exported_is_refused(check, expected):
     with pytest.raises(ArgumentError, match=expected):
         build.asked(check)
-
-
-def test_an_unknown_version_is_refused():
-    with pytest.raises(ArgumentError, match="student, self-study, solutions"):
-        build.notebook(SOURCES[0], "teacher")

@@ -1,9 +1,6 @@
-"""Files of the course where some are already: all of them or none."""
-
 import pytest
 
 from flockana.base.errors import FileError
-from flockana.course import build
 from flockana.course.delivery import deliver
 
 
@@ -34,12 +31,3 @@ def test_a_file_in_the_way_of_a_folder_is_told(tmp_path):
     with pytest.raises(FileError, match=r"cannot write all of the course to .*; choose another folder"):
         deliver(tmp_path, {"b/c.txt": b"c"})
     assert (tmp_path / "b").read_text() == "mine"
-
-
-def test_a_law_of_one_s_own_is_not_replaced_where_a_notebook_runs(tmp_path):
-    build.copy_companions(tmp_path)
-    build.copy_companions(tmp_path)
-    (tmp_path / "own_law" / "law.py").write_text("mine")
-    with pytest.raises(FileError, match=r"law\.py exists with other content"):
-        build.copy_companions(tmp_path)
-    assert (tmp_path / "own_law" / "law.py").read_text() == "mine"

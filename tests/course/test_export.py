@@ -1,10 +1,7 @@
-"""Masters for graders: points, hidden tests, and where answers are read by a person."""
-
 import re
 
 import pytest
 
-from flockana.base.errors import ArgumentError
 from flockana.course import build, export
 
 SOURCES = build.sources()
@@ -57,8 +54,3 @@ def test_nbgrader_marks_every_answer_and_test(source):
         assert "Rubric" not in left
     unmarked = "\n".join(cell.source for cell in code(book) if "nbgrader" not in cell.metadata)
     assert "grade(" not in unmarked  # what both programs would leave in the student's copy
-
-
-def test_an_unknown_grader_is_refused():
-    with pytest.raises(ArgumentError, match="otter, nbgrader"):
-        export.master(SOURCES[0], "gradescope")

@@ -1,5 +1,3 @@
-"""Explanatory figures: what they draw is what their captions say, in numbers."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""Pictures behind a slider: one for each value, in order, in a page of its own."""
-
 import base64
 import io
 import json
@@ -54,16 +52,13 @@ def test_its_page_needs_nothing_and_starts_where_it_should():
     assert [base64.b64decode(each.partition(",")[2]) for each in listed] == list(found.pictures)
     assert f'<img alt="a &lt;bar&gt;" src="{listed[1]}">' in page
     assert "<button" not in page
+    played = film(bar, [0.5, 1.0], name="height", title="a bar", seconds=3.0).html()
+    assert '<button type="button">Play</button>' in played
+    assert "seconds = 3.0" in played
     assert page.count("<bar>") == 0
     frame = found._repr_html_()
     assert unescape(re.search(r'srcdoc="([^"]*)"', frame)[1]) == page
     assert 'sandbox="allow-scripts"' in frame
-
-
-def test_a_film_plays_at_the_touch_of_a_button():
-    found = film(bar, [0.5, 1.0], name="height", title="a bar", seconds=3.0)
-    assert '<button type="button">Play</button>' in found.html()
-    assert "seconds = 3.0" in found.html()
 
 
 @pytest.mark.parametrize(

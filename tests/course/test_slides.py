@@ -1,5 +1,3 @@
-"""Slides: one for each heading, in order, with all that a lecture shows and nothing that it asks."""
-
 import re
 
 import pytest

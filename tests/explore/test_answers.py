@@ -1,15 +1,11 @@
-"""What a page is told of a case: its form, run, verdicts, poles and modes, and errors in the library's own words."""
-
 import json
 
 import numpy as np
 import pytest
 
 import flockana as fl
-from flockana.base.seals import sealed
 from flockana.explore.answers import answer, poles
 from flockana.explore.case import Case
-from flockana.falsify.counterexample import Counterexample
 
 
 def told(case, limit=60.0):
@@ -70,11 +66,7 @@ def test_poles_and_modes_of_two_agents_on_a_line():
 def test_away_from_rest_it_says_so():
     run = fl.simulate(fl.Algorithm1(), [[0.0], [7.9]], [[0.0], [0.0]], (0.0, 0.05))
     assert "no equilibrium" in poles(run)["note"]
-
-
-def test_a_map_has_no_poles():
-    run = fl.scenario("headings-part").run()
-    assert "map" in poles(run)["note"]
+    assert "map" in poles(fl.scenario("headings-part").run())["note"]
 
 
 def test_the_threshold_is_marked_where_a_pull_squeezes():
@@ -104,30 +96,6 @@ def test_errors_are_the_librarys_own(case, words):
     assert list(found)[-1] == "done"
 
 
-def test_the_tolerances_of_a_counterexample_are_used(tmp_path):
-    item, loose = fl.scenario("head-on"), fl.Tolerances(energy=1e-5)
-    found = sealed(
-        Counterexample("energy", "rate", "head-on", item.law, item.q0, item.p0, (0.0, 0.5), tolerances=loose)
-    )
-    (verdict,) = told(Case("file", str(found.save(tmp_path / "found.json"))))["verdict"]
-    assert (verdict["theorem"], verdict["tolerances"]["energy"]) == ("energy", 1e-5)
-
-
-def test_a_newer_question_ends_the_verdicts():
-    found, asked = [], []
-
-    def send(kind, content):
-        found.append(kind)
-
-    def cancelled():
-        asked.append(1)
-        return "ran" in found
-
-    with pytest.raises(KeyboardInterrupt):
-        answer(Case("scenario", "head-on"), send, limit=60.0, cancelled=cancelled)
-    assert found[-1] == "ran"
-
-
 def test_what_the_source_reports_is_told_as_long_as_nothing_is_changed():
     found = told(Case("scenario", "zone-gap"))
     assert [each["id"] for each in found["form"][0]["theorems"]][-1] == "source"
@@ -146,3 +114,18 @@ def test_verdicts_mark_the_instants_that_their_claims_point_to(pair):
     marks = {each["theorem"]: each["marks"] for each in pair["verdict"]}
     assert [name for _, name in marks["energy"]] == ["energy rate", "energy balance"]
     assert all(0.0 <= time <= 30.0 for each in marks.values() for time, _ in each)
+
+
+def test_a_newer_question_ends_the_verdicts():
+    found, asked = [], []
+
+    def send(kind, content):
+        found.append(kind)
+
+    def cancelled():
+        asked.append(1)
+        return "ran" in found
+
+    with pytest.raises(KeyboardInterrupt):
+        answer(Case("scenario", "head-on"), send, limit=60.0, cancelled=cancelled)
+    assert found[-1] == "ran"

@@ -1,5 +1,3 @@
-"""A case is what its Python makes: the same law, flock and run, to the last bit."""
-
 import contextlib
 import io
 
@@ -19,11 +17,9 @@ SHORT = [
     Case("scenario", "beside-a-sphere", seed=3, changes={"obstacles.0.radius": 1.25}),
     Case("scenario", "zone-path", duration=2.0),
     Case("scenario", "tanner-fixed", duration=1.0),  # which gives t_eval and rtol
-    Case("scenario", "minimal-2d", duration=1.0, seed=4),
     Case("law", "Algorithm1", n=9, duration=0.3, moved={0: (0.1, 0.2), 8: (50.0, 0.0)}),
     Case("law", "Algorithm2", n=8, m=3, duration=0.2, changes={"target.q": (1.0, 0.0, 1e-3)}),
     Case("law", "Algorithm3", n=8, duration=0.3, changes={"obstacles.0.centre": (3.0, 0.1)}),
-    Case("law", "CuckerSmale", n=5, duration=0.3),
     Case("law", "DeadZoneFlocking", n=5, seed=2, duration=0.05),
 ]
 
@@ -87,24 +83,17 @@ def test_a_counterexample_brings_its_theorem_and_tolerances(tmp_path):
 @pytest.mark.parametrize(
     "asked",
     [
-        None,
         {"kind": "scenario"},
         {"kind": "module", "name": "os"},
         {"kind": "scenario", "name": "hexagon", "law": {}},
-        {"kind": "scenario", "name": "no-such"},
         {"kind": "law", "name": "Algorithm1.__class__"},
-        {"kind": "law", "name": "Algorithm1", "n": 0},
         {"kind": "law", "name": "Algorithm1", "n": 2.5},
-        {"kind": "law", "name": "Algorithm1", "m": 4},
         {"kind": "scenario", "name": "hexagon", "seed": -1},
         {"kind": "scenario", "name": "hexagon", "duration": "5"},
-        {"kind": "scenario", "name": "hexagon", "duration": 0},
         {"kind": "scenario", "name": "hexagon", "moved": {"7": [0, 0]}},
         {"kind": "scenario", "name": "hexagon", "moved": {"0": [0, 0, 0]}},
-        {"kind": "scenario", "name": "hexagon", "moved": {"0": ["a", "b"]}},
         {"kind": "scenario", "name": "hexagon", "moved": {"-1": [0, 0]}},
         {"kind": "scenario", "name": "hexagon", "changes": [1]},
-        {"kind": ["scenario"], "name": "hexagon"},
         {"kind": "file", "name": "/etc/passwd"},
     ],
 )

@@ -1,5 +1,3 @@
-"""Numbers of a law by path: found, replaced as the classes allow, and written as Python that makes the same law."""
-
 from dataclasses import replace
 
 import pytest
@@ -50,12 +48,9 @@ def test_a_scheme_is_changed_in_the_law_that_it_steps():
     ("changes", "error"),
     [
         ({"alpha.d": "7"}, ArgumentError),
-        ({"alpha.d": float("nan")}, ArgumentError),
         ({"alpha.d": [1.0]}, ArgumentError),
         ({"alpha.d": True}, ArgumentError),
-        ({"target.q": [1.0]}, ArgumentError),
         ({"target.q": "__import__('os')"}, ArgumentError),
-        ({"alpha": {"type": "flockana:Algorithm1"}}, UnknownNameError),
         ({"alpha.__class__": 1.0}, UnknownNameError),
         ({"obstacles.7.radius": 1.0}, UnknownNameError),
     ],
@@ -63,8 +58,3 @@ def test_a_scheme_is_changed_in_the_law_that_it_steps():
 def test_only_numbers_at_known_paths(changes, error):
     with pytest.raises(error):
         tree_of(law(), changes)
-
-
-def test_what_a_class_refuses_is_refused():
-    with pytest.raises(ArgumentError, match="expected r > d"):
-        changed(law(), tree_of(law(), {"alpha.r": 3.0}))

@@ -1,5 +1,3 @@
-"""The server: no token, no page; each tab has a process of its own; the newest case is the one that is answered."""
-
 import asyncio
 import json
 import socket
@@ -164,18 +162,6 @@ def test_the_newest_alone_is_answered_and_a_deaf_process_replaced(served, monkey
     served(use)
 
 
-def test_a_process_that_ends_is_told_and_replaced(served):
-    async def use(url):
-        tab = await opened(url)
-        await answer(tab, 1, FIRST)
-        (first,) = (each for each in Echo.made if each.asked)
-        first.deliver(None)
-        assert "ended" in json.loads(await tab.read_message())["text"]
-        assert await answer(tab, 2, FIRST) == FIRST
-
-    served(use)
-
-
 def test_processes_that_end_before_they_say_anything_are_not_started_without_end(served, monkeypatch):
     class Stillborn(Echo):
         def __init__(self, limit):
@@ -197,16 +183,6 @@ def test_processes_that_end_before_they_say_anything_are_not_started_without_end
         await tab.write_message(json.dumps({"number": 1, "case": FIRST}))  # who asks anew gets one more
         assert "ended" in json.loads(await tab.read_message())["text"]
         assert len(Echo.made) == made + 1
-
-    served(use)
-
-
-def test_a_spare_process_that_ended_is_no_ones(served):
-    async def use(url):
-        (spare,) = Echo.made
-        spare.ended = True
-        assert await answer(await opened(url), 1, FIRST) == FIRST
-        assert spare.asked == []
 
     served(use)
 
@@ -253,9 +229,5 @@ def test_the_token_is_kept_for_this_user_alone(tmp_path, monkeypatch):
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     path.write_text("short")
     assert len(kept_token()) == 43  # what anybody could guess is not taken
-
-
-def test_where_nothing_can_be_kept_there_is_a_token_still(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setattr(module.Path, "home", lambda: tmp_path / "file")
+    monkeypatch.setattr(module.Path, "home", lambda: path)  # where nothing can be kept
     assert len({kept_token(), kept_token()}) == 2

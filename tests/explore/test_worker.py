@@ -1,5 +1,3 @@
-"""A worker answers the newest question: what is under way is broken off for it, and none is lost."""
-
 import threading
 import time
 from contextlib import suppress

@@ -1,5 +1,3 @@
-"""Runs as bytes and back: to float32 rounding, or to the step that was asked for."""
-
 import numpy as np
 import pytest
 

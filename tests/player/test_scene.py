@@ -1,5 +1,3 @@
-"""What the player is given of a run: its states to float32, its world, its series."""
-
 import numpy as np
 import pytest
 
@@ -26,16 +24,6 @@ def test_the_states_are_the_run_s_to_float32():
     np.testing.assert_allclose(arrays["series_0"], run.energy(), rtol=1e-6)
     effort = np.linalg.norm(run.u, axis=2).max(axis=1)
     np.testing.assert_allclose(arrays[f"series_{names.index('effort')}"], effort, rtol=1e-6)
-
-
-def test_a_series_that_is_not_a_number_everywhere_is_left_out(monkeypatch):
-    run = short(Algorithm1())
-    metric = type(run).metric
-    gap = lambda self, name: metric(self, name) * (np.nan if name == "min_distance" else 1.0)  # noqa: E731
-    with_it = [series["name"] for series in decode(scene(run))[0]["series"]]
-    monkeypatch.setattr(type(run), "metric", gap)
-    assert "min_distance" in with_it
-    assert [series["name"] for series in decode(scene(run))[0]["series"]] == [n for n in with_it if n != "min_distance"]
 
 
 def test_obstacles_and_target():
@@ -102,12 +90,6 @@ def test_a_large_run_is_thinned_and_stays_under_a_megabyte():
     assert (len(t), t[0], t[-1]) == (400, 0.0, 4.0)
 
 
-def test_kept_samples_begin_and_end_as_the_run():
-    for samples, most in ((1, 5), (2, 2), (1000, 7)):
-        found = kept(samples, most)
-        assert (found[0], found[-1], len(found)) == (0, samples - 1, min(samples, most))
-
-
 @pytest.mark.parametrize("name", ["zone-52", "dead-zone-leaders", "headings-meet", "head-on"])
 def test_laws_with_a_world_of_their_own(name):
     item = scenario(name)
@@ -121,3 +103,13 @@ def test_laws_with_a_world_of_their_own(name):
     header, arrays = decode(scene(run, exact=False))
     assert arrays["q"].shape[1:] == (run.n, run.m)
     assert len(header["series"]) >= 3
+
+
+def test_a_series_that_is_not_a_number_everywhere_is_left_out(monkeypatch):
+    run = short(Algorithm1())
+    metric = type(run).metric
+    gap = lambda self, name: metric(self, name) * (np.nan if name == "min_distance" else 1.0)  # noqa: E731
+    with_it = [series["name"] for series in decode(scene(run))[0]["series"]]
+    monkeypatch.setattr(type(run), "metric", gap)
+    assert "min_distance" in with_it
+    assert [series["name"] for series in decode(scene(run))[0]["series"]] == [n for n in with_it if n != "min_distance"]

@@ -1,5 +1,3 @@
-"""Bars of a table: their lengths, intervals, limits, what is infinite, bad input."""
-
 from math import inf
 
 import pytest

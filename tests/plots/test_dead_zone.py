@@ -1,5 +1,3 @@
-"""The force curve shows its jumps with open and closed ends; the two energies are those of the run."""
-
 import numpy as np
 import pytest
 
@@ -32,7 +30,7 @@ def test_each_jump_has_a_closed_and_an_open_end():
 
 def test_no_curve_leads_across_a_jump():
     pair = DeadZoneInteraction(ramp=0.0)
-    curves = [line.get_xydata() for line in plots.dead_zone_force(pair, nearest=1.0).lines if len(line.get_xdata()) > 9]
+    curves = [line.get_xydata() for line in plots.dead_zone_force(pair).lines if len(line.get_xdata()) > 9]
     assert len(curves) == 4
     for curve in curves:
         assert curve[:, 1] == pytest.approx(pair.force(curve[:, 0]))
@@ -48,8 +46,6 @@ def test_both_energies_are_drawn():
 
 
 def test_bad_input_is_named():
-    with pytest.raises(ArgumentError, match=r"nearest = 9: expected a distance between 0 and d1 = 3\.5"):
-        plots.dead_zone_force(DeadZoneInteraction(), nearest=9)
     run = simulate(Algorithm1(), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
     with pytest.raises(ArgumentError, match="expected a run of DeadZoneFlocking"):
         plots.dead_zone_energies(run)

@@ -1,5 +1,3 @@
-"""Curves between steps: exact where the velocity is a cubic, close to the solution where it is not."""
-
 import numpy as np
 
 import flockana as fl

@@ -1,5 +1,3 @@
-"""Diameters over time, and bands of joint connectivity."""
-
 import numpy as np
 import pytest
 from matplotlib.patches import Rectangle

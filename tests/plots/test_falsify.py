@@ -38,23 +38,14 @@ def test_margins_of_many_sizes_have_an_axis_that_shows_them():
     ax.figure.canvas.draw()
 
 
-def test_a_search_on_which_nothing_is_claimed():
-    ax = search_history([np.nan, np.nan], [np.nan, np.nan], ax=axes())
-    assert len(drawn(ax)["no margin"]) == 2
-    ax.figure.canvas.draw()
-
-
 @pytest.mark.parametrize(("margins", "best"), [([1.0], [1.0, 2.0]), ([], []), ([[1.0]], [[1.0]])])
 def test_bad_data_is_named(margins, best):
     with pytest.raises(ArgumentError, match="expected one number per run in each"):
         search_history(margins, best, ax=axes())
 
 
-def test_a_counterexample_is_drawn_as_a_snapshot():
+def test_a_search_is_drawn_by_its_claim():
     found = falsify("collision-energy", scenario("head-on"), claim="twice", budget=40)
-    ax = plots.snapshot(found.run(), 0.0, ax=axes())
-    agents = next(c for c in ax.collections if c.get_label() == "agents")
-    np.testing.assert_allclose(np.asarray(agents.get_offsets())[:, :1], found.q0, rtol=1e-15)
     ax = plots.falsification(found, ax=axes())
     curves = drawn(ax)
     np.testing.assert_array_equal(curves["smallest margin so far"][:, 1], found.history)

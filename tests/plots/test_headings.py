@@ -1,5 +1,3 @@
-"""Averaged headings drawn: the numbers that are averaged, and links to agents on the circle."""
-
 import numpy as np
 import pytest
 

@@ -47,11 +47,6 @@ def test_every_dimension_is_drawn_and_labelled(m):
     ax.figure.canvas.draw()
 
 
-def test_no_links_and_crowds_are_drawn():
-    ax = plots.defect_map(np.zeros((3, 2)), np.empty((0, 2), int), [0, 13, 40], strain=[], ax=axes())
-    assert set(groups(ax)) == {"0 neighbours: 1", "13 or more neighbours: 2"}
-
-
 def test_no_two_numbers_of_neighbours_look_alike():
     ax = plots.defect_map(np.zeros((14, 2)), np.empty((0, 2), int), range(14), strain=[], ax=axes())
     drawn = [c for c in ax.collections if "neighbour" in c.get_label()]

@@ -1,5 +1,3 @@
-"""Obstacles, β-agents, clearance, components and Reynolds' rules, as drawn."""
-
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
@@ -9,7 +7,6 @@ from flockana import Algorithm1, Algorithm3, Capsule, Polygon, Sphere, StaticTar
 from flockana.base.errors import ArgumentError
 from flockana.interactions import BetaInteraction
 from flockana.measures.reynolds import reynolds
-from flockana.plots.obstacles import bounds
 from flockana.report.figures import middle_sample, pictures
 from tests.plots.artists import axes, segments
 
@@ -62,12 +59,6 @@ def test_on_a_line_an_obstacle_is_an_interval_and_in_space_a_mesh_on_the_surface
     (mesh,) = plots.obstacles([wall], ax=axes(3), view=np.array([[-5.0, -5.0, 0.0], [5.0, 5.0, 5.0]])).collections
     lines = np.concatenate(segments(mesh))
     np.testing.assert_allclose(lines[~np.isnan(lines[:, 2]), 2], 1.0)
-
-
-def test_bounds_hold_the_bounded_ones_alone():
-    found = bounds([Wall((0.0, 0.0), (0.0, 1.0)), Sphere((5.0, 6.0), 2.0)])
-    np.testing.assert_array_equal(found, [[3.0, 4.0], [7.0, 8.0]])
-    assert bounds([Wall((0.0, 0.0), (0.0, 1.0))]).shape == (0, 2)
 
 
 def test_beta_agents_are_drawn_within_their_range_only():

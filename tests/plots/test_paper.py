@@ -1,12 +1,10 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 import flockana as fl
 from flockana.base.errors import UnknownNameError
 from flockana.plots.gif import durations
-from flockana.plots.paper import COLUMNS, column_size
+from flockana.plots.paper import COLUMNS
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +44,3 @@ def test_times_of_frames_add_up(fps, seconds):
     times = durations(round(fps * seconds), fps)
     assert sum(times) == 1000 * seconds
     assert max(times) - min(times) in (0, 10)
-
-
-def test_figures_fill_a_column():
-    assert column_size("ieee") == (3.5, 2.625)
-    assert column_size("elsevier-wide", 1, 2) == (7.48, 2.805)

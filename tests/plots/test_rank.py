@@ -1,5 +1,3 @@
-"""The project's connectivity over time beside that which tells connected nets."""
-
 import numpy as np
 import pytest
 

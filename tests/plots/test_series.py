@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import matplotlib as mpl
@@ -7,7 +5,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flockana import Algorithm1, Algorithm2, AlphaInteraction, Law, StaticTarget, plots, simulate
+from flockana import Algorithm1, AlphaInteraction, Law, plots, simulate
 from flockana.base.errors import UnknownNameError
 from tests.plots.artists import Halving, a_run, axes
 
@@ -87,12 +85,6 @@ def test_laws_without_range_energy_or_target_draw_what_there_is(law):
     plots.centre_path(run, ax=axes())
     bounded = any(p.get_label() == "lower bound between samples" for p in plots.distances(run, ax=axes()).patches)
     assert bounded == isinstance(law, Law)  # between the steps of a map there is nothing to bound
-
-
-def test_one_agent_has_no_distances():
-    run = simulate(Algorithm2(target=StaticTarget((0.0,))), [[1.0]], [[0.0]], (0.0, 1.0))
-    assert "one agent" in plots.distances(run, ax=axes()).texts[0].get_text()
-    plots.snapshot(run, ax=axes())
 
 
 def test_pair_curves_pass_through_their_known_points():

@@ -1,5 +1,3 @@
-"""Laws with a world of their own: snapshots and films show it, and the links of any law that has a range."""
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +14,7 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
-from flockana.plots.animation import equal_times, film_view
+from flockana.plots.animation import film_view
 from flockana.plots.snapshot import draw_sample, in_view
 from tests.plots.artists import a_run, axes, frame, points, segments, title
 
@@ -48,21 +46,15 @@ def test_a_snapshot_of_a_zone_law_shows_its_world(hunted):
     ax = plots.snapshot(hunted, 2.0, ax=axes())
     assert [type(patch) for patch in ax.patches] == [Polygon, Polygon, Rectangle]
     (triangles,) = of(ax, PolyCollection)
-    np.testing.assert_allclose(
-        triangles.get_paths()[3].vertices[0], hunted.q[20, 3] + 3.0 * hunted.extra["heading"][20, 3]
-    )
+    corners, q = triangles.get_paths()[3].vertices[:3], hunted.q[20, 3]
+    np.testing.assert_allclose(corners[0], q + 3.0 * hunted.extra["heading"][20, 3])
+    np.testing.assert_allclose(0.5 * (corners[1] + corners[2]), q)
+    assert np.linalg.norm(corners[1] - corners[2]) == pytest.approx(3.0)
+    np.testing.assert_allclose(ax.collections[-2].get_offsets(), hunted.extra["alien"][20])
     fastest = np.linalg.norm(hunted.p[20], axis=1).max()
     assert title(ax) == f"$t$ = 2   longest arrow: {fastest:.3g} length/time"
     assert len(of(ax, Quiver)) == 1
     assert not of(plots.snapshot(hunted, ax=axes(), velocities=False), Quiver)
-
-
-def test_a_film_of_a_map_keeps_what_its_memory_holds(hunted):
-    film = equal_times(hunted, 6)
-    np.testing.assert_array_equal(film.t, hunted.t[::10])
-    assert set(film.extra) == set(hunted.extra)
-    for name, series in hunted.extra.items():
-        np.testing.assert_array_equal(film.extra[name], series[::10])
 
 
 def test_the_film_of_a_zone_run_holds_box_and_alien(hunted):
@@ -120,9 +112,6 @@ def test_who_perceives_whom():
     step = at_rest(a_tree().law.discrete(0.1), a_tree().q[0])
     (same,) = of(plots.perception(step, ax=axes()), LineCollection)
     np.testing.assert_array_equal(same.get_array(), lines.get_array())
-
-
-def test_perception_refuses_other_laws():
     run = simulate(Algorithm1(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
     with pytest.raises(ArgumentError, match="expected a run of MinimalFlocking"):
         plots.perception(run)
@@ -169,44 +158,34 @@ def test_links_are_coloured_by_strain():
     np.testing.assert_allclose(links.get_array(), [0.0, 0.1], atol=1e-12)
     np.testing.assert_allclose(links.get_segments()[1], q[[1, 2]])
     assert (links.norm.vmin, links.norm.vmax) == pytest.approx((-0.2, 0.2))
-
-
-def test_without_a_desired_distance_links_are_plain_and_without_a_range_there_are_none():
-    q = np.array([[0.0, 0.0], [1.0, 0.0]])
-    plain = plots.configuration(q, r=2.0, ax=axes())
-    assert next(c for c in plain.collections if isinstance(c, LineCollection)).get_array() is None
-    assert not any(isinstance(c, LineCollection) for c in plots.configuration(q, ax=axes()).collections)
+    assert len(ax.child_axes) == 1  # the bar
+    apart = plots.configuration([[0.0, 0.0], [20.0, 0.0]], d=7.0, r=8.4, ax=axes())
+    assert (apart.child_axes, of(apart, LineCollection)) == ([], [])
+    (plain,) = of(plots.configuration(q, r=8.4, ax=axes()), LineCollection)
+    assert plain.get_array() is None
+    assert not of(plots.configuration(q, ax=axes()), LineCollection)
 
 
 def test_the_longest_arrow_is_labelled_with_the_largest_speed_and_rest_has_no_arrows():
     q, p = np.zeros((2, 2)), np.array([[3.0, 4.0], [1.0, 0.0]])
-    assert "longest arrow: 5 length/time" in plots.configuration(q, p, ax=axes()).get_title(loc="left") + (
-        plots.configuration(q, p, ax=axes()).get_title()
-    )
-    assert "arrow" not in plots.configuration(q, 0.0 * p, ax=axes()).get_title()
+    assert "longest arrow: 5 length/time" in title(plots.configuration(q, p, ax=axes()))
+    assert "arrow" not in title(plots.configuration(q, 0.0 * p, ax=axes()))
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_a_snapshot_shows_the_nearest_sample_and_the_target_then(m):
     run = a_run(m)
     ax = plots.snapshot(run, 0.52, ax=axes(m))
-    assert "$t$ = 0.5" in ax.get_title(loc="left") + ax.get_title()
+    assert "$t$ = 0.5" in title(ax)
     dots, star = (next(c for c in ax.collections if c.get_label() == name) for name in ("agents", "γ-agent"))
-    if m == 3:
-        np.testing.assert_allclose(points(dots), run.q[5])
-        np.testing.assert_allclose(points(star), [[2.0, 2.0, 2.0]])
-    else:
-        np.testing.assert_allclose(dots.get_offsets()[:, :m], run.q[5])
-        np.testing.assert_allclose(star.get_offsets()[:, :m], [[2.0] * m])
-
-
-def test_snapshot_of_bad_time_is_refused():
-    with pytest.raises(ArgumentError, match="time = nan: expected a finite number"):
-        plots.snapshot(a_run(), float("nan"), ax=axes())
+    np.testing.assert_allclose(points(dots)[:, :m], run.q[5])
+    np.testing.assert_allclose(points(star)[:, :m], [[2.0] * m])
 
 
 def test_a_time_before_or_after_the_run_is_refused_and_one_within_rounding_of_its_end_is_not():
     run = simulate(Algorithm1(), [[0.0, 0.0], [6.0, 1.0]], np.zeros((2, 2)), (0.5, 1.0))
+    with pytest.raises(ArgumentError, match="time = nan: expected a finite number"):
+        plots.snapshot(run, float("nan"), ax=axes())
     for time, shown in ((99, "99"), (0.0, "0"), (1.01, "1.01")):
         with pytest.raises(ArgumentError, match=f"time = {shown}: expected a time of the run, 0.5 to 1$"):
             plots.snapshot(run, time)
@@ -237,12 +216,6 @@ def test_agents_in_one_place_carry_their_number():
     assert not plots.configuration([[0.0, 0.0], [7.0, 0.0]], ax=axes()).texts
 
 
-def test_no_bar_of_strain_where_there_are_no_links():
-    ax = plots.configuration([[0.0, 0.0], [20.0, 0.0]], d=7.0, r=8.4, ax=axes())
-    assert ax.child_axes == []
-    assert len(plots.configuration([[0.0, 0.0], [7.5, 0.0]], d=7.0, r=8.4, ax=axes()).child_axes) == 1
-
-
 def test_a_flock_at_rest_has_no_arrows():
     law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
     q = fl.lattice.hexagonal_patch(1, 7.0)
@@ -250,13 +223,6 @@ def test_a_flock_at_rest_has_no_arrows():
     moving = fl.simulate(law, q, np.full_like(q, 1.0), (0.0, 1e-6))
     assert "arrow" not in title(plots.snapshot(still, ax=axes()))
     assert "longest arrow: 1.41" in title(plots.snapshot(moving, ax=axes()))
-
-
-def test_a_sphere_in_space_is_as_wide_as_it_is_high():
-    ax = plots.configuration([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 2.0, 3.0]], ax=axes(3))
-    shares = ax._box_aspect
-    spans = [np.ptp(getattr(ax, f"get_{name}lim")()) for name in "xyz"]
-    np.testing.assert_allclose(np.array(shares) / spans, shares[0] / spans[0])
 
 
 @pytest.mark.parametrize(

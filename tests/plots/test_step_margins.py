@@ -1,5 +1,3 @@
-"""Bars of steps: their lengths, what is unstable, bad input."""
-
 import pytest
 
 from flockana import plots

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import inspect
 
 import numpy as np
@@ -11,10 +9,7 @@ from flockana.base.errors import ArgumentError
 from flockana.plots.style import (
     colour_bar,
     finish,
-    finish_empty,
     finish_over_time,
-    frame_space,
-    in_plane,
     line_width_and_opacity,
     lines,
     write_title,
@@ -43,18 +38,6 @@ def test_a_drawing_over_time_goes_from_the_first_time_to_the_last(ax):
     assert finish_over_time(ax, np.array([5.0]), "").get_xlim() == before  # one instant has no extent
 
 
-def test_empty_axes_say_why(ax):
-    finish_empty(ax, "H, energy", "this law has no energy")
-    assert [text.get_text() for text in ax.texts] == ["this law has no energy"]
-    assert (ax.get_ylabel(), len(ax.get_xticks()), len(ax.get_yticks())) == ("$H$, energy", 0, 0)
-
-
-def test_agents_of_a_line_lie_on_the_axis():
-    np.testing.assert_array_equal(in_plane(np.array([[3.0], [4.0]])), [[3.0, 0.0], [4.0, 0.0]])
-    points = np.ones((2, 3))
-    assert in_plane(points) is points
-
-
 @pytest.mark.parametrize("m", [2, 3])
 def test_lines_are_of_their_space_even_if_there_are_none(m):
     ax = Figure().add_subplot(projection="3d" if m == 3 else None)
@@ -63,21 +46,16 @@ def test_lines_are_of_their_space_even_if_there_are_none(m):
     assert [type(c).__name__ for c in ax.collections] == ["Line3DCollection" if m == 3 else "LineCollection"] * 2
 
 
-def test_a_line_has_no_second_coordinate(ax):
-    frame_space(ax, np.zeros((3, 2)), 1)
-    assert (ax.get_xlabel(), ax.get_ylabel(), len(ax.get_yticks())) == ("$x$ (length)", "", 0)
-    frame_space(ax, np.zeros((3, 2)), 2)
-    assert (ax.get_ylabel(), ax.get_aspect()) == ("$y$ (length)", 1.0)
-
-
 def test_axes_that_others_made_get_titles_legends_and_colour_bars_in_the_style():
     ax = Figure().add_subplot()
-    ax.plot([0, 1], [0, 1], label="a line")
-    finish(ax, "t (time)")
+    ax.plot([0, 1], [0, 1], label="γ-agent")
+    finish(ax, "t (time)", "‖u‖")
     write_title(ax, "ζ = 1")
-    bar = colour_bar(ax, ax.scatter([0, 1], [0, 1], c=[0, 1]), "strain").ax
+    bar = colour_bar(ax, ax.scatter([0, 1], [0, 1], c=[0, 1]), "c1γ").ax
     title = ax.title if ax.get_title() else ax._left_title
     assert (title.get_text(), title.get_fontsize()) == (r"$\zeta$ = 1", 10)
+    assert (ax.get_xlabel(), ax.get_ylabel(), bar.get_ylabel()) == ("$t$ (time)", r"$\Vert u\Vert$", r"$c_1^\gamma$")
+    assert (ax.get_legend().get_texts()[0].get_text(), ax.lines[0].get_label()) == (r"$\gamma$-agent", "γ-agent")
     assert ax.get_legend().get_frame().get_edgecolor()[3] == 0.0
     assert (bar.yaxis.label.get_fontsize(), bar.get_yticklabels()[0].get_fontsize()) == (9, 8)
 
@@ -124,22 +102,13 @@ DRAWING = [name for name in plots.__all__ if inspect.isfunction(getattr(plots, n
 
 
 def test_what_draws_takes_its_data_and_then_options_by_name_one_of_which_is_where():
+    assert len(DRAWING) > 45
     for name in DRAWING:
         parameters = inspect.signature(getattr(plots, name)).parameters.values()
         data = [one for one in parameters if one.kind is not one.KEYWORD_ONLY]
         bare = all(one.default is one.empty or (one.name in ("p", "time") and one.default is None) for one in data)
         options = {one.name: one.default for one in parameters if one.kind is one.KEYWORD_ONLY}
         assert (1 <= len(data) <= 3, bare, options["ax"], "axes" in options) == (True, True, None, False), name
-
-
-def test_films_are_asked_for_alike():
-    assert len(DRAWING) > 45
-    run, mode = (inspect.signature(getattr(plots, name)).parameters for name in sorted(OF_FILES))
-    assert list(run)[:2] == ["trajectory", "path"]
-    assert list(mode)[:3] == ["linearisation", "mode", "path"]
-    for name in ("fps", "velocities", "progress"):
-        assert mode[name].kind is run[name].kind is inspect.Parameter.KEYWORD_ONLY
-        assert (name, mode[name].default) == (name, run[name].default) or callable(mode[name].default)
 
 
 @pytest.mark.parametrize(("grid", "message"), [((0,), "rows = 0: expected"), ((1, "x"), "columns = 'x': expected")])

@@ -1,39 +1,23 @@
-"""Figures of zone-based flocking: the artists hold the run's numbers; every law gets the figures made for it."""
-
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
-from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.patches import Circle
 
-from flockana import Algorithm1, Box, Sphere, ZoneFlocking, ZoneWorld, plots, scenario, simulate
+from flockana import Algorithm1, ZoneFlocking, plots, scenario, simulate
 from flockana.base.errors import ArgumentError
 from flockana.report.figures import pictures
 from flockana.theorems.bearing_distance.random_starts import crowd_start
 from tests.plots.artists import axes
 
 
+def heights(ax):
+    return {line.get_label(): line.get_ydata() for line in ax.get_lines()}
+
+
 @pytest.fixture(scope="module")
 def run():
     entry = scenario("zone-52")
     return simulate(entry.law, entry.q0, entry.p0, (0.0, 3.0))
-
-
-def test_triangles_point_ahead(run):
-    ax = plots.zones(run, 2.0, ax=axes())
-    (found,) = (c for c in ax.collections if isinstance(c, PolyCollection))
-    corners = found.get_paths()[4].vertices[:3]
-    q, h = run.q[20, 4], run.extra["heading"][20, 4]
-    np.testing.assert_allclose(corners[0], q + 3.0 * h)
-    np.testing.assert_allclose(0.5 * (corners[1] + corners[2]), q)
-    assert np.linalg.norm(corners[1] - corners[2]) == pytest.approx(3.0)
-    assert "$t$ = 2" in ax.get_title(loc="left") + ax.get_title()
-
-
-def test_the_world_is_drawn(run):
-    ax = plots.zones(run, ax=axes())
-    kinds = [type(patch) for patch in ax.patches]
-    assert (kinds.count(Polygon), kinds.count(Rectangle), kinds.count(Circle)) == (2, 1, 0)
-    np.testing.assert_allclose(ax.collections[-1].get_offsets(), run.extra["alien"][-1])
 
 
 def test_buffers_instead_of_triangles():
@@ -43,32 +27,18 @@ def test_buffers_instead_of_triangles():
     assert not any(isinstance(c, PolyCollection) for c in ax.collections)
 
 
-def test_space_and_balls():
-    rng = np.random.default_rng(0)
-    law = ZoneFlocking(world=ZoneWorld((Sphere((20.0, 20.0, 20.0), 3.0),), Box((0.0,) * 3, (40.0,) * 3)))
-    solid = simulate(law, rng.uniform(1.0, 9.0, (6, 3)), rng.uniform(0.0, 1.0, (6, 3)), (0.0, 1.0))
-    plots.zones(solid, ax=axes(3)).get_figure().canvas.draw()
-    flat = ZoneFlocking(world=ZoneWorld((Sphere((20.0, 20.0), 3.0),)))
-    disc = simulate(flat, rng.uniform(1.0, 9.0, (6, 2)), rng.uniform(0.0, 1.0, (6, 2)), (0.0, 1.0))
-    assert plots.zones(disc, ax=axes()).patches[0].get_radius() == 3.0
-
-
 def test_series_hold_the_numbers_and_their_bounds(run):
-    lines = {line.get_label(): line for line in plots.zone_distances(run, ax=axes()).get_lines()}
-    np.testing.assert_allclose(lines["least (D)"].get_ydata(), run.metrics().min_distance)
-    assert [lines[name].get_ydata()[0] for name in "rca"] == [1.5, 3.0, 5.0]
-    lines = {line.get_label(): line for line in plots.zone_speeds(run, ax=axes()).get_lines()}
-    assert (lines["desired"].get_ydata()[0], lines["bound"].get_ydata()[0]) == (3.0, 4.0)
-    lines = {line.get_label(): line for line in plots.zone_controls(run, ax=axes()).get_lines()}
-    np.testing.assert_allclose(lines["mean"].get_ydata(), np.linalg.norm(run.u, axis=2).mean(axis=1))
-    assert lines["bound"].get_ydata()[0] == 10.0
-    lines = {line.get_label(): line for line in plots.zone_safety(run, ax=axes()).get_lines()}
-    np.testing.assert_allclose(lines["wall"].get_ydata(), run.metrics().wall_distance)
-    lines = {line.get_label(): line for line in plots.zone_populations(run, ax=axes()).get_lines()}
-    np.testing.assert_allclose(lines["conflict"].get_ydata(), run.metrics().in_conflict)
-    np.testing.assert_allclose(
-        plots.measure(run, "coordination", ax=axes()).get_lines()[0].get_ydata(), run.metrics().coordination
-    )
+    lines = heights(plots.zone_distances(run, ax=axes()))
+    np.testing.assert_allclose(lines["least (D)"], run.metrics().min_distance)
+    assert [lines[name][0] for name in "rca"] == [1.5, 3.0, 5.0]
+    lines = heights(plots.zone_speeds(run, ax=axes()))
+    assert (lines["desired"][0], lines["bound"][0]) == (3.0, 4.0)
+    lines = heights(plots.zone_controls(run, ax=axes()))
+    np.testing.assert_allclose(lines["mean"], np.linalg.norm(run.u, axis=2).mean(axis=1))
+    assert lines["bound"][0] == 10.0
+    np.testing.assert_allclose(heights(plots.zone_safety(run, ax=axes()))["wall"], run.metrics().wall_distance)
+    conflict = heights(plots.zone_populations(run, ax=axes()))["conflict"]
+    np.testing.assert_allclose(conflict, run.metrics().in_conflict)
 
 
 def test_an_empty_plane_says_so():
@@ -97,8 +67,8 @@ def test_the_report_draws_a_law_by_its_own_module(run):
 
 def test_a_crowd_is_drawn_by_its_profile():
     crowd = simulate(ZoneFlocking(), *crowd_start(0, 110), (0.0, 0.3))
-    lines = {line.get_label(): line for line in plots.zone_distances(crowd, ax=axes()).get_lines()}
-    np.testing.assert_allclose(lines["least (D)"].get_ydata(), crowd.metric("min_distance"), rtol=1e-12)
+    lines = heights(plots.zone_distances(crowd, ax=axes()))
+    np.testing.assert_allclose(lines["least (D)"], crowd.metric("min_distance"), rtol=1e-12)
     assert {"median", "r", "c", "a"} < set(lines)
     assert len(lines) == 5
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, CallableTarget, StaticTarget
+from flockana import Algorithm1, Algorithm2, StaticTarget
 from flockana.base.errors import FileError
 from flockana.player.codec import decode
-from flockana.report.build import ensure_directory, report_folder, verdicts_json, write_report
+from flockana.report.build import report_folder, verdicts_json, write_report
 from flockana.report.coverage import coverage
 from flockana.report.coverage.anchors import scenario_id, verdict_id
 from flockana.report.pages import FixedResult, ScenarioPage, ScenarioResult, page
@@ -90,15 +90,6 @@ def read(path):
     return checker
 
 
-def test_the_error_is_shown_beside_every_margin(result, tmp_path):
-    """Of hypotheses and of claims alike; one without an error says so."""
-    text = write_report([result], tmp_path, seed=5, seconds=1.5).read_text(encoding="utf-8")
-    for shown in (f'{show(-2.0)}<br><span class="muted">± {show(0.125)}</span>', f">± {show(1e-9)}</td>"):
-        assert shown in text
-    claims = text.split('<table class="claims">')[1:]
-    assert all('<th class="number">margin</th><th class="number">± error</th>' in table for table in claims)
-
-
 def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
     written = write_report(
         [result, FixedResult(theorem("E8"), verify("E8"))], tmp_path / "new" / "folder", seed=5, seconds=1.5
@@ -128,6 +119,7 @@ def test_the_page_is_whole_self_contained_and_escaped(result, tmp_path):
         "quasi",
     ):
         assert words in text
+    assert text.count("<td>quasi</td>") == 2  # all tolerances in use
     assert not list(written.parent.glob(".*partial"))
 
 
@@ -166,11 +158,6 @@ def test_a_whole_report_stays_even_if_its_verdicts_are_damaged(tmp_path, monkeyp
     assert (folder / "index.html").read_text(encoding="utf-8") != "whole"
 
 
-def test_a_report_on_a_part_takes_the_place_of_another(tmp_path):
-    for name in ("E8", "E1", "E8"):
-        assert write_report([], tmp_path, of=name) == tmp_path / "index.html"
-
-
 def test_a_scenarios_own_instants_come_first(result):
     assert "instants" not in page(result).pictures[0].caption
     shown = page(replace(result, scenario=replace(result.scenario, instants=(0.0, 0.2, 0.5, 1.0)))).pictures
@@ -184,14 +171,8 @@ def test_the_run_in_the_page_is_the_run(result):
     assert (header["n"], header["m"], header["marks"]) == (2, 2, [])
     span = np.ptp(run.q)
     np.testing.assert_allclose(arrays["q"], run.q, atol=span / 8192.0)
-    assert page(result, figures=False).play == ""
-
-
-def test_a_run_too_large_for_the_player_has_a_page_without_it(result):
-    run = result.trajectory
-    fast = replace(result, trajectory=replace(run, p=run.p + 1e60))
-    assert page(result).play
-    assert page(fast).play == ""
+    fast = replace(result, trajectory=replace(run, p=run.p + 1e60))  # too large for the player's numbers
+    assert page(result, figures=False).play == page(fast).play == ""
 
 
 def test_instants_of_source_and_witnesses_are_marked_once_each(result):
@@ -232,12 +213,6 @@ def test_json_holds_every_verdict_and_is_strict(result):
     assert data["verdicts"][2]["claims"][0]["computed"] == pytest.approx(2 / 3)
 
 
-def test_different_tolerances_are_all_listed(result, tmp_path):
-    text = write_report([page(result, figures=False)], tmp_path).read_text(encoding="utf-8")
-    assert text.count("<td>quasi</td>") == 2  # the two verdicts of the fixture differ in it
-    assert "of what is called a quasi-α-lattice" in text
-
-
 def test_a_verdict_without_claims_and_one_that_nothing_was_expected_of(tmp_path):
     item = a_scenario(expected={}, reports=())
     bare = ScenarioResult(item, item.run(), (Verdict("os-1", (), (), Tolerances(), "pair"),))
@@ -259,25 +234,6 @@ def test_a_run_that_ended_early_is_a_surprise(result):
     assert made.surprises[0] == "the run of pair failed: it blew up"
 
 
-def test_a_page_crosses_processes_though_its_law_cannot():
-    import pickle
-
-    law = Algorithm2(target=CallableTarget(lambda t: ((t, 0.0), (1.0, 0.0))))
-    item = a_scenario(law=law, expected={})
-    made = page(ScenarioResult(item, item.run(), ()), figures=False)
-    assert pickle.loads(pickle.dumps(made)) == made
-
-
-def test_directories_that_cannot_be_written_are_refused(tmp_path):
-    (tmp_path / "file").write_text("here")
-    with pytest.raises(FileError, match="there is a file of that name; choose a folder"):
-        ensure_directory(tmp_path / "file")
-    with pytest.raises(FileError, match="cannot write to"):
-        ensure_directory(tmp_path / "file" / "below")
-    assert ensure_directory(tmp_path / "a" / "b").is_dir()
-    assert list((tmp_path / "a" / "b").iterdir()) == []
-
-
 def test_an_old_report_survives_a_failed_write(tmp_path, result, monkeypatch):
     write_report([], tmp_path)
     before = (tmp_path / "index.html").read_text()
@@ -295,10 +251,7 @@ def test_an_old_report_survives_a_failed_write(tmp_path, result, monkeypatch):
         (-0.0, "0"),
         (1.0 / 3.0, "0.3333"),
         (float("inf"), "inf"),
-        (np.float64(2.5), "2.5"),
-        (True, "True"),
         ([1, 2.0], "(1, 2)"),
-        (range(3), "range(0, 3)"),
         (np.zeros(7), "7 values"),
         ({"a": {"b": 1}, "t": 0.5}, "a: (b: 1); t: 0.5"),
     ],

@@ -1,5 +1,3 @@
-"""Charts: what is drawn lies where its numbers say."""
-
 import re
 
 import numpy as np
@@ -39,13 +37,6 @@ def test_a_peak_of_one_sample_is_drawn():
     assert len(points(Chart("x", np.arange(5001.0), (Curve(values),)).svg())) < 200
 
 
-def test_what_is_missing_hides_no_peak():
-    values = np.ones(5001)
-    values[2341:2350] = np.nan
-    values[2345] = 2.0
-    assert points(Chart("x", np.arange(5001.0), (Curve(values),)).svg())[:, 1].min() < _TOP + 0.1 * _HEIGHT
-
-
 def test_levels_are_named_and_words_escaped():
     text = Chart("<x>", np.arange(3.0), (Curve(np.arange(3.0), "a & b"),), levels=((1.0, "bound"),)).svg()
     assert "bound</text>" in text
@@ -69,3 +60,10 @@ def test_numbers_on_the_axis_are_told_apart():
 def test_a_path_breaks_where_points_are_not_finite_and_leaves_out_those_on_a_line():
     assert _path(np.arange(4.0), np.array([0.0, 1.0, np.nan, 3.0])) == "M0 0L1 1M3 3"
     assert _path(np.arange(4.0), np.array([5.0, 5.0, 5.0, 7.0])) == "M0 5L2 5L3 7"
+
+
+def test_what_is_missing_hides_no_peak():
+    values = np.ones(5001)
+    values[2341:2350] = np.nan
+    values[2345] = 2.0
+    assert points(Chart("x", np.arange(5001.0), (Curve(values),)).svg())[:, 1].min() < _TOP + 0.1 * _HEIGHT

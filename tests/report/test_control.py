@@ -1,5 +1,3 @@
-"""What a control engineer downloads is the linearisation, and the pictures say their numbers."""
-
 import base64
 import json
 

@@ -1,5 +1,3 @@
-"""The tables of what is held: nothing in them is wrong, and nothing is left out of them."""
-
 import re
 from pathlib import Path
 

@@ -1,16 +1,17 @@
-"""Axes get what room is left; nothing that they carry is cut off, or lies on another."""
-
+import matplotlib as mpl
 import numpy as np
 import pytest
 
 from flockana.plots.scales import PlainScale
 from flockana.plots.style import colour_bar, finish, style
-from flockana.report import image
+from flockana.report.image import placed
 from flockana.report.layout import _extents
 
 
 def drawn(draw, size=(13.0, 4.0)):
-    canvas = image.drawn(draw, size, dpi=80)
+    with style(), mpl.rc_context({"axes.titley": 1.0}):
+        canvas = placed(draw, size, 80)
+        canvas.draw()
     figure = canvas.figure
     own = {ax: [a for a in ax.artists if isinstance(a, PlainScale)] for a in figure.axes for ax in (a, *a.child_axes)}
     scales = {ax: tuple(found) for ax, found in own.items() if found}

@@ -1,5 +1,3 @@
-"""The minimal model's runs are drawn as any flock's, and with the profiles of Fig. 10."""
-
 from flockana import scenario, simulate
 from flockana.report.figures import flock_pictures, pictures
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from flockana.plots.decay import linear_range, measured_gains
+from flockana.plots.decay import linear_range
 from flockana.plots.style import subplots
 from flockana.report import stability
 from flockana.report.build import write_report
@@ -90,12 +90,6 @@ def test_a_last_state_is_named_for_its_run(pages):
     assert empty.rows == ()
 
 
-def test_no_verdicts_no_section(tmp_path):
-    assert stability_section([page("E8", Claim("decay", "verified", computed={"x": ROW}))]) is None
-    text = write_report([page("E8", Claim("printed", "refuted"))], tmp_path).read_text(encoding="utf-8")
-    assert "linearised-stability" not in text
-
-
 def test_measured_points_stand_on_the_bode_plot(pages, monkeypatch):
     """The MSN project's circle: 3.49 rad/s, measured ratio 0.852, with ω_n = √70 and ζ = 1."""
     claims = (Claim("predicted", "verified", computed=0.8518, stated=0.8518),)
@@ -126,9 +120,3 @@ def test_a_linear_range_on_its_axes():
     np.testing.assert_allclose(curve.get_ydata(), guide.get_ydata())
     assert (len(intact.get_xdata()), broken.get_xdata().tolist()) == (2, [0.1])
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
-
-
-def test_gains_in_decibels():
-    _, ax = subplots()
-    measured_gains({"case": (3.49, 0.1)}, ax=ax)
-    assert ax.lines[0].get_ydata()[0] == pytest.approx(-20.0)

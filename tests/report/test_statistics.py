@@ -5,7 +5,6 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from flockana.base.errors import ArgumentError
 from flockana.ensemble import clopper_pearson, ensemble, shares
 from flockana.ensemble.work import Job, Record, Request, run_batch
 from flockana.report.build import page_environment, verdicts_json, write_report
@@ -52,19 +51,8 @@ def test_expectations_and_options_of_the_scenario_are_shown():
     assert (entry.options, entry.runs) == ("n = 4", 2)
     assert (entry.rows[0].verified.low, entry.rows[0].verified.high) == clopper_pearson(2, 2, level=0.9)
     assert entry.title.startswith("4 agents")
+    assert (str(Share(57, 200, 0.22356, 0.35295)), str(Share(0, 0, 0.0, 1.0))) == ("28.5 % [22.4, 35.3]", "—")
     assert {row.theorem for row in entry.rows} == {"energy", "os-3"}
-
-
-def test_shares_as_text():
-    assert str(Share(57, 200, 0.22356, 0.35295)) == "28.5 % [22.4, 35.3]"
-    assert str(Share(0, 0, 0.0, 1.0)) == "—"
-
-
-def test_bad_input_is_refused():
-    with pytest.raises(ArgumentError, match="--seeds 2: expected a scenario whose source reports an outcome, got os-1"):
-        surveys("os-1", 2)
-    with pytest.raises(ArgumentError, match=r"--seeds 2: expected .* got zone-tree"):
-        surveys("zone-tree", 2)
 
 
 def test_the_catalogue_asks_for_itself_and_seeds_are_split_among_processes():

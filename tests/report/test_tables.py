@@ -24,23 +24,6 @@ def test_numbers_stand_right_and_names_left():
     assert second.startswith("2 ")
 
 
-def test_a_column_has_at_least_its_width():
-    table = headed_table(column("claim"), column("runs", right=True, width=9))
-    table.add_row("i", "3")
-    table.add_row("ii", "1234567890")
-    assert [len(line) for line in printed(table)[2:]] == [len("claim") + 3 + 10] * 2
-    table = headed_table(column("claim"), column("runs", right=True, width=9))
-    table.add_row("claim", "3")
-    assert printed(table)[-1] == "claim" + "3".rjust(3 + 9)
-
-
-def test_facts_have_no_heading_and_no_markup():
-    assert [" ".join(line.split()) for line in printed(fact_table([("links", "[3] of 4"), ("graph", "planar")]))] == [
-        "links [3] of 4",
-        "graph planar",
-    ]
-
-
 def share_like():
     table = headed_table(column("claim", wraps=True), column("runs", right=True), column("verified, %", right=True))
     table.add_row("os-5")
@@ -62,13 +45,6 @@ def test_rows_are_blocks_where_a_table_would_be_cut(width):
     assert text.replace("quantita tive", "quantitative") == (
         "os-5 extension-quantitative runs: 100 verified, %: 100.0 [96.4, 100.0]"
     )
-
-
-def test_a_block_s_values_are_moved_in_under_its_name():
-    console = Console(width=30, file=StringIO())
-    console.print(share_like())
-    lines = console.file.getvalue().rstrip().splitlines()
-    assert [len(line) - len(line.lstrip()) for line in lines if line.strip()] == [0, 2, 4, 4, 4]
 
 
 @pytest.mark.parametrize("width", [12, 20, 30, 40, 80])

@@ -1,5 +1,3 @@
-"""The order in which tasks are begun: two workers compile different kernels first, and nothing is left out."""
-
 from collections import Counter
 
 from flockana.laws.discrete import DiscreteLaw
@@ -18,10 +16,3 @@ def test_one_flow_is_begun_then_all_maps_then_the_others():
     assert count > 100
     assert maps == [False] + [True] * count + [False] * (len(maps) - count - 1)
     assert begun[0] == tasks[0]
-
-
-def test_one_task_is_begun_as_it_is():
-    for name in ("zone-51", "hexagon", "E8"):
-        assert _execution_order(plan(name)) == list(plan(name))
-    unknown = (Survey("module:function", (0,)), *plan("E8"))
-    assert _execution_order(unknown) == list(unknown)

@@ -1,5 +1,3 @@
-"""The lower bounds of the dependencies, as pip is told them."""
-
 import pytest
 
 from tools import dependencies

@@ -1,5 +1,3 @@
-"""Generated kernels and enclosures: the files are what the formulas give, and what is generated is the formula."""
-
 from pathlib import Path
 
 import pytest

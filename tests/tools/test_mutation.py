@@ -1,5 +1,3 @@
-"""Mutation testing: which mutants there are, which tests are asked first, and what is made of what they say."""
-
 import json
 import tomllib
 
@@ -78,34 +76,6 @@ def test_the_nearest_tests_come_first(project):
     assert mutation.nearest("flockana/laws/area.py") == area
 
 
-@pytest.mark.parametrize(
-    ("path", "first"),
-    [
-        ("lattice/measure", ["tests/lattice/test_measure.py"]),  # its own
-        ("theorems/dead_zone/l01", ["tests/theorems/dead_zone/test_l01.py"]),
-        ("theorems/olfati_saber/lattice_limit", ["tests/theorems/olfati_saber/test_lattice_limit.py"]),
-    ],
-)
-def test_what_a_file_of_the_package_is_tested_by(path, first):
-    assert mutation.nearest(f"flockana/{path}.py")[: len(first)] == first
-
-
-@pytest.mark.parametrize(("number", "status"), [("1 + 2", 0), ("2", 1), ("1 +", 1), ("__import__('os')._exit(1)", 1)])
-def test_what_tests_say_of_a_mutant(project, tmp_path_factory, monkeypatch, number, status):
-    copy = tmp_path_factory.mktemp("copy")
-    test = "from flockana.laws.number import number\n\n\ndef test_right():\n    assert number == 3\n"
-    for tree, text in ((project, "number = 3"), (copy, f"number = {number}")):
-        for name, said in {
-            "flockana/__init__.py": "",
-            "flockana/laws/number.py": text,
-            "tests/laws/test_number.py": test,
-        }.items():
-            (tree / name).parent.mkdir(parents=True, exist_ok=True)
-            (tree / name).write_text(said)
-    monkeypatch.setattr(mutation, "PROJECT", copy)
-    assert mutation.ask(project, 60.0) == status
-
-
 @pytest.mark.parametrize(("test", "outcome", "code"), [("assert area(1) == 2", "killed", 0), ("", "survived", 3)])
 def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(
     project, tmp_path, monkeypatch, capsys, test, outcome, code
@@ -124,17 +94,6 @@ def test_cosmic_ray_tries_what_is_drawn_and_what_survives_is_shown(
     assert ("- return a + 1" in told.out) is (code == 3)
     assert mutation.main(["laws", "--sample", "2", "--out", str(folder)]) == code  # tries nothing again
     assert "0 to try" in capsys.readouterr().err
-
-
-def test_the_table_counts_what_was_said_and_shows_survivors():
-    place = {"path": "flockana/laws/a.py", "operator": "Add", "start": (3, 1), "before": "a + b"}
-    found = [place | {"key": sign, "after": f"a {sign} b"} for sign in ("-", "*", "/", "%", "//")]
-    outcomes = dict(zip("-*/%", ("killed", "incompetent", "survived", "equivalent"), strict=True))
-    text, survivors = mutation.report({"laws": 50}, found, outcomes)
-    assert survivors == 1
-    row = "| laws | 50 | 4 | 2 | 1 | 1 | 9.4-99.2 % |"  # 2 of 3, Clopper and Pearson
-    assert text.splitlines()[2:4] == [row, row.replace("laws", "all")]
-    assert "a.py:3 Add\n    - a + b\n    + a / b\n" in text
 
 
 def test_every_reviewed_mutant_has_a_reason_and_is_one_of_the_code_as_it_is():

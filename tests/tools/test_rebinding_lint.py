@@ -1,5 +1,3 @@
-"""Names that stand for two things in a compiled function are found; those that only change their value are not."""
-
 from textwrap import dedent, indent
 
 import pytest
@@ -10,20 +8,16 @@ WRONG = {
     "q = q.shape[0]": "q is an array, and then a number",
     "q = np.empty(3)": "the argument q is bound again, to an array of its own",
     "a = np.empty(3)\na = 0": "a is an array, and then a number",
-    "n, a = 3, np.zeros(3)\nn, a = 4, n.size": "a is an array, and then a number",
     "n = len(q)\nn = np.zeros(2)": "n is a number, and then an array",
     "for q in range(3):\n    pass": "the loop counts with q, an argument or an array",
     "a = np.zeros(3)\nfor k in range(3):\n    for a in range(2):\n        pass": "the loop counts with a, an argument",
     "for k in range(3):\n    for j in range(2):\n        for k in range(4):\n            p": "as a loop around",
     "for k in range(3):\n    k = 2": "k is bound in the loop that counts with it",
-    "for k in range(3):\n    j, k = 1, 2": "k is bound in the loop that counts with it",
     "k, k = 1, 2": "k is bound twice at once",
 }
 RIGHT = [
-    "p = 3",
     "q = 0.5 * q",
     "q = q[::-1]",
-    "a = np.empty(3)\na = np.zeros(4)",
     "for k in range(3):\n    pass\nfor k in range(4):\n    pass",
     "for k in range(3):\n    j = k\n    j += 1",
     "_, _ = 1, 2\nfor _ in range(3):\n    for _ in range(2):\n        pass",

@@ -1,5 +1,3 @@
-"""What the site promises of its pages: nothing public is missing, and no link leads nowhere."""
-
 import importlib
 import inspect
 import json
@@ -16,7 +14,7 @@ from flockana import plots, scenario, symbolic
 from flockana.report.stills import stills
 from flockana.scenarios import scenarios as scenario_names
 from flockana.theorems.catalogue import catalogue
-from tools.site import cache, lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts
+from tools.site import lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts
 from tools.site.formulas import DERIVATIONS
 
 INNER = {"pair_derivation"}  # of a formula that a user writes
@@ -83,16 +81,6 @@ MEASURED = {
 def found(tmp_path):
     (tmp_path / "verdicts.json").write_text(json.dumps(MEASURED), encoding="utf-8")
     return verdicts.measured(tmp_path / "verdicts.json")
-
-
-def test_measured_verdicts_come_from_a_report(found):
-    assert found.status == {
-        ("os-3", "collapse"): "refuted (interval)",
-        ("os-3", "hexagon"): "vacuous (numeric)",
-        ("E1", ""): "refuted (symbolic)",
-    }
-    assert found.hypotheses["os-3"] == {"c1γ > 0": {"met": 1, "unmet": 1}}
-    assert found.claims["os-3"] == {"i": {"refuted": 1, "vacuous": 1}}
 
 
 def test_a_page_shows_hypotheses_claims_steps_pictures_and_verdicts(proved, found):
@@ -187,16 +175,6 @@ def test_dead_links_are_found_and_good_ones_are_not(tmp_path):
     ]
 
 
-def test_what_is_kept_is_made_again_when_its_code_changes(tmp_path, monkeypatch):
-    monkeypatch.setattr(cache, "CACHE", tmp_path)
-    made = iter((1, 2, 3))
-    monkeypatch.setattr(cache, "digest", lambda folders: "a" * 16)
-    assert [cache.kept("k", "n", ("x",), lambda: next(made)) for _ in range(2)] == [1, 1]
-    monkeypatch.setattr(cache, "digest", lambda folders: "b" * 16)
-    assert cache.kept("k", "n", ("x",), lambda: next(made)) == 2
-    assert len(list((tmp_path / "k").iterdir())) == 1
-
-
 def test_slides_show_what_the_page_of_their_lecture_put_out(tmp_path):
     """Each code cell of the slides is one of the page's, with its output: nothing is executed twice."""
     for source in slides.shown():
@@ -209,15 +187,3 @@ def test_slides_show_what_the_page_of_their_lecture_put_out(tmp_path):
         code = [cell for cell in slides.with_outputs(source, tmp_path).cells if cell.cell_type == "code"]
         assert len(code) > 1
         assert [cell.outputs[0].text for cell in code] == [texts[cell.source] for cell in code]
-
-
-def test_a_page_of_slides_for_each_lecture_and_a_link_to_it(tmp_path, monkeypatch):
-    pytest.importorskip("nbconvert")
-    monkeypatch.setattr(slides, "shown", lambda: lectures.SOURCES.glob("00a*.py"))
-    slides.write(tmp_path / "slides", None)
-    page = (tmp_path / "slides" / "00a_graphs_and_lyapunov.html").read_text(encoding="utf-8")
-    assert page.count("<section>") > 10
-    assert list(links.dead(tmp_path)) == []
-    lectures.write(tmp_path / "generated" / "lectures")
-    index = (tmp_path / "generated" / "lectures" / "index.md").read_text(encoding="utf-8")
-    assert '<a href="../../slides/00a_graphs_and_lyapunov.html">00a</a>' in index

@@ -10,14 +10,12 @@ def anchors(pages: Iterable[Page]) -> dict[str, str]:
     """Return the ids in the report by reference; a theorem checked on several runs leads to the first."""
     found: dict[str, str] = {}
     for page in pages:
-        run = isinstance(page, ScenarioPage)
-        if run:
+        if isinstance(page, ScenarioPage):
             found[f"scenario:{page.name}"] = scenario_id(page.name)
-        for finding in page.findings:
-            verdict, subject = finding.verdict, page.name if run else "fixed"
-            shown = verdict_id(subject, verdict.theorem)
+        for verdict in (finding.verdict for finding in page.findings):
+            shown = verdict_id(page.subject, verdict.theorem)
             if verdict.theorem == SOURCE:
-                found |= {f"report:{subject}/{claim.name}": shown for claim in verdict.claims}
+                found |= {f"report:{page.subject}/{claim.name}": shown for claim in verdict.claims}
                 continue
             found.setdefault(f"{'erratum' if is_erratum(verdict.theorem) else 'theorem'}:{verdict.theorem}", shown)
             for claim in verdict.claims:

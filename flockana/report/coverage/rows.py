@@ -107,13 +107,9 @@ def _row(line: str) -> Row:
     if len(cells) != len(_COLUMNS):
         raise ArgumentError(f"{len(cells)} columns, expected {len(_COLUMNS)}: {', '.join(_COLUMNS)}")
     place, what, standing, held_by, remark = cells
-    references = tuple(Reference(*_parted(one)) for one in held_by.split())
+    parted = (text.partition(":") for text in held_by.split())
+    references = tuple(Reference(kind, name) for kind, _, name in parted)
     return Row(place, what, standing, references, remark)  # type: ignore[arg-type]  # checked by the row itself
-
-
-def _parted(text: str) -> tuple[str, str]:
-    kind, _, name = text.partition(":")
-    return kind, name
 
 
 def _cells(line: str) -> tuple[str, ...]:
