@@ -9,11 +9,8 @@ from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.basin import Basin
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import EPS, Certificate, Claim, Hypothesis, Observed, Tolerances, evidence, limit_claim
 
 
 def velocities_match(
@@ -26,15 +23,10 @@ def velocities_match(
 ) -> Claim:
     """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
     series = seen.mismatch.mid
-    return limit_claim(
-        name,
-        needs,
-        caught,
+    return limit_claim(name, needs, caught, proof=proof, evidence=evidence(seen.t, series, "K̃")).described(
         computed=float(series[-1]),
         stated="K̃ -> 0",
         witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
-        proof=proof,
-        evidence=evidence(seen.t, series, "K̃"),
         detail=f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
     )
 
@@ -55,11 +47,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known and not pressed else []
     strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None
-    return limit_claim(
-        name,
-        needs,
-        decides,
-        escape=strained,
+    return limit_claim(name, needs, decides, escape=strained).described(
         computed=end.strain,
         stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
         witness={"force": end.force, "links": end.links, "curvature": end.curvature},

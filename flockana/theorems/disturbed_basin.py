@@ -5,16 +5,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import FlockanaError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
-from flockana.theorems.claims import conclude, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Theorem, Tolerances, unmet
+from flockana.theorems.claims import conclude
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, vacuous
 
 _CLAIMS, _PROOF = ("stays", "ultimate"), "disturbed-basins"
 _SLACK = 1e-12  # relative: rounding of a force's length
@@ -146,7 +144,7 @@ def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float, 
     return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached, detail=text, **fields)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="disturbed-basin",
     title="A bounded disturbance leaves a flock near its certified equilibrium",
     statement=(
@@ -156,7 +154,6 @@ THEOREM = Theorem(
         "the rate α wherever it is larger than (W c/α)²."
     ),
     source="ours",
-    kind="trajectory",
     check=_check,
     law=_law,
     claims=_CLAIMS,

@@ -12,11 +12,8 @@ from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import positive_room
 from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Tolerances, judged, positive_room
 
 if TYPE_CHECKING:
     from flint import arb

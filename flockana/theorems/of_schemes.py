@@ -10,16 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
-from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.os_6 import start_of_condition
-from flockana.theorems.rounding import EPS
 from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, vacuous
 
 ON_STEPS = {
     "energy": "where no term adds energy, H rises in a step by no more than the scheme's own defect",
@@ -78,19 +73,15 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
     own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
     rises, most = int((change > 0.0).sum()), max(float(change.max()), 0.0)
-    falls = judged(
-        "steps-fall",
-        Enclosure.around(tolerances.energy - change / unit, rounding),
-        needs,
+    falls = judged("steps-fall", Enclosure.around(tolerances.energy - change / unit, rounding), needs).described(
         computed=float(change.max()) / unit,
         stated=f"H rises by no more than {tolerances.energy:g} of the largest |H| from sample to sample",
         detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {own}",
     )
     lost = energy[:-1] - led
     within = judged(
-        "steps-defect",
-        Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit),
-        needs,
+        "steps-defect", Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit), needs
+    ).described(
         computed=float(lost.min()) / unit,
         stated="H(t + dt) - H(t) <= the scheme's defect: H at the end of the step less H where the law's flow leads",
         detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {own}",

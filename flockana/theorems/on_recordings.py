@@ -13,22 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import centres, lengths
+from flockana.base.vectors import centres
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
 from flockana.theorems.catalogue import theorem
-from flockana.theorems.claims import vacuous
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import Theorem, Verdict
 from flockana.theorems.together import Verdicts, theorems_about
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Tolerances, Trajectory, lengths, vacuous
 
 DEFINITIONS = ("alpha-flocking", "alpha-flocking-strict", "os-5-terminal")  # which need no law
 _WAYS = 3  # random directions in which states are moved to the ends of their enclosures

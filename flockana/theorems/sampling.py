@@ -13,15 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.dynamics.between import Course
-from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
 from flockana.measures.nets import LinkArray, components, link_lengths, links
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, lengths, stacked
 
 
 def _motion(seen: Observed) -> FloatArray:

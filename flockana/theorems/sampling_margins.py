@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Any
 
-from flockana.base.checks import FloatArray
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.solve import find_equilibrium
 from flockana.interactions import AlphaInteraction, Gains
@@ -15,8 +14,8 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.taylor_step import TaylorStep
 from flockana.stability.linearise import linearise
 from flockana.stability.sampling import CLOSE, sampling_margin
-from flockana.theorems.claims import spectral
-from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
+from flockana.theorems.theorem import Theorem
+from flockana.theorems.toolkit import Checked, Claim, FloatArray, Tolerances, spectral
 
 _MSN = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)
 _MSN_GAINS = Gains(c1_alpha=100.0, c2_alpha=20.0, c1_gamma=70.0, c2_gamma=2.0 * 70.0**0.5)
@@ -75,10 +74,7 @@ def _claim(step: SourceMap) -> Claim:
     else:
         worst = linearise(step.law, rest).modes[0]
         margin, error = worst.decay_per_step, worst.error
-    return spectral(
-        step.name,
-        margin,
-        error,
+    return spectral(step.name, margin, error).described(
         computed={"n": len(rest), "dt": dt, "margin": found.period, "margin over dt": found.times(dt)},
         stated=f"at dt = {dt:g} every mode of the flock at its equilibrium decays",
         witness={"lost at z": str(found.first and found.first.multiplier)},

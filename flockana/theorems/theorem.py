@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
@@ -115,6 +116,23 @@ class Claim:
                 f"claim {self.name!r} is {self.status} though {need.name!r} is {need.status}: expected vacuous or "
                 "inconclusive"
             )
+
+    def described(self, *, detail: str = "", **fields: Any) -> "Claim":
+        """Return the claim with words and numbers added to what was decided.
+
+        Parameters
+        ----------
+        detail : str
+            Put before the detail that the claim has.
+        **fields
+            `computed`, `stated` and `witness`.
+
+        Examples
+        --------
+        >>> Claim("i", "verified", detail="proved").described(stated="1 + 1 = 2", detail="by algebra").detail
+        'by algebra; proved'
+        """
+        return replace(self, detail="; ".join(filter(None, (detail, self.detail))), **fields)
 
     @property
     def explanation(self) -> str:
@@ -334,6 +352,9 @@ class Theorem:
         return tuple(hypotheses), tuple(
             claim if claim.by != "source" else replace(claim, by=self.by(claim.name)) for claim in claims
         )
+
+
+run_theorem = partial(Theorem, kind="trajectory")
 
 
 def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:

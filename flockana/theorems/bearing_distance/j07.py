@@ -4,13 +4,9 @@ from math import tanh
 
 import numpy as np
 
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
-from flockana.theorems.claims import erratum, of_map, spectral
-from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, erratum, lengths, mostly, of_map, spectral
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps
 
@@ -41,24 +37,16 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ]
     near = 0.05 * law.desired_speed
     return [
-        of_map(
-            "step",
-            _SAME - off,
-            _ROUNDING,
+        of_map("step", _SAME - off, _ROUNDING, proof="speed-bound").described(
             computed=step,
             stated=4.0 * tanh(0.75),
             witness="one agent at the desired speed, no input",
-            proof="speed-bound",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
-        spectral(
-            "reachable",
-            shortfall,
-            _ROUNDING,
+        spectral("reachable", shortfall, _ROUNDING, disproof="speed-bound").described(
             computed=bound,
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
-            disproof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps the limit is lower",
         ),
@@ -67,15 +55,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [abs(v - law.desired_speed) <= near for v in printed],
             "with (10) on the state the mean speed is about 3",
             "mean speed about 3 m/s",
-            witness={"mean speed over seeds": float(np.mean(printed))},
-        ),
+        ).described(witness={"mean speed over seeds": float(np.mean(printed))}),
         mostly(
             "clip",
             [abs(v - law.desired_speed) <= near for v in clipped],
             "with v min(1, v^max/|v|) the mean speed is about 3",
             "a plain clip lets the flock keep 3 m/s",
-            witness={"mean speed over seeds": float(np.mean(clipped))},
-        ),
+        ).described(witness={"mean speed over seeds": float(np.mean(clipped))}),
     ]
 
 

@@ -4,11 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
-from flockana.theorems.observed import observed
+from flockana.theorems.toolkit import FloatArray, Trajectory, observed
 
 SEEDS, DURATION = 20, 20.0  # runs of an ensemble; s
 

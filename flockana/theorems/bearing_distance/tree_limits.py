@@ -19,15 +19,12 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import End, Observed
-from flockana.theorems.rounding import EPS, frame_error
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.observed import End
+from flockana.theorems.rounding import frame_error
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths
 
 _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
@@ -77,13 +74,11 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
     """Return the claim that the velocities at both ends of every edge match in the limit."""
     speeds = lengths(edge_vectors(seen.run.p, case.links)).max(axis=1)
     return limit_claim(
-        "velocities",
-        needs,
-        [settles(case, seen.end)],
+        "velocities", needs, [settles(case, seen.end)], evidence=evidence(seen.t, speeds, "|x_e'|")
+    ).described(
         computed=float(speeds[-1]),
         stated=stated,
         witness={"time": float(seen.t[-1]), "at the start": float(speeds[0])},
-        evidence=evidence(seen.t, speeds, "|x_e'|"),
         detail=f"the largest |x_e'| goes from {speeds[0]:.3g} to {speeds[-1]:.3g} at t = {seen.t[-1]:g}",
     )
 

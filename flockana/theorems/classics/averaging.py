@@ -7,11 +7,9 @@ from math import inf
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.nets import LinkArray, components
-from flockana.theorems.limits import Certificate
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 IndexArray = npt.NDArray[np.intp]
 

@@ -5,10 +5,8 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import joint_windows
-from flockana.theorems.claims import by_count
 from flockana.theorems.classics.averaging import (
     Block,
     blocks,
@@ -18,10 +16,8 @@ from flockana.theorems.classics.averaging import (
     permanently_separated,
 )
 from flockana.theorems.headline import does_not_hold
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Observed, Trajectory, by_count, condition, law_is, limit_claim
 
 _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart
@@ -55,14 +51,10 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
     least, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
-    return by_count(
-        "hull",
-        out.size,
-        needs,
+    return by_count("hull", out.size, needs, proof=_PROOF).described(
         computed=float(most[-1] - least[-1]),
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
-        proof=_PROOF,
         detail=f"the headings' span goes from {most[0] - least[0]:.4g} to {most[-1] - least[-1]:.4g} radians",
     )
 
@@ -76,17 +68,13 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
         f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
     )
     slowest = max((b.factor for b in found), default=float("nan"))
-    return by_count(
-        "contraction",
-        len(missed),
-        [*needs, enough],
+    return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF).described(
         computed=slowest,
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
         witness={
             "blocks": len(found),
             "steps of the first missed": (missed[0].start, missed[0].stop) if missed else None,
         },
-        proof=_PROOF,
         detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
         if found
         else does_not_hold(enough.name),
@@ -95,14 +83,10 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
     weights = neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
-    return limit_claim(
-        "agreement",
-        needs,
-        [connected],
+    return limit_claim("agreement", needs, [connected], proof=_PROOF).described(
         computed=float(np.ptp(heading)),
         stated="all headings tend to a common one",
         witness={"heading": final_heading(heading, weights)} if connected.certain else None,
-        proof=_PROOF,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
     )
 
@@ -125,7 +109,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="jlm-headings",
     title="Nearest-neighbour averaging: headings agree under joint connectivity",
     statement=(
@@ -136,7 +120,6 @@ THEOREM = Theorem(
         "guarantee."
     ),
     source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
-    kind="trajectory",
     check=_check,
     law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
     claims=("hull", "contraction", "agreement"),

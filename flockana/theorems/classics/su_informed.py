@@ -14,12 +14,10 @@ from flockana.theorems.classics.leader_frame import (
     some_informed,
 )
 from flockana.theorems.composed.cohesion import stays_within
-from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
 from flockana.theorems.olfati_saber.energy import never_rises
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, law_is, positive, run_theorem, unmet
 
 PROOF = "informed-agents"
 CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "no-collision")
@@ -53,7 +51,7 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="su-informed",
     title="Algorithm 2 with few informed agents: they follow, and so does who is linked to them",
     statement=(
@@ -67,7 +65,6 @@ THEOREM = Theorem(
         "and a run shows its own end only."
     ),
     source="Su, Wang and Lin 2009, on a minority of informed agents",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2),
     check=_check,
     claims=CLAIMS,

@@ -5,10 +5,8 @@ import numpy as np
 from flockana.laws.tanner import FixedNetFlocking
 from flockana.measures.nets import components
 from flockana.theorems.classics.tanner_claims import MATCHED, comes_to_rest, no_collision
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
@@ -24,7 +22,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="tanner-fixed",
     title="A fixed connected net with potentials flocks",
     statement=(
@@ -34,7 +32,6 @@ THEOREM = Theorem(
         "says that the potentials of all agents are minimised: erratum tanner-minimum.)"
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
-    kind="trajectory",
     law=law_is("the law on a fixed net", FixedNetFlocking),
     check=_check,
     claims=("energy", "no-collision", "velocities", "critical"),

@@ -6,20 +6,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
-from flockana.theorems.claims import judged
 from flockana.theorems.dead_zone.parting import Components, components_of
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition
 from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import least_distance
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Trajectory, condition, judged
 
 PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
@@ -110,13 +104,9 @@ def no_collision(
         margin = (least / bound).log()
     else:
         margin = least / unit if least.lo > 0.0 else Enclosure(-inf, least.mid / unit, inf)
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=float(least.lo),
         stated=f"every distance > {bound.mid:.4g}",
         witness={"time": time},
-        proof=proof,
         detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound.mid:.3g}",
     )

@@ -15,7 +15,6 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
@@ -31,8 +30,7 @@ from flockana.theorems.basin import (
     gyration,
     lipschitz_constant,
 )
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray
 
 _PIECES = 8  # into which the lengths that a pair may take are divided: each is enclosed by itself
 _CLEAR = 0.999  # of the way to the nearest kink: so wide the widest window is

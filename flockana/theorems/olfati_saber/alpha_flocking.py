@@ -5,14 +5,10 @@ from math import floor
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.theorems.claims import counted, judged
-from flockana.theorems.enclosure import Enclosure, Real
+from flockana.theorems.enclosure import Real
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, has_lattice
+from flockana.theorems.hypotheses import has_lattice
 from flockana.theorems.leads import bridge
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
 from flockana.theorems.sampling import (
     fastest_between,
     mismatch_over,
@@ -21,7 +17,8 @@ from flockana.theorems.sampling import (
     radius_over,
     stretch_between,
 )
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
@@ -54,9 +51,7 @@ def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: 
     seen = value[part.first :]
     largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
     worst = int(np.argmax(seen.mid))
-    return judged(
-        name,
-        bound - largest,
+    return judged(name, bound - largest).described(
         computed=float(seen.mid[worst]),
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},
@@ -79,11 +74,7 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
     possible = max(float(largest.max()), between)
     open_ = least[worst] <= most < possible
     near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
-    return counted(
-        name,
-        most,
-        int(least[worst]),
-        int(possible),
+    return counted(name, most, int(least[worst]), int(possible)).described(
         computed=int(least[worst]),
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
@@ -154,7 +145,7 @@ def _check_strict(seen: Observed, tolerances: Tolerances) -> Checked:
 
 
 THEOREM = (
-    Theorem(
+    run_theorem(
         id="alpha-flocking",
         title="The run is α-flocking (Definition 5)",
         statement=(
@@ -163,18 +154,16 @@ THEOREM = (
             "sample is no window."
         ),
         source="Olfati-Saber 2006, Definition 5",
-        kind="trajectory",
         check=_check,
         enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
         claims=("giant", "cohesive", "deviation", "mismatch"),
         leads={"giant": bridge},
     ),
-    Theorem(
+    run_theorem(
         id="alpha-flocking-strict",
         title="The run is strictly α-flocking (Definition 5)",
         statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
         source="Olfati-Saber 2006, Definition 5, strict form",
-        kind="trajectory",
         check=_check_strict,
         enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
         claims=("flock", "deviation", "mismatch"),

@@ -14,19 +14,8 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import (
-    condition,
-    hypothesis_from_fact,
-    law_is,
-    positive,
-    smooth_pair,
-    weight_nonnegative,
-)
-from flockana.theorems.limits import limit_claim
+from flockana.theorems.hypotheses import hypothesis_from_fact, smooth_pair, weight_nonnegative
 from flockana.theorems.meeting import above_least, least_is_known, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import (
     below_multiple,
     energy_at_end,
@@ -35,7 +24,8 @@ from flockana.theorems.olfati_saber.collisions import (
     pairs_at_one_instant,
 )
 from flockana.theorems.sampling import nets_at, radius_over
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, limit_claim, positive, vacuous
 
 PROOF, LIMITS = "any-potential", "any-potential-limits"
 _ROUNDING = 1e-12  # of a potential
@@ -142,14 +132,10 @@ def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str =
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
     """Claim that R stays below a bound."""
     worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
-    return judged(
-        name,
-        bound - radius_over(seen).max(),
-        needs,
+    return judged(name, bound - radius_over(seen).max(), needs, proof=proof).described(
         computed=largest,
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
-        proof=proof,
         detail=f"cohesion radius R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
@@ -157,13 +143,10 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
     """Claim that forces tend to 0: the flock tends to the critical points of its potential."""
     first, last = (float(np.linalg.norm(structural_force(seen.law, q), axis=1).max()) for q in seen.run.q[[0, -1]])
-    return limit_claim(
-        name,
-        needs,
+    return limit_claim(name, needs, proof=LIMITS).described(
         computed=last,
         stated="the largest force on an agent at rest -> 0",
         witness={"time": float(seen.t[-1])},
-        proof=LIMITS,
         detail=f"the largest force goes from {first:.3g} to {last:.3g} at t = {seen.t[-1]:g}",
     )
 
@@ -202,7 +185,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="any-potential",
     title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
     statement=(
@@ -213,7 +196,6 @@ THEOREM = Theorem(
         "c1α (ψ(0) - L), and none ever do if E(0) < c*, or if ψ is unbounded at contact."
     ),
     source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
-    kind="trajectory",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),

@@ -7,7 +7,6 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.equilibria.gradient_flow import structural_force
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions import AlphaInteraction
@@ -24,9 +23,8 @@ from flockana.theorems.basin import (
     gyration,
     lipschitz_constant,
 )
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS, pair_force_error
+from flockana.theorems.rounding import pair_force_error
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed
 
 _PIECES = 16  # into which the lengths that a link may take are divided: each is enclosed by itself
 

@@ -12,20 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
-from flockana.theorems.claims import counted, judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, positive_room
 from flockana.theorems.meeting import above_least, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
+from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, counted, judged, positive_room
 
 Pair = tuple[int, int]
 IndexArray = npt.NDArray[np.intp]
@@ -163,14 +159,10 @@ def no_collision(
             margin = Enclosure.of(-certain[pair])
             by = f"passing each other by at least {certain[pair]:.4g}"
             text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=float(least.mid),
         stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
-        proof=proof,
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",
     )
 
@@ -217,14 +209,10 @@ def pairs_at_one_instant(
     low = float(spare.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
     refuted = high < 0.0 and not seen.doubt
     margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=int(together.max(initial=0)),
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
         witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(allowed[worst])},
-        proof=proof,
         detail=_instant_text(int(together.max(initial=0)), float(allowed.min())),
     )
 

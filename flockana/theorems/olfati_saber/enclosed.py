@@ -23,9 +23,8 @@ from flockana.theorems.from_tube import (
     no_collision,
     rest_strain,
 )
-from flockana.theorems.hypotheses import condition, positive
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition, positive, unmet
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
@@ -173,13 +172,9 @@ def _cohesive(case: TubeAndBasin, needs: list[Hypothesis]) -> Claim:
         largest = float(tube.cohesion_radius().max())
         bound = (2 * tube.energy(0) / gain).nonnegative_part().sqrt() if gain > 0 else arb(1e300)
         margin = arb(bound.lower()) - largest
-    return decided(
-        "i",
-        margin,
-        needs,
+    return decided("i", margin, needs, proof="cohesion").described(
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
-        proof="cohesion",
         detail=f"cohesion radius R <= {largest:.5g} {case.until}"
         if case.basin is None
         else f"cohesion radius R <= {largest:.5g} "

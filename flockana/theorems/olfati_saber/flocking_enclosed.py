@@ -12,8 +12,7 @@ from flockana.certified.balls import exact, square
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Pair, Tube, norm
 from flockana.theorems.from_tube import certain_links, decided, groups
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike

@@ -6,18 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
-from flockana.base.checks import FloatArray
 from flockana.certified.flow import Flow
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
 from flockana.certified.structural_energy import BITS
 from flockana.certified.total_energy import powers_during, total_energy, work
 from flockana.certified.tube import Tube, up
-from flockana.theorems.claims import undecided
 from flockana.theorems.from_tube import decided
-from flockana.theorems.hypotheses import common_gains, condition
+from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
@@ -84,14 +82,10 @@ def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) ->
         if not squares:
             share = -total / size if size > 0 else arb(0, 1)
             margin = share if share.lower() < margin.lower() else margin
-    return decided(
-        "rate",
-        margin,
-        needs,
+    return decided("rate", margin, needs, proof=proved(_law_of(tube), "theorem6")).described(
         computed=up(highest),
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {tube.t[since]:.6g}",
         witness={"time": when},
-        proof=proved(_law_of(tube), "theorem6"),
         detail=f"dH/dt is at most {up(highest):.3g} at all times from t = {tube.t[since]:g} to {tube.t[-1]:g}",
     )
 
@@ -101,13 +95,9 @@ def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Cla
     first, last = total_energy(tube.law, *tube.state(0)), total_energy(tube.law, *tube.state(-1))
     largest = abs(first).max(abs(last))
     share = abs(last - first - work(tube)) / largest if largest > 0 else arb(0)
-    return decided(
-        "balance",
-        arb(tolerances.energy) - share,
-        needs,
+    return decided("balance", arb(tolerances.energy) - share, needs, proof=proved(_law_of(tube), "theorem6")).described(
         computed=up(share.upper()),
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
-        proof=proved(_law_of(tube), "theorem6"),
         detail=f"H goes from {float(first):.6g} to {float(last):.6g}; the balance is off by {up(share.upper()):.2g} of "
         "the largest |H| at most",
     )

@@ -7,7 +7,6 @@ from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
@@ -22,7 +21,7 @@ from flockana.theorems.olfati_saber.any_potential import (
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_the_barrier, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
 def _barrier_proof(seen: Observed) -> str | None:
@@ -59,7 +58,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="os-1",
     title="Algorithm 1: lattice, matched velocities, no collision",
     statement=(
@@ -70,7 +69,6 @@ THEOREM = Theorem(
         "(iii) hold for every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 1",
-    kind="trajectory",
     law=law_is("Algorithm 1", Algorithm1, formulas=True),
     check=_check,
     enclosed=enclosed_by("os_1"),

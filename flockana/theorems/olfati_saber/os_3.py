@@ -4,12 +4,8 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import vacuous
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, law_is, positive
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import (
     LIMITS,
     PROOF,
@@ -28,7 +24,8 @@ from flockana.theorems.olfati_saber.collisions import (
     pairs_at_one_instant,
 )
 from flockana.theorems.olfati_saber.gamma_agent import consistent
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
@@ -38,10 +35,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
     """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
-    return limit_claim(
-        "ii",
-        needs,
-        [final_basin(seen).certificate],
+    return limit_claim("ii", needs, [final_basin(seen).certificate]).described(
         computed=end.curvature,
         stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
@@ -89,7 +83,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return [*given, none, barrier], attribute_claims(seen, claims)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="os-3",
     title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
     statement=(
@@ -101,7 +95,6 @@ THEOREM = Theorem(
         "every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 3",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_3"),

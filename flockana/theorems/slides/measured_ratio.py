@@ -6,9 +6,8 @@ import numpy as np
 
 from flockana.stability.centre_path import motion
 from flockana.stability.tracking import response_ratio
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.second_runs import DOUBT
+from flockana.theorems.toolkit import Enclosure, Observed
 
 
 def measured_ratio(seen: Observed) -> Enclosure:
