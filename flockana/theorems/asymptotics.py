@@ -10,16 +10,11 @@ from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.basin import Basin
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.toolkit import EPS, Certificate, Claim, Hypothesis, Observed, Tolerances, evidence, limit_claim
+from flockana.theorems.toolkit import EPS, Certificate, Claim, Needs, Observed, Tolerances, evidence, limit_claim
 
 
 def velocities_match(
-    seen: Observed,
-    needs: Iterable[Hypothesis],
-    *,
-    name: str,
-    caught: Iterable[Certificate] = (),
-    proof: str | None = None,
+    seen: Observed, needs: Needs, *, name: str, caught: Iterable[Certificate] = (), proof: str | None = None
 ) -> Claim:
     """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
     series = seen.mismatch.mid
@@ -36,7 +31,7 @@ def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
     return end.force <= tolerances.force and end.mismatch <= tolerances.velocity * scales.energy
 
 
-def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
+def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str) -> Claim:
     """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum."""
     # There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
     # link, so that a small strain verifies nothing.

@@ -250,6 +250,7 @@ class Verdict:
 
 
 Lead = Callable[[Any, Claim], float]
+Needs = Iterable[Hypothesis]  # hypotheses under which something is claimed
 Checked = tuple[list[Hypothesis], list[Claim]]  # what a theorem's `check` returns
 
 
@@ -299,14 +300,14 @@ class Theorem:
     statement: str
     source: str
     kind: Kind
-    check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]]
+    check: Callable[..., tuple[Needs, Iterable[Claim]]]
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
     leads: Mapping[str, Lead] = field(default_factory=dict)
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
     reason: str = "{unmet}: {detail}"
-    enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+    enclosed: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
@@ -328,7 +329,7 @@ class Theorem:
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
     def examine(
-        self, *case: Any, check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+        self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
     ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 
@@ -357,7 +358,7 @@ class Theorem:
 run_theorem = partial(Theorem, kind="trajectory")
 
 
-def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
+def unmet(hypotheses: Needs) -> Hypothesis | None:
     """Return the first unmet hypothesis; None if no hypothesis is unmet.
 
     Parameters

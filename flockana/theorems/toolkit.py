@@ -24,4 +24,4 @@ from flockana.theorems.limits import Certificate, evidence, limit_claim
 from flockana.theorems.observed import Observed, observed
 from flockana.theorems.rounding import EPS
 from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet

@@ -13,7 +13,8 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.feedforward import acceleration
 from flockana.measures.nets import components, links
 from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.toolkit import EPS, Claim, FloatArray, Hypothesis, Observed, Trajectory, condition, lengths
+from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import Claim, FloatArray, Hypothesis, Needs, Observed, Trajectory, condition, lengths
 
 WINDOWS = 4  # of equal length, of the last half of a run: in each of them an agent must be linked to the informed
 
@@ -100,7 +101,7 @@ def linked_to_informed(run: Trajectory) -> np.ndarray:
 def comes_to_rest(
     seen: Observed,
     who: np.ndarray,
-    needs: list[Hypothesis],
+    needs: Needs,
     name: str,
     certificates: Iterable[Certificate] = (),
     *,

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import by_count, judged
 from flockana.theorems.sampling import least_distance
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, evidence, limit_claim
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, evidence, judged, limit_claim
 
 MATCHED = "matched-velocities"
 
 
-def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: list[Hypothesis]) -> Claim:
+def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: Needs) -> Claim:
     """Return the claim that some pairs never come nearer than where V alone is the energy of the start."""
     if not len(i):
         return by_count("no-collision", 0, needs, detail="no pair is joined")
@@ -37,9 +36,7 @@ def _energy_error(seen: Observed, i: Any, j: Any) -> float:
     return float(potential.strength * np.sum(np.abs(x - 1.0) * e + e * e))
 
 
-def comes_to_rest(
-    seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, forces: str | None = None
-) -> list[Claim]:
+def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, forces: str | None = None) -> list[Claim]:
     """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])

@@ -13,7 +13,7 @@ from flockana.measures.metrics import min_distance
 from flockana.theorems.dead_zone.parting import Components, components_of
 from flockana.theorems.limits import Certificate, evidence, limit_claim
 from flockana.theorems.olfati_saber.collisions import least_distance
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Trajectory, condition, judged
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
 PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
@@ -60,7 +60,7 @@ def settling(end: Components) -> Certificate:
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
-def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
+def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str) -> Claim:
     """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
     series = seen.mismatch.mid
     return limit_claim(
@@ -86,9 +86,7 @@ def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
     return bound.widened(_BOUND * bound.hi).clip(0.0)
 
 
-def no_collision(
-    seen: Observed, bound: Enclosure, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
-) -> Claim:
+def no_collision(seen: Observed, bound: Enclosure, unit: float, needs: Needs, *, name: str, proof: str | None) -> Claim:
     """Return the claim that no two agents come closer than a bound: between samples too, except for a map."""
     # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
     if seen.is_map:

@@ -123,10 +123,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _apart(runs["two"]),
         _fraction(),
         _follow(
-            "acceleration",
-            runs["known"],
-            "all follow a leader that turns, its acceleration known",
-            "with feedforward",
+            "acceleration", runs["known"], "all follow a leader that turns, its acceleration known", "with feedforward"
         ),
         of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING).described(
             computed=deaf,

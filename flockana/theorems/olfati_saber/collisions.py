@@ -5,7 +5,6 @@ that stays positive excludes it; two agents that stand to each other's left and 
 ever leaves, certainly met; in between it is open. In the plane a numerical run never shows a contact, only nearness.
 """
 
-from collections.abc import Iterable
 from itertools import combinations
 
 import numpy as np
@@ -20,7 +19,7 @@ from flockana.measures.path_bounds import ROUNDING, Contact, contacts
 from flockana.theorems.meeting import above_least, meeting
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
 from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, counted, judged, positive_room
 
 Pair = tuple[int, int]
@@ -144,9 +143,7 @@ def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothes
     return positive_room(f"H(0) < {text}", times * c_star - energy, detail)
 
 
-def no_collision(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
-) -> Claim:
+def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None) -> Claim:
     """Return the claim that no two agents ever coincide: a lower bound of all distances is positive at all times."""
     closest, least = seen.run.closest_approach(), least_distance(seen)
     pair, margin = closest.pair, least - _noise(seen, tolerances)
@@ -168,7 +165,7 @@ def no_collision(
 
 
 def distinct_pairs(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, disproof: str | None = None
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, disproof: str | None = None
 ) -> Claim:
     """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
     c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
@@ -194,7 +191,7 @@ def distinct_pairs(
 
 
 def pairs_at_one_instant(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
     """Return the corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide."""
     # Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more

@@ -1,6 +1,6 @@
 """The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Tolerances, run_theorem
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Needs, Tolerances, run_theorem
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, lengths, undecided
 
 
@@ -25,12 +25,7 @@ def proved(run: Observed, proof: str = "energy-identities") -> str | None:
 
 
 def balance(
-    seen: Observed,
-    needs: Iterable[Hypothesis],
-    tolerances: Tolerances,
-    *,
-    name: str = "balance",
-    proof: str | None = None,
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str = "balance", proof: str | None = None
 ) -> Claim:
     """Return the claim that H(t) − H(0) agrees with the integral of the closed-form rate."""
     energy, largest = seen.energy.mid, float(np.abs(seen.energy.mid).max())
@@ -99,7 +94,7 @@ def falling_share(
 
 def never_rises(
     seen: Observed,
-    needs: Iterable[Hypothesis],
+    needs: Needs,
     *,
     since: int = 0,
     rate: Callable[[Trajectory], FloatArray] = Trajectory.energy_rate,

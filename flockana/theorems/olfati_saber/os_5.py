@@ -16,7 +16,7 @@ from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
 from flockana.theorems.hypotheses import has_lattice
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Theorem, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import EPS, FloatArray, Observed, by_count, condition, counted, of_state, vacuous
 
 CLAIMS = (
@@ -100,7 +100,7 @@ def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
 
-def uncrossed(net: Net, needs: list[Hypothesis], name: str) -> Claim:
+def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
     if (missed := unmet(needs)) is not None:
@@ -120,7 +120,7 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str) -> Claim:
     )
 
 
-def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
+def _graph(net: Net, needs: Needs) -> Claim:
     """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
     drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
     planar = drawn or is_planar(net.n, net.links)
@@ -140,9 +140,7 @@ def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _bound(
-    net: Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
-) -> Claim:
+def _bound(net: Net, needs: Needs, name: str, bound: int, text: str, *, proof: str | None = _COUNTS) -> Claim:
     count = len(net.links)
     return counted(name, bound, count, count, needs, proof=proof).described(
         computed=count,
@@ -152,7 +150,7 @@ def _bound(
     )
 
 
-def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
+def _incomplete(net: Net, needs: Needs) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
     return by_count("iii", 0 if missing else 1, needs, proof=_COUNTS).described(
         computed=missing,

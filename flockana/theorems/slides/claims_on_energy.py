@@ -1,12 +1,12 @@
 """Claims about an energy that a source prints wrongly (E1, E2): by algebra, at an exact state, along a run."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Observed, Trajectory, exact, judged
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Needs, Observed, Trajectory, exact, judged
 
 PROOF = "energy-identities"
 
@@ -37,9 +37,7 @@ def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -
     return seen.series(lambda run: run.energy() + excess(run), floor=floor)
 
 
-def run_claim(
-    seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Iterable[Hypothesis] = ()
-) -> Claim:
+def run_claim(seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Needs = ()) -> Claim:
     """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run."""
     # A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
     above = rises(printed_energy(seen, excess))

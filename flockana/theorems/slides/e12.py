@@ -10,7 +10,7 @@ from flockana.stability.tracking import whole_period
 from flockana.stability.translational import predicted_gain
 from flockana.theorems.errata import printed
 from flockana.theorems.slides.measured_ratio import measured_ratio
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed
 
 
@@ -29,9 +29,7 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     ]
 
 
-def _agrees(
-    name: str, ratio: Enclosure, gain: float, needs: list[Hypothesis], tolerances: Tolerances, detail: str
-) -> Claim:
+def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: Tolerances, detail: str) -> Claim:
     """Return the claim that a measured ratio agrees with a predicted gain, relative to that unless it is 0."""
     return judged(name, tolerances.agreement - abs(ratio - gain) / (gain or 1.0), needs).described(
         computed=float(ratio.mid),
