@@ -2,28 +2,24 @@
 
 from collections.abc import Iterable
 from math import sqrt
+from typing import Any
 
 from flockana.base.scales import Scales
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.basin import Basin
-from flockana.theorems.enclosure import Enclosure
+from flockana.theorems.limits import dies_out
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.toolkit import EPS, Certificate, Claim, Needs, Observed, Tolerances, evidence, limit_claim
+from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
 
 def velocities_match(
     seen: Observed, needs: Needs, *, name: str, caught: Iterable[Certificate] = (), proof: str | None = None
 ) -> Claim:
     """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
-    series = seen.mismatch.mid
-    return limit_claim(name, needs, caught, proof=proof, evidence=evidence(seen.t, series, "K̃")).described(
-        computed=float(series[-1]),
-        stated="K̃ -> 0",
-        witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
-        detail=f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    what: dict[str, Any] = {"what": "velocity mismatch K̃", "of": "K̃", "start": "K̃ at the start"}
+    return dies_out(seen, name, needs, caught, series=seen.mismatch.mid, stated="K̃ -> 0", proof=proof, **what)
 
 
 def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:

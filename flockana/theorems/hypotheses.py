@@ -164,7 +164,7 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
     return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail)
 
 
-def common_gains(run: Observed) -> Hypothesis:
+def common_gains(run: Observed | Tube) -> Hypothesis:
     """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple.
 
     Parameters

@@ -77,6 +77,26 @@ def limit_claim(
     return replace(claim, detail="; ".join(filter(None, parts)))
 
 
+def dies_out(
+    seen: Any,
+    name: str,
+    needs: Needs,
+    certificates: Iterable[Certificate] = (),
+    *,
+    series: Any,
+    what: str,
+    **fields: Any,
+) -> Claim:
+    """Return the claim that a series of a run tends to 0: `of` is its symbol, `start` the name of its first value."""
+    t, start, of = seen.t, fields.pop("start", ""), fields.pop("of", "")
+    told = evidence(t, series, of) if of else ""
+    return limit_claim(name, needs, certificates, evidence=told, **fields).described(
+        computed=float(series[-1]),
+        witness={"time": float(t[-1])} | ({start: float(series[0])} if start else {}),
+        detail=f"{what} goes from {series[0]:.3g} to {series[-1]:.3g} at t = {t[-1]:g}",
+    )
+
+
 def without_assumed(needs: Needs, make: Callable[[list[Hypothesis]], Claim]) -> Claim:
     """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
 

@@ -14,7 +14,7 @@ from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, 
 _TREES, _MOST_AGENTS, _SEED, _END = 200, 8, 1, 80.0  # agents of a tree at most; s
 
 
-def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
+def random_forest(count: int, seed: int) -> tuple[MinimalFlocking, FloatArray, FloatArray]:
     """Return (law, q, p) of many independent random out-trees of 2 to 8 agents, simulated in one run."""
     rng = np.random.default_rng(seed)
     edges: list[tuple[int, int]] = []
@@ -23,8 +23,8 @@ def random_forest(count: int, seed: int, *, rho: float = 1.0) -> tuple[MinimalFl
         n = int(rng.integers(2, _MOST_AGENTS + 1))
         edges += [(j + agents, i + agents) for j, i in random_out_tree(n, rng)]
         agents += n
-    q, p = rng.uniform(0.0, 4.0 * rho, (agents, 2)), rng.uniform(-rho, rho, (agents, 2))
-    return MinimalFlocking(edges=tuple(edges), spacing=rho), q, p
+    q, p = rng.uniform(0.0, 4.0, (agents, 2)), rng.uniform(-1.0, 1.0, (agents, 2))
+    return MinimalFlocking(edges=tuple(edges), spacing=1.0), q, p
 
 
 def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:

@@ -11,11 +11,11 @@ from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, err
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps
 
 
-def dragged_speed(dt: float, *, u_max: float = 2.0, v_max: float = 4.0) -> float:
+def dragged_speed(dt: float) -> float:
     """The largest speed that full thrust holds against (10), a fixed point of v^max tanh((v + dt u^max)/v^max)."""
     from scipy.optimize import brentq
 
-    return float(brentq(lambda v: v_max * tanh((v + dt * u_max) / v_max) - v, 1e-6, v_max, xtol=1e-14))
+    return float(brentq(lambda v: 4.0 * tanh((v + dt * 2.0) / 4.0) - v, 1e-6, 4.0, xtol=1e-14))
 
 
 def _late_speed(run: Trajectory) -> float:

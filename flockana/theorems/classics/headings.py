@@ -7,14 +7,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import joint_windows
-from flockana.theorems.classics.averaging import (
-    Block,
-    blocks,
-    final_heading,
-    neighbourhood_sizes,
-    permanently_connected,
-    permanently_separated,
-)
+from flockana.theorems.classics import averaging
 from flockana.theorems.headline import does_not_hold
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import Certificate, Observed, Trajectory, by_count, condition, law_is, limit_claim
@@ -59,7 +52,7 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hypothesis]) -> Claim:
+def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs: list[Hypothesis]) -> Claim:
     """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
@@ -82,11 +75,11 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
+    weights = averaging.neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
     return limit_claim("agreement", needs, [connected], proof=_PROOF).described(
         computed=float(np.ptp(heading)),
         stated="all headings tend to a common one",
-        witness={"heading": final_heading(heading, weights)} if connected.certain else None,
+        witness={"heading": averaging.final_heading(heading, weights)} if connected.certain else None,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
     )
 
@@ -100,11 +93,11 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     nets = [run.law.links(q) for q in run.q[:-1]]
     windows = joint_windows(run.n, nets)
     at_end = run.law, run.q[-1], headings[-1]
-    connected = permanently_connected(*at_end)
-    lasting = _at_all_later_times(windows, connected, permanently_separated(*at_end))
+    connected = averaging.permanently_connected(*at_end)
+    lasting = _at_all_later_times(windows, connected, averaging.permanently_separated(*at_end))
     return [*needs, lasting], [
         _hull(headings, needs),
-        _contraction(headings, blocks(nets, headings, windows), needs),
+        _contraction(headings, averaging.blocks(nets, headings, windows), needs),
         _limit(run, headings[-1], [*needs, lasting], connected),
     ]
 

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.asymptotics import velocities_match
+from flockana.theorems.limits import dies_out
 from flockana.theorems.sampling import least_distance
-from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, evidence, judged, limit_claim
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
 
 MATCHED = "matched-velocities"
 
@@ -40,15 +41,11 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
     """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
-    extremal = limit_claim(
-        names[1], needs, proof=forces, evidence=evidence(seen.t, force, "the largest force")
-    ).described(
-        computed=float(force[-1]),
-        stated="the largest force -> 0",
-        witness={"time": float(seen.t[-1])},
-        detail=f"the largest force goes from {force[0]:.3g} to {force[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
-    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), extremal]
+    what = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
+    return [
+        velocities_match(seen, needs, name=names[0], proof=MATCHED),
+        dies_out(seen, names[1], needs, series=force, proof=forces, **what),
+    ]
 
 
 def out_of_range(seen: Observed) -> Enclosure:

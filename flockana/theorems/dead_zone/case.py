@@ -11,7 +11,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
 from flockana.theorems.dead_zone.parting import Components, components_of
-from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.limits import Certificate, dies_out
 from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
@@ -62,18 +62,9 @@ def settling(end: Components) -> Certificate:
 
 def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str) -> Claim:
     """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
-    series = seen.mismatch.mid
-    return limit_claim(
-        name,
-        needs,
-        [settling(end)] if end.count == 1 else [],
-        escape=end.separation,
-        computed=float(series[-1]),
-        stated="K̃ -> 0: all velocities match",
-        witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
-        evidence=evidence(seen.t, series, "K̃"),
-        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    what: dict[str, Any] = {"what": "K̃", "of": "K̃", "start": "K̃ at the start", "stated": "K̃ -> 0: all velocities match"}
+    certificates = [settling(end)] if end.count == 1 else []
+    return dies_out(seen, name, needs, certificates, series=seen.mismatch.mid, escape=end.separation, **what)
 
 
 def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:

@@ -3,15 +3,7 @@
 import numpy as np
 
 from flockana.theorems.claims import by_count, vacuous
-from flockana.theorems.dead_zone.case import (
-    PROOF,
-    dead_zone_law,
-    distance_bound,
-    final_components,
-    hypotheses,
-    no_collision,
-    settling,
-)
+from flockana.theorems.dead_zone import case
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.olfati_saber.energy import balance
 from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, limit_claim, run_theorem, unmet
@@ -20,7 +12,7 @@ from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tole
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
     """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
     worst, rising, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
-    return by_count("rate", rising, needs, proof=None if seen.is_map else PROOF).described(
+    return by_count("rate", rising, needs, proof=None if seen.is_map else case.PROOF).described(
         computed=float(rate[worst]),
         stated="dH̄/dt = -k₂ pᵀL̂p <= 0, across all switches",
         witness={"time": float(seen.t[worst]), "samples at which it is positive": rising},
@@ -36,7 +28,7 @@ def _balance(seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) ->
 
 def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
     """Within each component velocities match in the end; a finite run cannot refute the limit."""
-    return limit_claim("components", needs, [settling(end)]).described(
+    return limit_claim("components", needs, [case.settling(end)]).described(
         computed=end.mismatch,
         stated="velocities match within each component: K̃ of each -> 0",
         witness={"components": end.count},
@@ -45,17 +37,17 @@ def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Cla
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, law = hypotheses(seen), dead_zone_law(seen.run)
+    needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    run, proof = seen.run, None if seen.is_map else PROOF
+    run, proof = seen.run, None if seen.is_map else case.PROOF
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    bound = distance_bound(seen, law)
+    bound = case.distance_bound(seen, law)
     return needs, [
         _rate(seen, rate, needs),
         _balance(seen, needs, tolerances),
-        _components(seen, final_components(seen, law), needs),
-        no_collision(seen, bound, law.scales.length, needs, name="distance", proof=proof),
+        _components(seen, case.final_components(seen, law), needs),
+        case.no_collision(seen, bound, law.scales.length, needs, name="distance", proof=proof),
     ]
 
 

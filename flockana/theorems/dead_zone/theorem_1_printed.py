@@ -2,14 +2,7 @@
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
-from flockana.theorems.dead_zone.case import (
-    PROOF,
-    dead_zone_law,
-    final_components,
-    hypotheses,
-    no_collision,
-    velocities_match,
-)
+from flockana.theorems.dead_zone import case
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.dead_zone.range_limits import first_entry
 from flockana.theorems.rounding import frame_error
@@ -70,16 +63,21 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, law = hypotheses(seen), dead_zone_law(seen.run)
+    needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    end = final_components(seen, law)
+    end = case.final_components(seen, law)
     return needs, [
         _cohesion(seen, end, needs),
         _energy(seen, law, needs),
-        velocities_match(seen, end, needs, name="velocity"),
-        no_collision(
-            seen, Enclosure.of(0.0), law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF
+        case.velocities_match(seen, end, needs, name="velocity"),
+        case.no_collision(
+            seen,
+            Enclosure.of(0.0),
+            law.scales.length,
+            needs,
+            name="collision",
+            proof=None if seen.is_map else case.PROOF,
         ),
     ]
 

@@ -18,7 +18,7 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStat
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, lengths, undecided
 
 
-def proved(run: Observed, proof: str = "energy-identities") -> str | None:
+def proved(run: Any, proof: str = "energy-identities") -> str | None:
     """Return the id of the proof of this law's energy identity, for walls, spheres and common gains; else None."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None

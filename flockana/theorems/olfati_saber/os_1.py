@@ -7,17 +7,7 @@ from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.olfati_saber.any_potential import (
-    LIMITS,
-    PROOF,
-    attribute_claims,
-    bounded_at_contact,
-    is_paper,
-    never_meets,
-    potential_needs,
-    stays_together,
-    weight_inside,
-)
+from flockana.theorems.olfati_saber import any_potential
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_the_barrier, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import proved
@@ -35,27 +25,30 @@ def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesi
     caught = [final_basin(seen).certificate]
     if needs[-1].status == "assumed" and caught[0].certain:
         return velocities_match(seen, needs[:-1], name="ii", caught=caught)
-    return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=LIMITS)
+    return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=any_potential.LIMITS)
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
-    needs = [*gains, *weight_inside(seen), *potential_needs(seen)]
+    needs = [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]
     if unmet(needs):
         return needs, []
     needs, low, barrier = (
-        [*needs, stays_together(seen)],
-        never_meets(seen),
+        [*needs, any_potential.stays_together(seen)],
+        any_potential.never_meets(seen),
         below_the_barrier(seen, energy_at_start(seen)),
     )
-    bounded, excluded = bounded_at_contact(seen, low), proved(seen, "collisions") if is_paper(seen) else PROOF
+    bounded, excluded = (
+        any_potential.bounded_at_contact(seen, low),
+        proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF,
+    )
     claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
     ]
-    return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
+    return [*needs, *bounded, low, barrier], any_potential.attribute_claims(seen, claims)
 
 
 THEOREM = run_theorem(
