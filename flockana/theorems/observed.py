@@ -104,31 +104,24 @@ class Observed(ResultCache):
 
     # half widths ---------------------------------------------------------------------------------------------------
 
-    @cached_property
-    def shape_error(self) -> FloatArray:
-        """Half width of ‖q_i − q_c‖ of each agent at each sample, shape (T, n)."""
-        return self._at_samples(self.errors.shape, _rounding(self.run.q))
+    # of ‖q_i − q_c‖ and ‖p_i − p_c‖ of each agent at each sample, shape (T, n); of q_c and p_c, shape (T,)
+    shape_error = cached_property(lambda self: self._at_samples(self.errors.shape, self.run.q))
+    speed_error = cached_property(lambda self: self._at_samples(self.errors.speed, self.run.p))
+    centre_error = cached_property(lambda self: self._at_samples(self.errors.centre, self.run.q))
+    drift_error = cached_property(lambda self: self._at_samples(self.errors.drift, self.run.p))
+    # of any q_i − q_c and p_i − p_c over each interval between samples, shape (T − 1,)
+    between_error = cached_property(lambda self: self._between_samples(self.errors.shape, self.run.q))
+    between_speed_error = cached_property(lambda self: self._between_samples(self.errors.speed, self.run.p))
 
-    @cached_property
-    def speed_error(self) -> FloatArray:
-        """Half width of ‖p_i − p_c‖ of each agent at each sample, shape (T, n)."""
-        return self._at_samples(self.errors.speed, _rounding(self.run.p))
-
-    @cached_property
-    def centre_error(self) -> FloatArray:
-        """Half width of q_c at each sample, shape (T,)."""
-        return self._at_samples(self.errors.centre, _rounding(self.run.q))
-
-    @cached_property
-    def drift_error(self) -> FloatArray:
-        """Half width of p_c at each sample, shape (T,)."""
-        return self._at_samples(self.errors.drift, _rounding(self.run.p))
-
-    def _at_samples(self, errors: FloatArray, rounding: float) -> FloatArray:
+    def _at_samples(self, errors: FloatArray, x: FloatArray) -> FloatArray:
         widths = self._windowed(errors, self.t, self.t)
         if self.begins_exactly:
             widths[0] = 0.0
-        return widths + rounding
+        return widths + _rounding(x)
+
+    def _between_samples(self, errors: FloatArray, x: FloatArray) -> FloatArray:
+        worst: FloatArray = self._windowed(errors, self.t[:-1], self.t[1:]).max(axis=1)
+        return worst + _rounding(x)
 
     @property
     def begins_exactly(self) -> bool:
@@ -152,18 +145,6 @@ class Observed(ResultCache):
         """Return both runs in another frame that keeps all distances between agents."""
         given, run, other = (change(each) for each in (self.given, self.run, self.other))
         return replace(self, given=given, run=run, other=other)
-
-    @cached_property
-    def between_error(self) -> FloatArray:
-        """Half width of any q_i − q_c over each interval between samples, shape (T − 1,)."""
-        worst: FloatArray = self._windowed(self.errors.shape, self.t[:-1], self.t[1:]).max(axis=1)
-        return worst + _rounding(self.run.q)
-
-    @cached_property
-    def between_speed_error(self) -> FloatArray:
-        """Half width of any p_i − p_c over each interval between samples, shape (T − 1,)."""
-        worst: FloatArray = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
-        return worst + _rounding(self.run.p)
 
     # observables ---------------------------------------------------------------------------------------------------
 

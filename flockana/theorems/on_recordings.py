@@ -127,16 +127,14 @@ def verify_recording(
     law.check_agents(rec.n)
     follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
     first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail)
-    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
-    named = f"{name}: {rec.accuracy}"
+    named = f"{_named(rec, subject)}: {rec.accuracy}"
     if follow.status == "unmet":
-        claims = tuple(vacuous(each, first, by=item.by(each)) for each in item.claims or ("all",))
-        return Verdict(item.id, (first,), claims, tolerances, named, item.author)
+        claims = item.silenced(first) or (vacuous("all", first, by=item.author),)
+        return item.verdict(((first,), claims), tolerances, named)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    hypotheses, claims = with_resolution(*examined(item, seen, tolerances), seen)
-    decided = tuple(_weighed(claim, rec, first) for claim in claims)
-    return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
+    known = with_resolution(*examined(item, seen, tolerances), seen)
+    return item.verdict(_weighed(known, rec, first), tolerances, named)
 
 
 def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: Any = None, **case: Any) -> Verdicts:
@@ -165,24 +163,23 @@ def _of_samples(
         rec = rec.with_velocities()
     run = rec.trajectory(d=d, r=r)
     place, speed = _widths(rec)
-    errors = Errors(
-        run.t,
-        place + place.mean(axis=1)[:, None],
-        speed + speed.mean(axis=1)[:, None],
-        place.mean(axis=1),
-        speed.mean(axis=1),
-    )
+    errors = Errors(run.t, *_half_widths(place, speed))
     doubt = "" if len(run.t) > 1 else "one sample shows no motion"
     seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
-    stated = Hypothesis(
-        "the accuracy of the samples is stated", "met" if rec.accuracy.decides else "assumed", detail=str(rec.accuracy)
-    )
-    hypotheses, claims = with_resolution(*item.examine(seen, tolerances), seen)
-    decided = tuple(_weighed(claim, rec, stated) for claim in claims)
-    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
-    return Verdict(
-        item.id, (stated, *hypotheses), decided, tolerances, f"{name}, at its samples: {rec.accuracy}", item.author
-    )
+    status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
+    stated = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
+    known = _weighed(with_resolution(*item.examine(seen, tolerances), seen), rec, stated)
+    return item.verdict(known, tolerances, f"{_named(rec, subject)}, at its samples: {rec.accuracy}")
+
+
+def _named(rec: Recording, subject: str) -> str:
+    return subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
+
+
+def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:
+    """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from those of each agent."""
+    means = place.mean(axis=1), speed.mean(axis=1)
+    return place + means[0][:, None], speed + means[1][:, None], *means
 
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
@@ -209,12 +206,8 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:
         place, speed = np.zeros(place.shape), np.zeros(speed.shape)
-    off = (
-        lengths(centred(apart)) + place + place.mean(axis=1)[:, None],
-        lengths(centred(slip)) + speed + speed.mean(axis=1)[:, None],
-        lengths(centres(apart)[:, None])[:, 0] + place.mean(axis=1),
-        lengths(centres(slip)[:, None])[:, 0] + speed.mean(axis=1),
-    )
+    differ = *map(lengths, map(centred, (apart, slip))), *(lengths(centres(x)[:, None])[:, 0] for x in (apart, slip))
+    off = [a + b for a, b in zip(differ, _half_widths(place, speed), strict=True)]
     times, end = seen.errors.t, float(place[-1].max())
     if isinstance(law, DiscreteLaw):
         return ObservedRecording(given, run, seen.other, Errors(rec.t, *off), place=end)
@@ -224,7 +217,14 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     return ObservedRecording(given, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end)
 
 
-def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
+def _weighed(
+    known: tuple[tuple[Hypothesis, ...], tuple[Claim, ...]], rec: Recording, first: Hypothesis
+) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    """Return hypotheses, one more in front, and claims with the rigour that the accuracy allows."""
+    return (first, *known[0]), tuple(_weighed_claim(claim, rec, first) for claim in known[1])
+
+
+def _weighed_claim(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
     """A claim with the rigour that the accuracy allows; one under a hypothesis that is only assumed decides nothing."""
     if claim.status not in ("verified", "refuted"):
         return claim

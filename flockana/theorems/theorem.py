@@ -328,6 +328,31 @@ class Theorem:
         """
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
+    def verdict(self, known: tuple[tuple[Hypothesis, ...], tuple[Claim, ...]], used: Tolerances, on: str) -> Verdict:
+        """Return the verdict of hypotheses and claims.
+
+        Parameters
+        ----------
+        known : tuple
+            Hypotheses and claims, as `examine` returns them.
+        used : Tolerances
+            Thresholds.
+        on : str
+            What it was checked on.
+        """
+        return Verdict(self.id, *known, used, on, self.author)
+
+    def silenced(self, missed: Hypothesis) -> tuple[Claim, ...]:
+        """Return all claims as vacuous under an unmet hypothesis.
+
+        Parameters
+        ----------
+        missed : Hypothesis
+            The unmet one.
+        """
+        text = f"{does_not_hold(missed.name)}: {missed.detail}".removesuffix(": ")
+        return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
+
     def examine(
         self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
     ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:

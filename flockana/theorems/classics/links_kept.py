@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from flockana.kernels.paths import control_points
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.olfati_saber.energy import balance, never_rises
+from flockana.theorems.sampling import polygons
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths
 
@@ -29,11 +29,8 @@ def longest_link(seen: Observed) -> Enclosure:
     if not len(ends):
         return Enclosure.of(0.0)
     at_samples = seen.distances(ends[:, 0], ends[:, 1]).max()
-    t, *states, slack = seen.run.path
     bound = float(at_samples.hi)
-    for k in range(len(t) - 1):
-        points, _, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
-        off = allowance if slack is None else allowance + slack[k]
+    for _, points, off in polygons(seen.run):
         apart = lengths(points[ends[:, 1]] - points[ends[:, 0]]).max(axis=1)
         bound = max(bound, float((apart + 2.0 * np.max(off)).max(initial=0.0)))
     error = 2.0 * float(seen.between_error.max(initial=0.0)) + ROUNDING * float(np.abs(seen.run.q).max())

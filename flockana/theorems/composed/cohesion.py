@@ -3,13 +3,12 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.kernels.paths import bernstein
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.navigation import Navigation
 from flockana.theorems.meeting import least_is_known, meeting
 from flockana.theorems.olfati_saber.energy import nothing_adds_energy
-from flockana.theorems.sampling import radius_over
+from flockana.theorems.sampling import polygons, radius_over
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, judged, law_is, lengths, stacked
 
@@ -30,14 +29,12 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     run = seen.run
     error = seen.shape_error + seen.centre_error[:, None]
     at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
-    most, path = at_samples.hi.copy(), run.path
+    most = at_samples.hi.copy()
     there = np.zeros(3)  # paths have three components in every dimension
     there[: run.m] = place
     off = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
-    for k, h in enumerate(np.diff(path.t).tolist()):
-        points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
-        slack = allowance if path.slack is None else allowance + path.slack[k]
-        most = np.maximum(most, lengths(points - there).max(axis=1) + slack + off)
+    for _, points, allowance in polygons(run):
+        most = np.maximum(most, lengths(points - there).max(axis=1) + allowance + off)
     return Enclosure(at_samples.lo, at_samples.mid, most)
 
 

@@ -1,6 +1,7 @@
 """Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import floor
 
 import numpy as np
@@ -120,21 +121,13 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     return _always("cohesive", part, seen.radius, sampling.radius_over(seen), bound)
 
 
-def _given(seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], _Window]:
+def _check(seen: Observed, tolerances: Tolerances, *, strict: bool = False) -> Checked:
     window, part = _window(seen, tolerances)
-    return [has_lattice(seen), window], part
-
-
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, part = _given(seen, tolerances)
+    needs = [has_lattice(seen), window]
     if unmet(needs):
         return needs, []
-    return needs, [_giant(part, tolerances), _cohesive(part, tolerances), *_common(part, tolerances)]
-
-
-def _check_strict(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, part = _given(seen, tolerances)
-    return needs, [] if unmet(needs) else [_connected(part), *_common(part, tolerances)]
+    own = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
+    return needs, [*own, *_common(part, tolerances)]
 
 
 THEOREM = (
@@ -157,7 +150,7 @@ THEOREM = (
         title="The run is strictly α-flocking (Definition 5)",
         statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
         source="Olfati-Saber 2006, Definition 5, strict form",
-        check=_check_strict,
+        check=partial(_check, strict=True),
         enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
         claims=("flock", "deviation", "mismatch"),
         leads={"flock": bridge},
