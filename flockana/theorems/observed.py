@@ -28,7 +28,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, failure, largest_over, paired
 from flockana.theorems.step_resolution import NAME
-from flockana.theorems.theorem import Claim, Hypothesis, Needs, Status
+from flockana.theorems.theorem import Claim, Hypothesis, Known, Needs, Status
 
 
 class End(NamedTuple):
@@ -263,9 +263,7 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
     return tuple(judged)
 
 
-def with_resolution(
-    hypotheses: Needs, claims: Iterable[Claim], seen: Observed
-) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) -> Known:
     """Return hypotheses and claims, with one more hypothesis where steps may not resolve the law."""
     claims = with_doubt(claims, seen)
     if not seen.unresolved:

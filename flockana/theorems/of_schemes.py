@@ -13,7 +13,7 @@ import numpy as np
 from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
 from flockana.theorems.olfati_saber.os_6 import start_of_condition
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
 from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged
 
 ON_STEPS = {
@@ -42,7 +42,7 @@ def is_about_steps(item: Theorem, seen: Observed) -> bool:
     return item.law(seen).status == "unmet" and item.law(_of_law(seen, law)).status != "unmet"
 
 
-def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
     law: Scheme = seen.law
     detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"

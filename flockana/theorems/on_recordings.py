@@ -23,7 +23,7 @@ from flockana.theorems.catalogue import theorem
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
-from flockana.theorems.theorem import Theorem, Verdict
+from flockana.theorems.theorem import HypothesisStatus, Known, Theorem, Verdict
 from flockana.theorems.together import Verdicts, theorems_about
 from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Tolerances, Trajectory, lengths, vacuous
 
@@ -217,9 +217,7 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     return ObservedRecording(given, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end)
 
 
-def _weighed(
-    known: tuple[tuple[Hypothesis, ...], tuple[Claim, ...]], rec: Recording, first: Hypothesis
-) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+def _weighed(known: Known, rec: Recording, first: Hypothesis) -> Known:
     """Return hypotheses, one more in front, and claims with the rigour that the accuracy allows."""
     return (first, *known[0]), tuple(_weighed_claim(claim, rec, first) for claim in known[1])
 

@@ -249,6 +249,7 @@ class Verdict:
         return verdict_latex(self)
 
 
+Known = tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]  # what a theorem says of one case
 Lead = Callable[[Any, Claim], float]
 Needs = Iterable[Hypothesis]  # hypotheses under which something is claimed
 Checked = tuple[list[Hypothesis], list[Claim]]  # what a theorem's `check` returns
@@ -328,7 +329,7 @@ class Theorem:
         """
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
-    def verdict(self, known: tuple[tuple[Hypothesis, ...], tuple[Claim, ...]], used: Tolerances, on: str) -> Verdict:
+    def verdict(self, known: Known, used: Tolerances, on: str) -> Verdict:
         """Return the verdict of hypotheses and claims.
 
         Parameters
@@ -353,9 +354,7 @@ class Theorem:
         text = f"{does_not_hold(missed.name)}: {missed.detail}".removesuffix(": ")
         return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
 
-    def examine(
-        self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
-    ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    def examine(self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None) -> Known:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 
         Parameters
