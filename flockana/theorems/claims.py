@@ -277,6 +277,9 @@ def undecided(name: str, detail: str, needs: Needs = (), **fields: Any) -> Claim
     return Claim(name, status, detail=detail, needs=needs, **fields)
 
 
+_EXPECTED: Mapping[Status, str] = {"refuted": "printed", "verified": "corrected"}
+
+
 def erratum(
     name: str,
     *,
@@ -284,7 +287,7 @@ def erratum(
     statement: str,
     source: str,
     check: Callable[[Tolerances], list[Claim]],
-    expected: Mapping[Status, str],
+    expected: Mapping[Status, str] = _EXPECTED,
     references: tuple[str, ...] = (),
     author: By = "source",
     corrected: tuple[str, ...] = (),
@@ -299,7 +302,8 @@ def erratum(
     check : callable
         Returns the claims, from the tolerances.
     expected : mapping of str to str
-        By expected status the names of claims, with blanks between; the status of the whole follows from them.
+        By expected status the names of claims, with blanks between; by default of "printed" and "corrected". The
+        status of the whole follows from them.
     references : tuple of str
         Keys of the bibliography; by default the source of the numbered errata of that letter.
     author, corrected, ours

@@ -141,9 +141,7 @@ def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *,
     )
 
 
-def converges(
-    case: TubeAndBasin, needs: Needs, *, name: str, stated: str, detail: str, proof: str | None = None
-) -> Claim:
+def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: str, proof: str | None = None) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""

@@ -77,5 +77,4 @@ THEOREM = erratum(
     ),
     source="Jond, bearing-distance flocking, Theorem 1, (36)",
     check=_check,
-    expected={"refuted": "printed", "verified": "corrected"},
 )

@@ -5,7 +5,7 @@ import numpy as np
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 
@@ -27,7 +27,15 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
     slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
     fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
-    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, rest, needs, slow, fast)]
+    far, least, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
+    bounded = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
+    parts = f"their relative speed is {end:.6g} at the end and never below {least:.6g}"
+    match = "the two match, and their distance tends to a known one"
+    return needs, [
+        _invariant(seen, psi, x, w, needs, tolerances),
+        _side("bounded", slow, needs, float(x.mid[-1]), match, bounded),
+        _side("parts", fast, needs, end, "the two never match and separate", parts),
+    ]
 
 
 def _invariant(
@@ -46,31 +54,12 @@ def _invariant(
     )
 
 
-def _sides(
-    psi: AlignmentRate,
-    x: Enclosure,
-    w: Enclosure,
-    rest: Enclosure,
-    needs: list[Hypothesis],
-    slow: Hypothesis,
-    fast: Hypothesis,
-) -> list[Claim]:
-    """Return the claims for both sides of the threshold; the claim for the other side is vacuous."""
-    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid)
-    bounded = limit_claim("bounded", [*needs, slow], proof="cucker-smale").described(
-        computed=float(x.mid[-1]),
-        stated="the two match, and their distance tends to a known one",
-        detail=f"{slow.detail}: x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
-    )
-    parts = limit_claim("parts", [*needs, fast], proof="cucker-smale").described(
-        computed=float(w.mid[-1]),
-        stated="the two never match and separate",
-        detail=f"{fast.detail}: their relative speed is {w.mid[-1]:.6g} at the end and never below {least:.6g}",
-    )
-    return [
-        vacuous("bounded", slow) if slow.status == "unmet" else bounded,
-        vacuous("parts", fast) if fast.status == "unmet" else parts,
-    ]
+def _side(name: str, need: Hypothesis, needs: Needs, computed: float, stated: str, text: str) -> Claim:
+    """Return the claim for one side of the threshold, vacuous on the other."""
+    if need.status == "unmet":
+        return vacuous(name, need)
+    claim = limit_claim(name, [*needs, need], computed=computed, stated=stated, proof="cucker-smale")
+    return claim.described(detail=f"{need.detail}: {text}")
 
 
 THEOREM = run_theorem(

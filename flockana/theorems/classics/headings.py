@@ -86,8 +86,7 @@ def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connec
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     run = seen.run
-    needs = [_plain(run.law), _every_step(run)]
-    if unmet(needs):
+    if unmet(needs := [_plain(run.law), _every_step(run)]):
         return needs, []
     headings = run.extra["heading"]
     nets = [run.law.links(q) for q in run.q[:-1]]

@@ -12,8 +12,7 @@ from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     edges = np.array(seen.law.edges, dtype=np.int32).reshape(-1, 2)
     parts = 1 + int(components(seen.n, edges).max())
-    needs = [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]
-    if unmet(needs):
+    if unmet(needs := [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]):
         return needs, []
     return needs, [
         balance(seen, needs, tolerances, name="energy", proof="tanner"),

@@ -26,8 +26,7 @@ def _connected(seen: Observed) -> Hypothesis:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [_connected(seen)]
-    if unmet(needs):
+    if unmet(needs := [_connected(seen)]):
         return needs, []
     return needs, [
         balance(seen, [], tolerances, name="energy", proof="tanner"),

@@ -63,8 +63,7 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     pulls = seen.law.target is not None and bool(np.max(gains_of(seen)) > 0.0)
-    needs = [condition("c1γ > 0 of an agent", pulls, detail="" if pulls else "the γ-agent pulls nobody")]
-    if unmet(needs):
+    if unmet(needs := [condition("c1γ > 0 of an agent", pulls, detail="" if pulls else "the γ-agent pulls nobody")]):
         return needs, []
     needs += nothing_adds_energy(seen) + ([] if seen.law.alpha is None else least_is_known(seen))
     return needs, [stays_within(seen, needs)]

@@ -123,8 +123,7 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
 
 def _check(seen: Observed, tolerances: Tolerances, *, strict: bool = False) -> Checked:
     window, part = _window(seen, tolerances)
-    needs = [has_lattice(seen), window]
-    if unmet(needs):
+    if unmet(needs := [has_lattice(seen), window]):
         return needs, []
     own = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
     return needs, [*own, *_common(part, tolerances)]

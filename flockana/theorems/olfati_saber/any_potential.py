@@ -152,8 +152,7 @@ def _needs(seen: Observed) -> list[Hypothesis]:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = _needs(seen)
-    if unmet(needs):
+    if unmet(needs := _needs(seen)):
         return needs, []
     apart, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
     bounded, steady = bounded_at_contact(seen, apart), continuous_force(seen, apart)

@@ -24,8 +24,7 @@ def _needs(run: Observed) -> list[Hypothesis]:
 
 
 def _check(run: Observed, tolerances: Tolerances) -> Checked:
-    needs = _needs(run)
-    if unmet(needs):
+    if unmet(needs := _needs(run)):
         return needs, []
     pairs = meeting(run)
     above = energy_at_start(run) - pairs.floor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
@@ -72,18 +72,20 @@ def _stays_together(tube: Tube) -> Hypothesis:
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 1 for the starts of a tube."""
-    needs = [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]
-    if unmet(needs):
+    if unmet(needs := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
         return needs, []
     case, needs = from_tube.TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
-    low, barrier, matched = _below_c_star(tube), _below_barrier(tube), "velocities match in the moving frame"
-    whole = tube.status == "complete"
-    matching: dict[str, Any] = {"name": "ii", "stated": "K̃ -> 0", "detail": matched}
+    low, barrier, matching = (
+        _below_c_star(tube),
+        _below_barrier(tube),
+        ("ii", "K̃ -> 0", "velocities match in the moving frame"),
+    )
+    proof = "any-potential-limits" if tube.status == "complete" else None
     return [*needs, low, barrier], [
         without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
-        from_tube.converges(case, needs, proof="any-potential-limits" if whole else None, **matching)
+        from_tube.converges(case, needs, *matching, proof)
         if needs[-1].status == "met"
-        else without_assumed(needs, lambda given: from_tube.converges(case, given, **matching)),
+        else without_assumed(needs, lambda given: from_tube.converges(case, given, *matching)),
         from_tube.no_collision(case, [*needs, low], name="iii"),
         from_tube.no_collision(case, [*needs, barrier], name="iii-barrier"),
     ]
@@ -106,38 +108,17 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
     case, whole = from_tube.TubeAndBasin.of(tube, basin), tube.status == "complete"
+    limit, matching = ("convergence", "any-potential-limits") if whole else (None, None)
+    strict = "every start of the tube converges to a strict local minimum of U_λ (modulo rotations)"
+    rest = "every start converges to one equilibrium, ∇U_λ(x) = 0"
+    semidefinite = "almost every start tends to an equilibrium with ∇²U_λ >= 0"
+    others = from_tube.TubeAndBasin(tube, None, "")  # a basin says nothing of other starts
     claims = [
         _cohesive(case, needs),
-        from_tube.converges(
-            case,
-            needs,
-            name="ii",
-            stated="every start of the tube converges to a strict local minimum of U_λ (modulo rotations)",
-            detail="the limit is a local minimum",
-        ),
-        from_tube.converges(
-            case,
-            needs,
-            name="ii-converges",
-            stated="every start converges to one equilibrium, ∇U_λ(x) = 0",
-            detail="one limit",
-            proof="convergence" if whole else None,
-        ),
-        from_tube.in_the_limit(
-            from_tube.TubeAndBasin(tube, None, ""),  # a basin says nothing of other starts
-            needs,
-            name="ii-semidefinite",
-            stated="almost every start tends to an equilibrium with ∇²U_λ >= 0",
-            proof="convergence" if whole else None,
-        ),
-        from_tube.converges(
-            case,
-            needs,
-            name="iii",
-            stated="K̃ -> 0",
-            detail="velocities match in the moving frame",
-            proof="any-potential-limits" if whole else None,
-        ),
+        from_tube.converges(case, needs, "ii", strict, "the limit is a local minimum"),
+        from_tube.converges(case, needs, "ii-converges", rest, "one limit", limit),
+        from_tube.in_the_limit(others, needs, name="ii-semidefinite", stated=semidefinite, proof=limit),
+        from_tube.converges(case, needs, "iii", "K̃ -> 0", "velocities match in the moving frame", matching),
     ]
     names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
     if unmet([repels]):

@@ -30,8 +30,7 @@ def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesi
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
-    needs = [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]
-    if unmet(needs):
+    if unmet(needs := [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]):
         return needs, []
     needs, low, barrier = (
         [*needs, any_potential.stays_together(seen)],

@@ -50,8 +50,7 @@ def _gains(run: Observed) -> Hypothesis:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [_gains(seen)]
-    if unmet(needs):
+    if unmet(needs := [_gains(seen)]):
         return needs, []
     end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
     return needs, [_printed(seen, end, needs, tolerances), _minimum(seen, end, needs), _thresholds(seen.law)]

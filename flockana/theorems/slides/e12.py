@@ -2,16 +2,27 @@
 
 from dataclasses import replace
 from math import pi
+from typing import Any
+
+import numpy as np
 
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.centre_path import path_and_factor
-from flockana.stability.tracking import whole_period
+from flockana.stability.centre_path import motion, path_and_factor
+from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
 from flockana.theorems.errata import printed
-from flockana.theorems.slides.measured_ratio import measured_ratio
+from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
 from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed
+
+
+def measured_ratio(seen: Observed) -> Enclosure:
+    """Return the ratio that a run shows; its error is the fit's residual and the difference of two runs."""
+    (ratio, left), (other, _) = response_ratio(seen.run), response_ratio(seen.other)
+    target: Any = seen.law.target
+    floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))
+    return Enclosure.around(ratio, np.inf if seen.doubt else left + DOUBT * abs(ratio - other) + floor)
 
 
 def _hypotheses(run: Trajectory) -> list[Hypothesis]:
@@ -39,8 +50,7 @@ def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: 
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = _hypotheses(seen.run)
-    if unmet(needs):
+    if unmet(needs := _hypotheses(seen.run)):
         return needs, []
     run, law = seen.run, seen.law
     path, factor = path_and_factor(law.target)

@@ -26,8 +26,7 @@ def _enclosed(run: Trajectory) -> str | None:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = alpha_gain(seen)
-    if unmet(needs):
+    if unmet(needs := alpha_gain(seen)):
         return needs, []
     return needs, [
         distinct_pairs(seen, needs, tolerances, name="printed", disproof=_enclosed(seen.run)),

@@ -15,7 +15,7 @@ from flockana.stability.translational import predicted_gain
 from flockana.symbolic.parameters import GainSymbols
 from flockana.symbolic.translational import frequency_gain
 from flockana.theorems.observed import Observed, observed
-from flockana.theorems.slides.measured_ratio import measured_ratio
+from flockana.theorems.slides.e12 import measured_ratio
 
 
 def examined(seen):
