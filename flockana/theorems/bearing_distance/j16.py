@@ -74,9 +74,8 @@ def _growing_radii() -> Claim:
     """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
-    return of_map(
-        "growing", float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A])), _ROUNDING
-    ).described(
+    margin = float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A]))
+    return of_map("growing", margin, _ROUNDING).described(
         computed={f"distance after two minutes, growth {growth:g} m/s": d for growth, d in gap.items()},
         stated="lone agents part, unless their radii of attraction grow faster than they do so",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},

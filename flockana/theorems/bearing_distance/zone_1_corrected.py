@@ -36,9 +36,8 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if directed:
         factors = f"Π (s² + a s + μ_e)(s² + a s)^{m - 1}, off by {spectrum.residual:.1g}"
-    return spectral(
-        "spectrum", spectrum.margin, spectrum.error, needs, proof=proof_of(case, m) if directed else None
-    ).described(
+    margin = spectrum.margin
+    return spectral("spectrum", margin, spectrum.error, needs, proof=proof_of(case, m) if directed else None).described(
         computed={
             "zero modes": spectrum.zeros,
             "slowest other": -spectrum.slowest,

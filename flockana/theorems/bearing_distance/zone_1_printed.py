@@ -15,9 +15,8 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     q = case.on_manifold(seen.run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
     least = kept(case, state(q, 0.0 * q))
-    return judged(
-        "equilibrium", Enclosure.of(-least), needs, about="all", disproof="bearing-distance-printed"
-    ).described(
+    margin = Enclosure.of(-least)
+    return judged("equilibrium", margin, needs, about="all", disproof="bearing-distance-printed").described(
         computed=least * float(case.rho.min()),
         stated="x -> 0 from any initial condition",
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},

@@ -98,9 +98,8 @@ def _double_agent(law: Algorithm1) -> Claim:
 def _strained(limit: _Limit, tolerances: Tolerances) -> Claim:
     """Return a random start's limit of distinct agents whose links differ from d, in a strict minimum of V."""
     q, end, strain = max(limit.parts, key=lambda part: float(part[2].lo))
-    return judged(
-        "strained", tolerances.lattice - strain if end.coincident == 0 else Enclosure.around(0.0, inf), about="all"
-    ).described(
+    margin = tolerances.lattice - strain if end.coincident == 0 else Enclosure.around(0.0, inf)
+    return judged("strained", margin, about="all").described(
         computed=end.strain,
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
         witness={"start": f"random_disc{_STRAINED}", "agents": len(q), "links": end.links},
@@ -113,9 +112,8 @@ def _smallest(tolerances: Tolerances) -> Claim:
     """The smallest known strained minimum of distinct agents, verified anew from its file."""
     known = smallest_strained()
     end = terminal_state(known.law, known.q, 0.0 * known.q)
-    return judged(
-        "smallest", tolerances.lattice - _certain_strain(known.law, known.q), about="all", disproof="strained-thirteen"
-    ).described(
+    margin = tolerances.lattice - _certain_strain(known.law, known.q)
+    return judged("smallest", margin, about="all", disproof="strained-thirteen").described(
         computed={"strain": end.strain, "curvature": known.curvature, "agents": len(known.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
         witness=known.q,
@@ -130,9 +128,8 @@ def _compressed(tolerances: Tolerances) -> Claim:
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)
-    return judged(
-        "algorithm-2", tolerances.lattice - _certain_strain(law, limit.q), about="all", disproof="compressed-patches"
-    ).described(
+    margin = tolerances.lattice - _certain_strain(law, limit.q)
+    return judged("algorithm-2", margin, about="all", disproof="compressed-patches").described(
         computed=end.strain,
         stated="Algorithm 2 converges to an α-lattice (slides' summary of Theorem 3)",
         witness={"links": [end.shortest, end.longest]},
