@@ -186,7 +186,9 @@ class Observed(ResultCache):
     @cached_property
     def residual(self) -> Enclosure:
         """Residual of the energy balance H − ∫ dH/dt at each sample, shape (T,)."""
-        rounding = 2.0 * energy_rounding(self.run) + _work_rounding(self.run)
+        run = self.run
+        of_work = float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
+        rounding = 2.0 * energy_rounding(run) + of_work
         return self.series(lambda run: run.energy_residual, floor=self.floors.work + rounding)
 
     @cached_property
@@ -310,7 +312,3 @@ def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
 def _rounding(x: FloatArray) -> float:
     """Return the rounding of each x_i − x_c, x_c a mean of n numbers."""
     return float((x.shape[1] + 4) * EPS * np.abs(x).max())
-
-
-def _work_rounding(run: Trajectory) -> float:
-    return float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())

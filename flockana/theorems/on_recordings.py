@@ -67,7 +67,7 @@ class ObservedRecording(Observed):
     @property
     def residual(self) -> Enclosure:
         """Energy balance of the law's solution: a recording has no work of its own."""
-        return replace_class(self, Observed).residual
+        return Observed(self.given, self.run, self.other, self.errors, self.doubt).residual
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
@@ -91,11 +91,6 @@ class ObservedRecording(Observed):
             else []
         )
         return (recorded, *moved)
-
-
-def replace_class(seen: Observed, kind: type[Observed]) -> Observed:
-    """Return the same observed run as an object of another class."""
-    return kind(seen.given, seen.run, seen.other, seen.errors, seen.doubt)
 
 
 def _unit(x: FloatArray) -> FloatArray:

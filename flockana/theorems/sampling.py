@@ -6,7 +6,7 @@ w²/ℓ + c at most where the distance is ℓ. Control polygons of the paths bou
 allowance for the paths' own error (`flockana.kernels.paths`) is added.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -41,14 +41,16 @@ def mismatch_over(seen: Observed) -> Enclosure:
 
     Between samples it is bounded by its values at the control points of the velocities, as it is convex.
     """
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.mismatch)
-    squares = (_legs(h, points - points.mean(axis=0)) ** 2 for h, points, _ in polygons(seen.run))
-    bounds, slack = np.array([np.sqrt(np.sum(square, axis=(0, 2)).max()) for square in squares]), seen.run.path.slack
-    if slack is not None:  # of steps that were not kept it is known where they went, and not how fast
-        bounds[slack.max(axis=1) > 0.0] = np.inf
-    size = seen.run.over_intervals(np.maximum, bounds) + np.sqrt(seen.n) * seen.between_speed_error
-    return _with_bound(_ends(seen.mismatch), size**2 / (2.0 * seen.n))
+
+    def bound() -> FloatArray:
+        squares = (_legs(h, points - points.mean(axis=0)) ** 2 for h, points, _ in polygons(seen.run))
+        sizes, slack = np.array([np.sqrt(np.sum(square, axis=(0, 2)).max()) for square in squares]), seen.run.path.slack
+        if slack is not None:  # of steps that were not kept it is known where they went, and not how fast
+            sizes[slack.max(axis=1) > 0.0] = np.inf
+        size = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
+        return size**2 / (2.0 * seen.n)
+
+    return _over(seen, seen.mismatch, bound)
 
 
 def stretch_between(seen: Observed) -> FloatArray:
@@ -64,31 +66,26 @@ def stretch_between(seen: Observed) -> FloatArray:
 
 def radius_over(seen: Observed) -> Enclosure:
     """Return the largest cohesion radius from each sample to the next, shape (T − 1,), or (1,) of one sample."""
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.radius)
-    return _with_bound(_ends(seen.radius), seen.run.cohesion_bounds + seen.between_error)
+    return _over(seen, seen.radius, lambda: seen.run.cohesion_bounds + seen.between_error)
 
 
 def spread_over(seen: Observed) -> Enclosure:
     """Return the largest √Σ‖q_i − q_c‖² from each sample to the next, shape (T − 1,), or (1,) of one sample."""
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.spread)
-    steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
-    bounds = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
-    most = seen.run.over_intervals(np.maximum, np.array(bounds)) + np.sqrt(seen.n) * seen.between_error
-    return _with_bound(_ends(seen.spread), most)
+
+    def bound() -> FloatArray:
+        steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
+        sizes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
+        return seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
+
+    return _over(seen, seen.spread, bound)
 
 
-def _ends(at_samples: Enclosure) -> Enclosure:
-    """Return the larger of the values at both ends of each interval."""
-    if len(at_samples.mid) == 1:
+def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]) -> Enclosure:
+    """Return the larger of the values at both ends of each interval, and at most a bound of what is between them."""
+    if len(seen.t) == 1:
         return at_samples
-    return stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
-
-
-def _with_bound(at_ends: Enclosure, bound: FloatArray) -> Enclosure:
-    """Return an enclosure from the largest value at the ends to a bound."""
-    return Enclosure(at_ends.lo, at_ends.mid, np.maximum(at_ends.hi, bound))
+    ends = stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
+    return ends if seen.is_map else Enclosure(ends.lo, ends.mid, np.maximum(ends.hi, bound()))
 
 
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:

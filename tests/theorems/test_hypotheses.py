@@ -13,7 +13,6 @@ from flockana import Algorithm1, Algorithm2, AlphaInteraction, DeadZoneFlocking,
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import (
     alpha_gain,
-    applied,
     common_gains,
     has_lattice,
     law_is,
@@ -42,7 +41,7 @@ def run_of(law, n=2):
     ids=["itself", "a subclass", "another pair law", "other gains", "another law"],
 )
 def test_a_theorem_is_about_exactly_its_law(law, exact):
-    found = applied(run_of(law), "Algorithm 1", Algorithm1)
+    found = law_is("Algorithm 1", Algorithm1)(run_of(law))
     assert found.status == ("met" if exact else "unmet")
     assert type(law).__name__ in found.detail
 

@@ -72,20 +72,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     error, stand_offs = _stand_offs()
     at_wall, (_, least_gap) = _at_wall(5.0, 5.0), _head_on(_separation_only(5.0, 5.0))
     force, c = 5.0 * _RADII.reach[1], _RADII.reach[1]  # w^oa c and c: the scales of force and length
-    printed, mended, clearance = (
-        max(outward, inward) / force,
-        min(mended_outward / force, mended_inward / force, -mended_beyond / c),
-        min(at_wall, least_gap) / c,
-    )
+    printed, clearance = max(outward, inward) / force, min(at_wall, least_gap) / c
+    mended = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
     return [
         of_state("printed", printed, _ROUNDING, disproof="stand-off").described(
             computed={"outward force in an obstacle": outward, "inward force beyond a wall": inward},
             stated="(8) repels an agent from an obstacle and from a wall",
-            witness={
-                "in an obstacle": (10.5, 0.3),
-                "beyond the wall x = 50": (50.1, 25.0),
-                "beyond it after 3 s": beyond,
-            },
+            witness={"in an obstacle": (10.5, 0.3), "beyond the wall x = 50": (50.1, 25.0)}
+            | {"beyond it after 3 s": beyond},
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),

@@ -6,7 +6,7 @@ from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, of_map, of_state
+from flockana.theorems.toolkit import Claim, FloatArray, erratum, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _R, _C, _A, _V_MAX, _SIDE = 1.5, 3.0, 5.0, 4.0, 50.0
@@ -102,10 +102,6 @@ def _slow() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_letter(), _clamped(), _reaching(), _slow()]
-
-
 THEOREM = erratum(
     "J13",
     statement=(
@@ -115,7 +111,7 @@ THEOREM = erratum(
         "what the paper says."
     ),
     source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
-    check=_check,
+    check=lambda tolerances: [_letter(), _clamped(), _reaching(), _slow()],
     expected={"refuted": "letter clamped", "verified": "reaching stand-off"},
     corrected=("reaching", "stand-off"),
 )

@@ -14,11 +14,8 @@ _RADII = ZoneRadii(1.5, c=_C, a=5.0)
 _UNBOUNDED = 1e6  # an input bound that never acts
 _STEPS = 1000
 _CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c), with g_c <= w^ls (c/r - 1)
-_STRONG, _FINE, _SLIDES = (
-    (5.0, 10.0),
-    0.005,
-    5e-3,
-)  # stronger cohesion; a time step; relative distance from r at which the pair slides
+_STRONG, _FINE = (5.0, 10.0), 0.005  # stronger cohesion; a time step
+_SLIDES = 5e-3  # relative distance from r at which the pair slides
 
 
 def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: float = 0.1) -> FloatArray:

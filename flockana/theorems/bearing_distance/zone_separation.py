@@ -98,10 +98,6 @@ def _close_encounter() -> Claim:
     )
 
 
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_pair(tolerances), _conserved(tolerances), _resonance(tolerances), _close_encounter()]
-
-
 THEOREM = erratum(
     "zone-separation",
     statement=(
@@ -111,7 +107,7 @@ THEOREM = erratum(
         "does not exclude collisions: two agents that are fast enough meet."
     ),
     source="Jond, bearing-distance flocking, section 4",
-    check=_check,
+    check=lambda tolerances: [_pair(tolerances), _conserved(tolerances), _resonance(tolerances), _close_encounter()],
     references=("jond-2025",),
     expected={"verified": "alone energy chain", "refuted": "close-encounters"},
     ours=("energy", "chain"),

@@ -77,9 +77,10 @@ def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
     return bound.widened(_BOUND * bound.hi).clip(0.0)
 
 
-def no_collision(seen: Observed, bound: Enclosure, unit: float, needs: Needs, *, name: str, proof: str | None) -> Claim:
+def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs: Needs, *, name: str) -> Claim:
     """Return the claim that no two agents come closer than a bound: between samples too, except for a map."""
-    # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
+    # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over d₁ where the bound is exactly 0.
+    unit = law.scales.length
     if seen.is_map:
         series = seen.run.metric("min_distance")
         least, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
@@ -93,7 +94,7 @@ def no_collision(seen: Observed, bound: Enclosure, unit: float, needs: Needs, *,
         margin = (least / bound).log()
     else:
         margin = least / unit if least.lo > 0.0 else Enclosure(-inf, least.mid / unit, inf)
-    return judged(name, margin, needs, proof=proof).described(
+    return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
         computed=float(least.lo),
         stated=f"every distance > {bound.mid:.4g}",
         witness={"time": time},

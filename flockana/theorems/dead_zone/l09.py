@@ -28,9 +28,8 @@ def led_run(
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
-    law = LedDeadZoneFlocking(
-        pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, feedforward=feedforward
-    )
+    tied: dict[str, Any] = {"leaders": leaders, "group": group, "pinned": middle, "feedforward": feedforward}
+    law = LedDeadZoneFlocking(pair, c1=2.0, c2=3.0, **tied)
     return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
@@ -106,6 +105,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
+    one, turning = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"
     deaf, late = float(_slip(runs["unknown"].run).min()), runs["unknown"].t[1:]
     return [
         _printed(),
@@ -114,17 +114,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             detail="it holds in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
             "different leaders add or remove energy",
         ),
-        _follow(
-            "one-leader",
-            runs["one"],
-            "all follow one leader that one agent of seven is pinned to",
-            "with 1 of 7 pinned",
-        ),
+        _follow("one-leader", runs["one"], one, "with 1 of 7 pinned"),
         _apart(runs["two"]),
         _fraction(),
-        _follow(
-            "acceleration", runs["known"], "all follow a leader that turns, its acceleration known", "with feedforward"
-        ),
+        _follow("acceleration", runs["known"], f"{turning}, its acceleration known", "with feedforward"),
         of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING).described(
             computed=deaf,
             stated="not all follow a leader that turns if its acceleration is not known",

@@ -40,14 +40,13 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    run, proof = seen.run, None if seen.is_map else case.PROOF
+    run = seen.run
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    bound = case.distance_bound(seen, law)
     return needs, [
         _rate(seen, rate, needs),
         _balance(seen, needs, tolerances),
         _components(seen, case.final_components(seen, law), needs),
-        case.no_collision(seen, bound, law.scales.length, needs, name="distance", proof=proof),
+        case.no_collision(seen, law, case.distance_bound(seen, law), needs, name="distance"),
     ]
 
 

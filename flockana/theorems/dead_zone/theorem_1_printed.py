@@ -71,14 +71,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
         _cohesion(seen, end, needs),
         _energy(seen, law, needs),
         case.velocities_match(seen, end, needs, name="velocity"),
-        case.no_collision(
-            seen,
-            Enclosure.of(0.0),
-            law.scales.length,
-            needs,
-            name="collision",
-            proof=None if seen.is_map else case.PROOF,
-        ),
+        case.no_collision(seen, law, Enclosure.of(0.0), needs, name="collision"),
     ]
 
 

@@ -32,15 +32,9 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
     if unmet(needs := [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]):
         return needs, []
-    needs, low, barrier = (
-        [*needs, any_potential.stays_together(seen)],
-        any_potential.never_meets(seen),
-        below_the_barrier(seen, energy_at_start(seen)),
-    )
-    bounded, excluded = (
-        any_potential.bounded_at_contact(seen, low),
-        proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF,
-    )
+    low, barrier = any_potential.never_meets(seen), below_the_barrier(seen, energy_at_start(seen))
+    needs, bounded = [*needs, any_potential.stays_together(seen)], any_potential.bounded_at_contact(seen, low)
+    excluded = proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF
     claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),

@@ -45,18 +45,14 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     gains, potential = positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), any_potential.potential_needs(seen)
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
-    end, bounded = (
-        terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact),
-        any_potential.bounded_at_contact(seen, none),
-    )
-    paper = any_potential.is_paper(seen)
+    end, caught = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), final_basin(seen).certificate
+    bounded, paper = any_potential.bounded_at_contact(seen, none), any_potential.is_paper(seen)
+    stays, apart = ("cohesion", "collisions") if paper else (any_potential.PROOF, any_potential.PROOF)
     claims = [
-        any_potential.cohesive(seen, needs, name="i", proof="cohesion" if paper else any_potential.PROOF),
+        any_potential.cohesive(seen, needs, name="i", proof=stays),
         _minimum(seen, needs, end, tolerances),
         *_limits(seen, [*needs, *bounded], end),
-        velocities_match(
-            seen, [*needs, *bounded], name="iii", caught=[final_basin(seen).certificate], proof=any_potential.LIMITS
-        ),
+        velocities_match(seen, [*needs, *bounded], name="iii", caught=[caught], proof=any_potential.LIMITS),
     ]
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
     given = [*needs, *bounded, consistent(seen.run), repels]
@@ -66,12 +62,8 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     few = [repels, *potential]
     claims += [  # (iv) needs gains >= 0 only, which every run has
         collisions.distinct_pairs(seen, few, tolerances, name="iv-printed"),
-        collisions.pairs_at_one_instant(
-            seen, few, tolerances, name="iv-instant", proof="collisions" if paper else any_potential.PROOF
-        ),
-        collisions.no_collision(
-            seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else any_potential.PROOF
-        ),
+        collisions.pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof=apart),
+        collisions.no_collision(seen, [*few, none], tolerances, name="iv-none", proof=apart),
         collisions.no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
     return [*given, none, barrier], any_potential.attribute_claims(seen, claims)

@@ -9,15 +9,11 @@ from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import erratum, judged, of_state
 from flockana.theorems.slides.claims_on_energy import rises
-from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, observed, stacked
+from flockana.theorems.toolkit import Claim, FloatArray, Observed, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
 _ENDS = 1e-3  # relative: as near as the end of the run is to the limit
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_undirected(), _momentum(), *_following()]
 
 
 def _undirected() -> Claim:
@@ -118,7 +114,7 @@ THEOREM = erratum(
         "p_j‖², and follows it."
     ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
-    check=_check,
+    check=lambda tolerances: [_undirected(), _momentum(), *_following()],
     expected={"verified": "undirected momentum-lost energy-rises follower leader"},
     author="flockana",
 )
