@@ -5,10 +5,8 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.theorems import Claim, Hypothesis, Tolerances
 from flockana.theorems.claims import by_count, counted, equal, erratum, exact, judged, undecided, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.toolkit import Certificate, Claim, Enclosure, Hypothesis, Tolerances, limit_claim
 
 MET, ASSUMED, UNMET = (Hypothesis(status, status) for status in ("met", "assumed", "unmet"))
 HOLDS, OPEN, FAILS = Enclosure.around(1.0, 0.1), Enclosure.around(0.0, 0.1), Enclosure.around(-1.0, 0.1)

@@ -11,14 +11,7 @@ from hypothesis import strategies as st
 import flockana as fl
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, DeadZoneFlocking, Gains, Trajectory
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import (
-    alpha_gain,
-    common_gains,
-    has_lattice,
-    law_is,
-    positive,
-    positive_room,
-)
+from flockana.theorems.hypotheses import alpha_gain, common_gains, has_lattice, law_is, positive, positive_room
 from flockana.theorems.rounding import energy_error, frame_error, spread_error
 
 getcontext().prec = 60

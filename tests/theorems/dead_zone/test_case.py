@@ -16,8 +16,7 @@ from flockana.theorems.dead_zone.case import (
     velocities_match,
 )
 from flockana.theorems.dead_zone.case import no_collision as no_collision_of
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
+from flockana.theorems.toolkit import Enclosure, Observed
 from tests.theorems.made_up import made_up as made_up_run
 
 EPS, LAW = np.finfo(float).eps, DeadZoneFlocking()

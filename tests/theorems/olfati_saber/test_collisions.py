@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 from flockana import Algorithm1, Algorithm2, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.measures.path_bounds import contacts
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import collisions
 from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
+from flockana.theorems.toolkit import Enclosure, Observed
 from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)

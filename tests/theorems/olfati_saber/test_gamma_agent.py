@@ -61,10 +61,7 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
 
 
 def test_rest_and_the_velocity_that_is_told_beside_it():
-    assert [target_rests(run(StaticTarget(HERE)), any_p_r=some).status for some in (True, False)] == [
-        "met",
-        "met",
-    ]
+    assert [target_rests(run(StaticTarget(HERE)), any_p_r=some).status for some in (True, False)] == ["met", "met"]
     assert [target_rests(run(StaticTarget(HERE, AWAY)), any_p_r=some).status for some in (True, False)] == [
         "met",
         "unmet",

@@ -10,10 +10,9 @@ from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Tolerances
 from flockana.base.seals import sealed
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
 from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.any_potential import disconnected_energy
 from flockana.theorems.slides.e03 import rhombus_with_double_agent
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.toolkit import Hypothesis, Observed
 from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
 
 LAW = Algorithm1()

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Trajectory
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides.claims_on_energy import rises, run_claim
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.toolkit import Enclosure, Hypothesis, Observed, observed
 
 
 @pytest.fixture(scope="module")
