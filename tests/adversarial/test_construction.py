@@ -39,7 +39,6 @@ def test_a_true_rate_is_never_refuted_however_long_and_loose_the_run(decay, unti
 
 
 def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before():
-    """The numbers alone: they reach as far as the spread is above the error of the run, and say so."""
     from flockana.theorems.classics.alignment_bounds import Guarantee
     from flockana.theorems.observed import Observed
 
@@ -79,7 +78,6 @@ def test_an_agent_that_is_dragged_away_after_the_run_is_not_said_to_follow():
 @pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"method": "RK45", "rtol": 1e-3}, {}])
 @pytest.mark.parametrize("gap", [1e-8, 1e-5, 1e-2])
 def test_a_link_that_is_kept_is_never_refuted(how, gap):
-    """Two agents that swing through each other, and are thrown back at the pole a dozen times or more."""
     law = LinkKeeping(((0, 1),), r=1.0, k=1.0, c=0.0)
     run = fl.simulate(law, [[0.0], [1.0 - gap]], [[0.0], [1e-3]], (0.0, 20.0 * gap**0.5), **how)
     statuses = {claim.name: claim.status for claim in verify("links-kept", run).claims}

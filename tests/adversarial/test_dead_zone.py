@@ -66,7 +66,6 @@ def both(case, printed, corrected):
 @effort(0.3)
 @given(dead_zones(), powers(-2.0, 2.0), powers(-7.0, 2.0), st.integers(1, 3), st.data())
 def test_out_of_range_and_parting(drawn, speed, until, m, data):
-    """Straight flight for ever: no cohesion, no common velocity; nothing rises, nothing collides."""
     law, L, T = drawn
     q, p = two(1.1 * law.interaction.r, speed * L / T, m)
     case = Case(law, q, p, until * T, data.draw(ways(until * T, until * T / 100.0)))
@@ -158,7 +157,6 @@ def test_an_undamped_pair_swings_for_ever(drawn, share, halves):
 @effort(0.3)
 @given(dead_zones(k2=(1.0, 0.0)), st.integers(2, 6), st.integers(1, 3), seeds, st.data())
 def test_what_holds_of_every_flock(drawn, n, m, seed, data):
-    """Close, far, fast or at rest: the saturated energy falls, and no distance falls below its bound."""
     law, L, T = drawn
     rng = np.random.default_rng(seed)
     q = rng.uniform(-1.0, 1.0, (n, m)) * L * data.draw(st.sampled_from((2.0, 10.0, 60.0)))

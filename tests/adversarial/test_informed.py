@@ -35,7 +35,6 @@ def test_one_agent_on_a_spring_stays_within_its_energy(pull, zeta, unit, seed):
 @effort(0.2)
 @given(st.sampled_from((0.3, 1.0, 3.0)), st.sampled_from((0.5, 1.0, 1.5)), st.booleans(), seeds)
 def test_who_is_informed_follows_and_who_is_far_does_not(pull, zeta, moving, seed):
-    """Agents out of each other's reach: the first is a damped spring, the second flies straight on for ever."""
     rng = np.random.default_rng(seed)
     leader = LinearTarget((0.0, 0.0), (1.5, -1.0)) if moving else StaticTarget((0.0, 0.0))
     match = 2.0 * zeta * np.sqrt(pull)
@@ -80,7 +79,6 @@ def test_one_agent_through_two_others_with_a_leader():
     seeds,
 )
 def test_a_centre_that_is_told_converges(pull, zeta, frequency, feedforward, seed):
-    """Agents out of reach of each other, each a damped spring about the leader: all of it, or nothing if not told."""
     rng = np.random.default_rng(seed)
     match = 2.0 * zeta * np.sqrt(pull)
     circle = CircleTarget((0.0, 0.0), 4.0, frequency)

@@ -29,7 +29,6 @@ def statuses(case):
 
 
 def agree(case, other):
-    """No claim is verified of one and refuted of the other."""
     one, two = statuses(case), statuses(other)
     flips = {name: (one[name], two[name]) for name in one if (one[name], two[name]) in opposite}
     assert not flips, f"{flips}\n  {case!r}\n  {other!r}"
@@ -75,5 +74,4 @@ def test_nothing_turns_into_its_opposite(change, case, seed):
 
 
 def test_every_threshold_is_a_pure_number():
-    """A tolerance that carried a unit would have to be rescaled with the rest."""
     assert getattr(Tolerances, "units", {}) == {}

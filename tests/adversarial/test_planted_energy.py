@@ -17,7 +17,6 @@ STILL = {"rate": TRUE, "balance": TRUE}
 @effort(1.0)
 @given(flocks())
 def test_what_holds_of_every_flock(case):
-    """Nothing proved is ever refuted, whatever the start, the parameters, the method or the step."""
     law, run = case.law, case.run()
     rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
     hold("energy", case, STILL, run=run, may_refuse=rough)
@@ -37,7 +36,6 @@ def test_what_holds_of_every_flock(case):
 @effort(0.15)
 @given(pair_laws(damping=(0.3, 2.0)), seeds)
 def test_a_good_run_is_verified(law, seed):
-    """`always inconclusive` is no answer: the identity of a run that resolves its law reads verified."""
     d, time = law.alpha.d, truth.law_time(law)
     rng = np.random.default_rng(seed)
     q, p = (

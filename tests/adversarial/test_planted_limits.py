@@ -94,7 +94,6 @@ def test_a_pair_that_leaves_is_caught_by_nothing(alpha, share, until, late):
 @effort(0.2)
 @given(near_balance(damping=(0.0,), pulls=(0.01,)), st.floats(0.1, 0.9), st.integers(10, 60))
 def test_samples_chosen_to_look_like_a_decay(drawn, factor, count):
-    """Undamped, kept only where the speed happens to be a factor smaller each time: an envelope of samples is none."""
     law, q, p, spring, _, _ = drawn
     omega = np.sqrt(spring)
     phases = np.pi * np.arange(1, count + 1) - np.arcsin(np.maximum(factor ** np.arange(1, count + 1), 1e-9))
@@ -141,7 +140,6 @@ def test_a_strained_minimum_refutes_the_summaries(unit):
 @pytest.mark.parametrize("off", [0.0, 1e-12, 1e-6])
 @pytest.mark.parametrize("until", [1e-3, 0.3])
 def test_on_top_of_each_other_is_no_limit(off, until):
-    """At rest at a maximum of the pair's potential nothing moves yet: no minimum, no lattice, and no counterexample."""
     q = np.array([[0.0, 0.0], [off, 0.0]])
     case = Case(Algorithm1(), q, 0.0 * q, until)
     hold("lattice-limit-printed", case, {"lattice": OPEN})
@@ -166,7 +164,6 @@ def test_a_squeezed_pair(pull_, m, truths):
 @effort(0.25)
 @given(powers(-3.0, 3.0), powers(-3.0, 3.0), st.integers(2, 4), st.data())
 def test_flocking_by_definition(drift, size, n, data):
-    """Undamped springs without pair forces: K̃ and R in closed form, also where samples fall on turning points only."""
     alpha = AlphaInteraction()
     law = Algorithm2(alpha, Gains(0.0, 0.0, 0.0, 0.0, 1.0, 0.0), StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
@@ -189,7 +186,6 @@ def test_flocking_by_definition(drift, size, n, data):
 
 
 def _above(value, high, low):
-    """Of a claim that a value stays below a threshold somewhere between low and high."""
     return FALSE if value > high else TRUE if value < low else TRUE | FALSE
 
 

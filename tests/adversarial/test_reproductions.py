@@ -184,7 +184,6 @@ def test_without_links_there_is_no_lattice_to_call_one():
 @pytest.mark.attack
 @pytest.mark.parametrize("strength", [5e4, 5.0, 0.01])
 def test_the_search_for_a_threshold_says_when_it_found_none(strength):
-    """So weak that every ratio collapses, or so strong that none does: the search's own floor is no threshold."""
     alpha = AlphaInteraction(a=strength, b=strength)
     law = Algorithm2(alpha, Gains(1.0, 1.0, 0.0, 0.0, 0.01, 0.01), ORIGIN)
     claim = hold("E11", Case(law, APART, STILL, 0.02), {"printed": OPEN}).claim("threshold")
@@ -257,7 +256,6 @@ def test_a_share_is_a_share():
 
 
 def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
-    """Three agents fly apart and double their radius within the window; a late first sample hid it."""
     law = Algorithm2(AlphaInteraction(d=7.0, r=7.35), Gains(1.0, 0.0, c1_gamma=0.0, c2_gamma=0.0), StaticTarget((2.1,)))
     q = np.array([[10.155683774987544], [10.155683774987544], [-1.4624173943616945]])
     p = np.array([[-170.43184667306846], [-123.91172034671153], [-70.33036493848445]])
@@ -271,7 +269,6 @@ def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
 
 
 def test_a_flock_that_swings_does_not_match_velocities_because_it_is_sampled_once_a_period():
-    """Two agents on springs stand still at each sample, and run against each other in between."""
     gains = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0)
     law = Algorithm2(gains=gains, target=StaticTarget((0.0,)))
     for samples in (3, 5, 9):
@@ -284,7 +281,6 @@ def test_a_flock_that_swings_does_not_match_velocities_because_it_is_sampled_onc
 
 
 def test_a_lattice_that_breathes_is_none_because_it_is_sampled_at_its_length():
-    """A pair that swings about d, sampled as it passes d, strays from it in between."""
     law = Algorithm1(AlphaInteraction(), Gains(c1_alpha=30.0, c2_alpha=0.0))
     q, p, strict = [[0.0], [7.0]], [[-3.0], [3.0]], Tolerances(deviation=1e-3)
     fine = simulate(law, q, p, (0.0, 3.0), t_eval=np.linspace(0.0, 3.0, 3001))

@@ -28,7 +28,6 @@ scales = st.sampled_from((1.0, 2.0, 1e-6, 1e4))
 
 
 def placed(edges, lengths, rng, m):
-    """Positions with each edge at its length, at random bearings."""
     q = np.zeros((1 + max(max(edge) for edge in edges), m))
     for (j, i), length in zip(edges, lengths, strict=True):
         axis = rng.normal(size=m)
@@ -58,7 +57,6 @@ def trees(draw, *, directed=True, off=exactly, sigma=1.0):
 @effort(0.4)
 @given(trees(), powers(-9.0, 1.5), st.sampled_from((0.0, 1.0, 1e3)), st.data())
 def test_at_its_own_equilibrium(drawn, until, drift, data):
-    """Every edge at its length, all with one velocity: nothing moves but by rounding, whose sign is no news."""
     law, q, rho, _ = drawn
     p = np.full(q.shape, drift * rho)
     case = Case(law, q, p, until, data.draw(ways(until, until / 100.0)))
@@ -115,7 +113,6 @@ def test_without_alignment_it_swings_for_ever(drawn, halves):
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_linked_agents_at_one_place(m):
-    """No bearing, no spring, no spectrum; and no crash."""
     law = MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0)
     q = np.zeros((3, m))
     q[2, 0] = 1.0

@@ -30,7 +30,6 @@ def test_the_force_is_the_slope_of_the_potential():
 
 
 def test_the_reduced_problem_is_the_whole_one():
-    """Two agents head on: meeting time of the reduced problem, and the order of the full one, damped and not."""
     law = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.05))
     s0 = 7.0
     for share, meet in ((1.5, True), (1.01, False)):

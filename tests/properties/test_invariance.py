@@ -19,7 +19,6 @@ def state(seed, n, m, *, spread=5.0):
 
 @given(flocks)
 def test_rigid_motions_and_relabelling(flock):
-    """Translation, rotation or reflection, permutation: u turns with the flock, energies and metrics stay."""
     seed, n, m, alpha = flock
     q, p, rng = state(seed, n, m)
     law = Algorithm1(alpha, GAINS)

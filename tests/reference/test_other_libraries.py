@@ -45,7 +45,6 @@ def test_links_are_those_of_a_tree_and_components_those_of_networkx(n, m, size):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_crossings_are_those_of_shapely(seed):
-    """In general position: two links cross if they share an inner point, and none of their ends lies on the other."""
     q = flock(30, 2, 14.0, seed)
     pairs = fl.links(q, 8.4)
     lines = shapely.linestrings(q[pairs])

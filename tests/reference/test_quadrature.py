@@ -16,7 +16,6 @@ def _sigma_norm(x, eps):
 
 
 def _integral(function, start, end, marks):
-    """∫ by mpmath over panels that end at the marks and grow away from the last one."""
     inside = sorted({m for m in marks if min(start, end) < m < max(start, end)}, reverse=bool(start > end))
     return mp.quad(function, [start, *inside, end]) if start != end else mp.mpf(0)
 

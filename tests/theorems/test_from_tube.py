@@ -43,7 +43,6 @@ def pair():
 
 @pytest.fixture(scope="module")
 def loose():
-    """A tube of starts that differ by far."""
     return enclose(LED, NEAR, 0.0 * NEAR, (0.0, 2.0**-9), radius=(0.0, 4.0), order=5, remainder=0.01, widest=10.0)
 
 
@@ -86,7 +85,6 @@ def test_a_tube_that_ends_early_proves_no_limit():
 
 
 def test_a_tube_that_breaks_proves_no_absence_of_collisions():
-    """What comes after its end is not known; one that breaks at once has no distances between steps."""
     law, q, p = Algorithm1(), np.array([[0.0], [1.0]]), np.array([[32.0], [-32.0]])
     early = enclose(law, q, p, (0.0, 0.0625), steps=1)
     whole = enclose(law, q, p, (0.0, 0.0625))

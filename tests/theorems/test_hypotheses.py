@@ -88,7 +88,6 @@ def spread(rows):
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.integers(1, 3), st.floats(-6.0, 9.0).map(lambda x: 10.0**x))
 def test_rounding_of_spreads_is_within_its_bound(seed, n, m, offset):
-    """Against sixty digits, near the origin and far from it."""
     rng = np.random.default_rng(seed)
     x = rng.normal(size=(1, n, m)) + offset * rng.normal(size=m)
     found = 0.5 * float(np.sum((x[0] - x[0].mean(axis=0)) ** 2))
@@ -104,7 +103,6 @@ def test_rounding_of_spreads_is_within_its_bound(seed, n, m, offset):
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.floats(-3.0, 7.0).map(lambda x: 10.0**x))
 def test_rounding_of_energies_is_within_its_bound(seed, n, offset):
-    """Moved by a whole number that all coordinates can carry exactly, nothing but rounding changes an energy."""
     law = Algorithm2(gains=Gains(c1_gamma=0.3), target=fl.StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(seed)
     q = np.round(rng.uniform(0.0, 15.0, (n, 2)) * 2.0**12) / 2.0**12

@@ -67,7 +67,6 @@ def test_of_the_finest_run_the_second_one_is_looser_and_the_run_itself_the_best(
 
 
 def test_a_difference_of_0_proves_nothing_below_the_solvers_floors():
-    """Two agents out of each other's range fly straight on: both runs agree to the bit."""
     seen = observed(fl.Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
     assert np.array_equal(seen.run.q, seen.other.q)
     assert seen.shape_error[-1].min() >= seen.other.floors.place > 0.0
@@ -173,7 +172,6 @@ def test_a_window_keeps_what_is_known_and_begins_inexactly():
 
 
 def test_what_is_computed_once_is_kept_with_what_is_known_of_the_errors():
-    """At the finest tolerances the run itself is the tighter of the two, seen with its error or as if exact."""
     run = fl.simulate(fl.Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 20.0), rtol=1e-13)
     exact = final_basin(Observed.alone(run))
     known = Observed.of(run)

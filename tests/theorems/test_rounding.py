@@ -47,7 +47,6 @@ def test_the_force_of_a_pair_is_as_exact_as_is_said_and_not_much_better(pair):
 
 @pytest.mark.parametrize("pair", PAIRS)
 def test_the_energy_of_a_flock_is_as_exact_as_is_said(pair):
-    """Far from the origin too: against the same flock with its places and potential in fifty digits."""
     rng, law = np.random.default_rng(0), Algorithm1(pair)
     for far in (0.0, 1e4):
         q = pair.d * (far + rng.uniform(0.0, 2.0, (5, 2)))
@@ -109,7 +108,6 @@ def test_what_an_energy_of_zero_at_rest_is_off_by_is_that_of_its_pairs(n, pairs)
 
 
 def test_a_pull_and_an_obstacle_add_theirs():
-    """The pull by the square of the farthest place from the γ-agent; an obstacle by its largest energy and force."""
     eps, q = np.finfo(float).eps, np.array([[[0.0, 0.0], [-50.0, 0.0]]])
     pull = Gains(c1_alpha=0.0, c1_gamma=3.0)
     law = Algorithm2(gains=pull, target=StaticTarget((0.0, 20.0)))

@@ -25,7 +25,6 @@ COARSE = np.linspace(0.0, 3.0, 7)
 
 @pytest.fixture(scope="module")
 def runs():
-    """(a few samples of a flock that swings, many of the same)."""
     law = fl.Algorithm2(gains=fl.Gains(c2_alpha=0.1, c2_gamma=0.0), target=fl.StaticTarget((0.0, 0.0)))
     q = 1.1 * hexagonal_patch(1, 7.0)
     p = np.random.default_rng(0).normal(0.0, 2.0, q.shape)
@@ -34,7 +33,6 @@ def runs():
 
 
 def largest(series):
-    """In each interval between the coarse samples."""
     return np.array([series[500 * k : 500 * (k + 1) + 1].max() for k in range(6)])
 
 
@@ -130,7 +128,6 @@ def test_a_map_moves_at_its_samples_only():
 
 
 def test_what_the_run_is_off_by_is_added_to_every_bound(runs):
-    """Two runs that differ by a shift of one agent: bounds grow by the error that stands for it."""
     coarse, _ = runs
     exact, loose = (
         Observed.alone(coarse),

@@ -245,7 +245,6 @@ def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():
 
 
 def test_no_claim_has_an_error_below_0():
-    """With which every margin, however small, would decide."""
     assert Claim("i", "verified", margin=1.0, error=0.0).error == 0.0
     with pytest.raises(ArgumentError, match="claim 'i' has error = -1e-13: expected none below 0"):
         Claim("i", "verified", margin=1.0, error=-1e-13)

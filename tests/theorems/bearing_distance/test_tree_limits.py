@@ -53,7 +53,6 @@ def energies_of(case, q, p):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_edge_ever_has_more_energy_than_the_certificate_allows(seed):
-    """The bound V̂ of each edge holds on, and what it feels of its parent, along a run that ends at rest."""
     rng = np.random.default_rng(seed)
     n, m = int(rng.integers(3, 6)), int(rng.integers(1, 4))
     law = MinimalFlocking(
@@ -156,7 +155,6 @@ def test_a_bound_that_is_attained_is_kept(stretch):
 @pytest.mark.parametrize("off", [0.5, *SIZES])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
-    """Leaving fast, an edge is longer than desired throughout, or shorter at the start: A_cl is Hurwitz, or is not."""
     law = MinimalFlocking(edges=PAIR, spacing=1.0)
     run = simulate(law, [[0.0, 0.0], [1.0 + sign * off, 0.0]], [[0.0, 0.0], [1.0, 0.0]], (0.0, 0.5))
     right, wrong = ("verified", "refuted") if sign > 0.0 else ("refuted", "verified")
@@ -167,7 +165,6 @@ def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
 
 
 def test_a_passage_between_two_samples_is_not_missed():
-    """Both samples find the edge too long, but in between it is not: A_cl is not Hurwitz throughout."""
     law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=1e-3)
     start = [[0.0, 0.0], [3.0, 0.2]], [[0.0, 0.0], [-6.0, 0.0]]
     run = simulate(law, *start, (0.0, 1.2), t_eval=[0.0, 1.2])
@@ -262,7 +259,6 @@ def test_a_subclass_is_another_law():
 
 
 def test_forces_that_are_mutual_but_for_rounding_are_mutual():
-    """β_i r_i |N_i| of neighbours agree by algebra, in any unit, and differ in their last digits."""
     law = MinimalFlocking((3.0, 0.1), beta=(0.1, 3.0), edges=both_ways(PAIR), normalised=False)
     assert 3.0 * 0.1 != 0.1 * 3.0 or law.reciprocal
     for length in (1.0, 1e-3, 7.0, 1e6):

@@ -25,7 +25,6 @@ def run_on(edges, *, m=2, seed=0, end=80.0, size=2.0, speed=0.5, **options):
 
 
 def claim_of(name, run, claim):
-    """A claim on a run as it is, edited or not."""
     return next(c for c in theorem(name).examine(Observed.of(run), Tolerances())[1] if c.name == claim)
 
 
@@ -154,7 +153,6 @@ def test_a_perceived_graph_may_change_and_another_law_is_another_law(directed):
 
 
 def test_another_spectrum_contradicts_its_proof_and_leaves_the_rate_open(directed, monkeypatch):
-    """Planted: zeros that are too many. The proof has it otherwise, so that the numbers are at fault, and say so."""
     monkeypatch.setattr(zone_1_corrected, "tree_spectrum", lambda case, q: Spectrum(5, 0.5, 0.0, -1.0, 1e-9))
     spectrum = claim_of("zone-1-corrected", directed, "spectrum")
     assert (spectrum.status, spectrum.contradicts) == ("inconclusive", "bearing-distance")
@@ -170,7 +168,6 @@ def test_the_rate_is_half_the_slowest_of_the_spectrum(directed):
 
 
 def test_a_wrong_energy_is_caught(monkeypatch):
-    """Springs counted once in a hundred too often: H then does not change at the rate that is said."""
     right = MinimalFlocking.hamiltonian
 
     def wrong(self, t, q, p):

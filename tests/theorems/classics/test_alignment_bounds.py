@@ -82,7 +82,6 @@ def test_sums_that_are_not_divided_count_every_agent():
 
 
 def test_a_net_that_starts_just_at_the_range_is_not_certain_to_be_one():
-    """Rounding alone says on which side of R two agents are that begin there, though they come together at once."""
     law = fl.ProximityFlocking()
     run = fl.simulate(law, [[0.0], [law.r]], [[0.1], [-0.1]], (0.0, 0.5))
     assert fl.verify("tanner-switching", run).hypotheses[-1].status == "assumed"
@@ -92,7 +91,6 @@ def test_a_net_that_starts_just_at_the_range_is_not_certain_to_be_one():
 
 @pytest.mark.parametrize(("share", "status"), [(0.9, "met"), (1.1, "assumed")])
 def test_connectedness_is_certain_below_the_energy_of_a_cut(share, status):
-    """Two agents at d with a share of V(R) as their energy: seen for so short a time that they are still linked."""
     law = fl.ProximityFlocking()
     speed = sqrt(share * float(law.potential.energy(law.r**2)))  # each: H = speed²
     run = fl.simulate(law, [[0.0], [1.0]], [[-speed], [speed]], (0.0, 0.1))

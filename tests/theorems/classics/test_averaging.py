@@ -90,14 +90,12 @@ def test_who_meets_later_is_not_parted():
 
 
 def test_who_passes_within_range_is_not_parted():
-    """Ahead along x and faster there, but by less than r: the second comes down past the first and meets it."""
     q, heading = np.array([[0.0, 0.0], [0.5, 1.5]]), np.radians([85.0, 280.0])
     assert simulate(LAW, q, LAW.velocities(heading), (0.0, 20.0)).metric("connectivity").max() == 1.0
     assert not certain(permanently_separated(LAW, q, heading))
 
 
 def test_a_span_that_passes_a_turn_parts_from_nothing():
-    """The first two may come to head as the third does: nothing is certain."""
     q = np.array([[0.0, 0.0], [0.5, 0.0], [3.0, 0.0]])
     assert not certain(permanently_separated(LAW, q, np.array([0.1, 6.2, 3.0])))
 
@@ -141,7 +139,6 @@ def test_who_hears_one_agent_is_counted_in_whole_numbers():
 
 
 def test_a_block_is_of_its_own_steps_and_rounds_with_each():
-    """Of two agents a block is one window; a third of a step more, a third of the rounding more."""
     both = np.array([[0, 1]])
     headings = np.tile([0.25, 1.5], (6, 1))
     first, second = blocks([both] * 5, headings, [(0, 2), (2, 5)])

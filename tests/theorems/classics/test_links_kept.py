@@ -12,7 +12,6 @@ from flockana.theorems.observed import Observed
 
 
 def checked(run):
-    """Claims of a run as if it were exact, by name."""
     return {claim.name: claim for claim in THEOREM.check(Observed.alone(run), fl.Tolerances())[1]}
 
 

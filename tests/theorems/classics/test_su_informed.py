@@ -29,7 +29,6 @@ def hypothesis_status(verdict, text):
 
 
 def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
-    """Galilei: the run seen from the leader is a run of the law with a leader at rest, its steps too."""
     run = run_of()
     seen = leader_frame.as_the_leader_sees(Observed.alone(run)).run
     again = simulate(seen.law, seen.q[0], seen.p[0], (0.0, 4.0), t_eval=run.t)
@@ -68,7 +67,6 @@ def test_a_link_at_one_sample_of_each_window_is_enough(near, linked):
 
 
 def test_few_lead_all_that_are_linked():
-    """That links come again and again is assumed, so that those who are linked follow is not decided."""
     verdict = scenario("informed-few").verify(scenario("informed-few").run())[0]
     verified = dict.fromkeys(("energy", "distance", "informed", "pairs", "one-instant"), "verified")
     assert statuses(verdict).items() >= (verified | {"linked": "inconclusive"}).items()

@@ -11,14 +11,12 @@ from flockana.theorems.sampling import least_distance, spread_over
 
 @pytest.mark.parametrize("off", [-2e-8, -3e-9, -1e-9, 1e-9])
 def test_a_pair_at_rest_near_its_distance_refutes_nothing(off):
-    """It never comes nearer than it started: equality, or, from beyond d, as far from d on the other side."""
     run = simulate(FixedNetFlocking(edges=((0, 1),)), [[0.0], [1.0 + off]], [[0.0], [0.0]], (0.0, 2.0))
     verdict = verify("tanner-fixed", run)
     assert verdict.claim("no-collision").status != "refuted"
 
 
 def test_the_error_of_few_samples_holds_what_many_find():
-    """A joined pair dips between the ends of its run: the margin at the ends less its error is below the dip."""
     law, q, p = FixedNetFlocking(edges=((0, 1),)), [[0.0, 0.0], [1.2, 0.0]], [[0.0, 0.0], [0.0, 0.1]]
     few, many = (
         verify("tanner-fixed", simulate(law, q, p, (0.0, 2.0), t_eval=times)).claim("no-collision")

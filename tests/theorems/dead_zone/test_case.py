@@ -25,7 +25,6 @@ STEPS = SemiImplicitEuler(LAW, 1.0)
 
 
 def made_up(*args, **kwargs):
-    """Samples as given, taken for exact."""
     return Observed.alone(made_up_run(*args, **kwargs))
 
 

@@ -26,7 +26,6 @@ CONTACT = 3.4997320373195637  # where k1 presses two agents to
 
 
 def run_in(units, law, q, p, end, **how):
-    """A run of the same start in other units."""
     length, time = units
     law = rescale(law, length=length, time=time)
     if "t_eval" in how:
@@ -109,7 +108,6 @@ def test_two_contacts_that_part_however_slowly(drift, units):
 
 @pytest.mark.parametrize("offset", [s * sign for s in (3.0, *SIZES) for sign in (1.0, -1.0)])
 def test_two_agents_that_pass_at_the_edge_of_their_range(offset):
-    """Head on but for r + offset: beyond it they never meet and part for ever; within it they pull at each other."""
     q, p = [[0.0, 0.0], [100.0, 15.0 + offset]], [[1.0, 0.0], [-1.0, 0.0]]
     found = components_of(np.array(q), np.array(p), LAW)
     if offset > 0.0:
@@ -132,10 +130,6 @@ def shaken_hexagon(seed):
 @pytest.mark.parametrize("start", [small_flock, shaken_hexagon])
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_certain_at_one_instant_comes_true(seed, start):
-    """Wherever along a run a flock is held, or bound, it ends as was said: its radius, and one velocity.
-
-    When, if ever, eight agents from anywhere come to be held is their own: some dwell at saddles for ten minutes.
-    """
     q, p = start(seed)
     run = simulate(LAW, q, p, (0.0, 150.0), t_eval=np.linspace(0.0, 150.0, 61))
     end, integrated = cohesion_radius(run.q[-1]), 1e-7  # places are as good as rtol = 1e-8 of some ten metres
@@ -155,7 +149,6 @@ def test_what_is_certain_at_one_instant_comes_true(seed, start):
 
 
 def test_a_saddle_holds_nothing():
-    """Four agents in a square of contacts, balanced on its diagonals: no minimum, though nothing moves."""
     law = DeadZoneFlocking(DeadZoneInteraction(k1=0.05))
     line = np.array([[0.0, 0.0], [3.4, 0.0], [6.8, 0.0]])  # in the plane a straight chain under pressure buckles
 
@@ -196,7 +189,6 @@ def test_the_step_of_a_map_may_be_too_long_for_its_contacts():
 
 @pytest.mark.parametrize("dt", [0.002, 0.02])
 def test_a_map_that_chatters_is_not_taken_to_rest(dt):
-    """With the printed jumps the flow comes to rest, but its steps do not: at no instant do they look so."""
     law = SemiImplicitEuler(DeadZoneFlocking(DeadZoneInteraction(ramp=0.0)), dt)
     q, p = small_flock(0)
     run = simulate(law, q, p, (0.0, 60.0))
@@ -248,7 +240,6 @@ def test_what_a_map_did_between_the_samples_that_were_kept_is_not_known():
 @pytest.mark.parametrize("speed", [1.0, 5.0, 20.0, 40.0, 60.0])
 @pytest.mark.parametrize("units", UNITS)
 def test_the_distance_bound_is_kept_where_it_is_attained(speed, units):
-    """Without damping two agents turn at the very bound: no margin, whatever the integrator makes of it."""
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0, k_delta=0.0), k2=0.0)
     run = run_in(units, law, [[0.0], [6.0]], [[speed], [-speed]], 8.0 / speed)
     assert said("dead-zone-1-corrected", run)["distance"] in ("verified", "inconclusive")
@@ -262,7 +253,6 @@ def test_the_distance_bound_is_kept_where_it_is_attained(speed, units):
 
 @cache
 def judged(discrete):
-    """A run in metres and seconds, and what is said of it."""
     law = SemiImplicitEuler(LAW, 0.01) if discrete else LAW
     run = simulate(law, *small_flock(3), (0.0, 80.0))
     return run, {name: said(name, run) for name in ("dead-zone-1-printed", "dead-zone-1-corrected")}
@@ -311,7 +301,6 @@ def test_a_subclass_is_another_law(law, discrete):
 
 
 def test_steps_of_a_subclass_are_its_own():
-    """The compiled loop is that of the law itself: a subclass is stepped by its own flow."""
     q, p = np.array([[0.0, 0.0], [30.0, 0.0]]), np.zeros((2, 2))
     run = simulate(SemiImplicitEuler(Windy(), 0.1), q, p, (0.0, 1.0))
     assert run.p[-1] == pytest.approx(np.full((2, 2), 1e-3), rel=1e-12)

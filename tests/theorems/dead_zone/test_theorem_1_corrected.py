@@ -50,7 +50,6 @@ def test_a_run_that_is_not_over_decides_no_limit(end):
 
 
 def test_the_distance_bound_bites():
-    """Without damping the bound is attained; a larger energy than the run's would be refuted by it."""
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0, k1=0.0, k_delta=0.0), k2=0.0)
     run = simulate(law, [[0.0], [6.0]], [[20.0], [-20.0]], (0.0, 0.3))
     claim = verify("dead-zone-1-corrected", run).claim("distance")

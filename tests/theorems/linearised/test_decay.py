@@ -37,7 +37,6 @@ def verdict():
 
 
 def test_it_says_what_was_published(verdict):
-    """But for the late rates of random starts, which differ between processors by their errors (and so the worst)."""
     assert [line for line in changes(verdict) if not re.search("/random/|/random, measured", line)] == []
 
 
@@ -105,7 +104,6 @@ def test_random_starts_tend_to_the_slowest_mode(hexagon):
 @pytest.mark.parametrize("n", [2, 3, 6])
 @pytest.mark.parametrize("time", [1e-3, 1.0, 1e3])
 def test_what_does_not_decay_is_refused(n, time):
-    """A chain without damping: its rates are rounding, of either sign, which is no decay in any unit of time."""
     law = rescale(Algorithm1(gains=Gains(c2_alpha=0.0)), time=time)
     found = linearise(law, 7.0 * np.arange(float(n))[:, None])
     assert not found.stable
@@ -126,7 +124,6 @@ def test_what_hardly_decays_is_refused_before_memory_runs_out():
 
 
 def test_a_rate_within_rounding_is_no_stable_flock():
-    """The terminal theorem asks for a stable equilibrium: without damping there is none, on no processor."""
     law = Algorithm1(gains=Gains(c2_alpha=0.0))
     verdict = verify("linearised-decay-terminal", law=law, q0=[[0.0], [7.001]], p0=[[0.0], [0.0]], t_span=(0.0, 0.5))
     assert (verdict.status, verdict.hypotheses[0].status) == ("vacuous", "unmet")
@@ -192,7 +189,6 @@ def test_the_range_ends_where_the_force_bends_not_where_links_break(verdict):
 
 
 def test_tight_tolerances_refute_what_they_should(hexagon):
-    """The measured rate is off by the neglected term: at a tolerance below it the claim is not verified."""
     law = Algorithm1()
     run = simulate(law, hexagon.q + 0.01, 0.0 * hexagon.q, (0.0, 0.1))
     found = verify("linearised-decay-terminal", run, tolerances=Tolerances(agreement=1e-9))

@@ -48,7 +48,6 @@ def test_each_condition_is_looked_at(name, claim, q, p):
 
 @pytest.mark.parametrize("name", BOTH)
 def test_what_was_before_the_window_does_not_count_between_its_samples(name):
-    """Far from a lattice at first, in one from half of the time on; and as far again at one sample of that."""
     near, lattice = np.array([[0.0], [5.0]]), np.array([[0.0], [7.0]])
     t = 1e-3 * np.arange(9.0)
     settled = made_up(LAW, [near] * 3 + [lattice] * 6, t=t)
@@ -142,7 +141,6 @@ class TestBetweenSamples:
 
     @given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(1, 3))
     def test_bounds_hold_of_a_dense_run(self, seed, n, m):
-        """Radius, components, and the largest one, of a run kept sparsely: against the same run kept densely."""
         rng = np.random.default_rng(seed)
         q, p = rng.uniform(0.0, 12.0, (n, m)), rng.normal(0.0, 4.0, (n, m))
         law = fl.Algorithm2(target=fl.StaticTarget((0.0,) * m))

@@ -53,7 +53,6 @@ class TestTwoAgents:
     @pytest.mark.parametrize("share", [1.1, 1.9])
     @pytest.mark.parametrize("m", [1, 2, 3])
     def test_between_c_star_and_twice_it_they_do(self, share, m):
-        """On one axis they change places for certain, whatever the dimension."""
         found = statuses(verify("collision-energy", head_on(share, m)))
         assert found == {"below": "vacuous", "twice": "refuted"}
 
@@ -66,7 +65,6 @@ class TestTwoAgents:
 
     @pytest.mark.parametrize("share", [0.9, 1.1, 1.6])
     def test_a_law_whose_forces_are_far_below_b_over_root_eps(self, share):
-        """Lengths short beside ℓ: the potential's rounding goes by the forces that there are, and decides nothing."""
         alpha = AlphaInteraction(d=7e-6, r=7.35e-6)
         law = Algorithm1(alpha, Gains(c2_alpha=0.0))
         found = statuses(verify("collision-energy", head_on(share, apart=7e-6, law=law)))
@@ -74,7 +72,6 @@ class TestTwoAgents:
 
     @pytest.mark.parametrize("aside", [1e-12, 1e-9, 1e-7])
     def test_a_near_miss_is_no_collision(self, aside):
-        """Angular momentum never vanishes: they pass each other, however near."""
         claim = verify("collision-energy", head_on(1.6, 2, aside=aside)).claim("twice")
         assert claim.status in ("inconclusive", "verified")
 
@@ -123,7 +120,6 @@ class TestErratum13:
         assert verify("os-3", e13).claim("iv-printed").status == "refuted"
 
     def test_two_pairs_in_one_step_are_both_found(self, e13):
-        """Sampled so sparsely that both meetings fall between two samples: they might be together."""
         keep = [0, int(np.searchsorted(e13.t, 0.035)), len(e13.t) - 1]
         sparse = Trajectory(
             e13.t[keep], e13.q[keep], e13.p[keep], e13.u[keep], e13.law, {"work": e13.extra["work"][keep]}

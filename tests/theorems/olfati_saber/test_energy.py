@@ -32,7 +32,6 @@ def test_a_good_run_balances_and_falls():
 
 @pytest.mark.parametrize("dt", [0.1, 0.05])
 def test_a_rough_integration_refutes_no_identity(dt):
-    """On this run alone the balance is off; a tighter one says whose fault that is, and the proof decides."""
     run = simulate(LAW, *hexagon(shake=1.0, speed=5.0), (0.0, 2.0), method="RK4", dt=dt)
     assert balance(Observed.alone(run), [], Tolerances()).status == "refuted"
     assert balance(Observed.of(run), [], Tolerances()).status == "inconclusive"
@@ -107,7 +106,6 @@ class TestTheSign:
 
     @pytest.mark.parametrize(("told", "status"), [((0.0, 0.0), "verified"), ((0.5, 0.0), "inconclusive")])
     def test_a_sum_of_squares_keeps_its_sign_whatever_the_error_of_the_state(self, told, status):
-        """Beside a sphere and a γ-agent at rest; with one that tells a velocity the terms may cancel."""
         law = Algorithm3(target=StaticTarget((0.0, 0.0), told), obstacles=(Sphere((12.0, 0.0), 2.0),))
         run = simulate(law, [[8.0, 0.5]], [[-1.0, 0.1]], (0.0, 0.1))
         other = simulate(law, [[8.0, 0.5]], [[0.25, 0.0]], (0.0, 0.1), t_eval=run.t)

@@ -34,7 +34,6 @@ SPAN = (0.0, 0.0625)
 
 @pytest.fixture(scope="module")
 def tube():
-    """Two agents in range, one of them at a sphere."""
     return enclose(LAW, *START, SPAN, order=12)
 
 

@@ -78,7 +78,6 @@ def test_too_short_a_run_is_inconclusive_never_refuted():
 
 @pytest.mark.parametrize("until", [0.2, 40.0])
 def test_a_flexible_net_has_no_certificate_however_long_it_decays(until):
-    """A chain of three has no strict minimum."""
     q, p = [[0.0, 0.0], [7.1, 0.0], [14.0, 0.5]], np.zeros((3, 2))
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
     assert statuses(verify("os-1", simulate(law, q, p, (0.0, until))))["i"] == "inconclusive"
@@ -193,7 +192,6 @@ class TestLatticeLimit:
         assert lattice_limit(Observed.alone(run), [], Tolerances(), name="i").status == "inconclusive"
 
     def test_at_rest_at_a_saddle_nothing_is_known(self):
-        """Three agents at the corners of a triangle, a fourth in its centre: strained, and held by nothing."""
         angle = np.pi / 2.0 + 2.0 * np.pi * np.arange(3) / 3.0
         q = np.vstack([np.zeros((1, 2)), 5.0 * np.column_stack([np.cos(angle), np.sin(angle)])])
         run = made_up(LAW, [q] * 2)
@@ -201,7 +199,6 @@ class TestLatticeLimit:
 
     @pytest.mark.parametrize("pull", [1e-9, 1e-6, 1.1])
     def test_the_pull_of_a_gamma_agent_strains_every_lattice(self, pull):
-        """However little: within the tolerance the claim is open, beyond it refuted, and never verified."""
         law = Algorithm2(gains=Gains(c1_gamma=pull, c2_gamma=2.0), target=fl.StaticTarget((0.0, 0.0)))
         q = hexagonal_patch(1, 7.0)
         verdict = verify("lattice-limit-printed", simulate(law, q, 0.0 * q, (0.0, 60.0)))

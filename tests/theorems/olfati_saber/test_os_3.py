@@ -81,7 +81,6 @@ def rk4(law, q, p, dt, steps):
 
 
 def test_a_run_that_blew_up_refutes_nothing():
-    """A step far too large throws the flock out of its bound; the law keeps it, and the run is not the law's."""
     q, p = hexagon()
     wild = rk4(LAW, q, p, 0.8, 25)
     assert judged("os-3", wild).claim("i").contradicts == "cohesion"  # by this run alone
@@ -109,7 +108,6 @@ def test_a_flock_that_leaves_its_bound_contradicts_the_proof():
 
 
 def test_a_radius_between_samples_counts():
-    """Two samples within the bound, a path that leaves it in between: the numbers alone verify nothing."""
     law = Algorithm2(gains=Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
     q, p = [[-1.0], [1.0]], [[-5.0], [5.0]]
     run = made_up(law, [q, q], [p, [[5.0], [-5.0]]], t=(0.0, 40.0), u=[[[0.25], [-0.25]]] * 2)

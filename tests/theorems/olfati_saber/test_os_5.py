@@ -182,7 +182,6 @@ def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
 @pytest.mark.parametrize("offset", [0.0, 1e3, 1e6])
 @pytest.mark.parametrize("name", ["square", "triangular"])
 def test_at_the_largest_ratio_far_from_the_origin(name, offset):
-    """Second neighbours stand at r but for the rounding of their places: they are no links, wherever the lattice is."""
     q = {"square": square(4, 4, D), "triangular": triangular(16, D)}[name] + offset
     found = statuses(verify("os-5", q=q, d=D, r=D * max_ratio(name)))
     assert "refuted" not in found.values()

@@ -64,7 +64,6 @@ def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
 
 
 def test_a_condition_broken_at_the_end_makes_it_vacuous() -> None:
-    """p_d away from the target: the pull slows the flock down to less than |p_d|, for as long as it lasts."""
     run = _run(StaticTarget((300.0, 0.0), (-2.0, 0.0)))
     verdict = verify("os-6", run)
     assert condition_76(run)[-1] < 0.0
@@ -152,7 +151,6 @@ def test_inside_a_sphere_the_energy_can_rise() -> None:
 
 
 def test_numbers_of_another_law_contradict_the_proof(static: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A rate of the wrong sign, and a work that misses a hundredth: the run or the library is at fault."""
     wrong = judged("os-6", replace(static, extra={"work": 0.99 * static.extra["work"]}))
     assert [claim.contradicts for claim in wrong.claims] == ["", "theorem6"]
     right = Algorithm3.flow

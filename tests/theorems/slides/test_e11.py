@@ -65,7 +65,6 @@ def test_a_flock_that_moves_or_stretches_has_no_limit_yet(settled, brackets):
 
 
 def test_without_links_nothing_is_said_of_a_lattice(brackets):
-    """Two agents out of range, hardly pulled: nothing moves, and there is no link that could be of a wrong length."""
     law = Algorithm2(target=ORIGIN, gains=Gains(c1_gamma=1e-9))
     q = np.array([[-20.0, 0.0], [20.0, 0.0]])
     found = claims(Trajectory(np.array([0.0, 1.0]), np.array([q, q]), np.zeros((2, 2, 2)), np.zeros((2, 2, 2)), law))
@@ -83,7 +82,6 @@ def test_it_speaks_of_both_forces(gains):
 
 
 def test_another_pair_law_is_another_law():
-    """Its brackets are those of an α-interaction: of another pair law it says nothing."""
     law = Algorithm2(alpha=DeadZoneInteraction(), target=ORIGIN)
     verdict = verify("E11", simulate(law, hexagonal_patch(1, 6.95), np.zeros((7, 2)), (0.0, 1.0)))
     assert verdict.status == "vacuous"
@@ -121,7 +119,6 @@ def test_brackets_that_do_not_lie_below_each_other(settled, brackets, found, sta
 
 
 def test_both_ends_of_a_bracket_have_been_tried():
-    """Wherever the search begins: below, above, or where something collapses at once."""
     for lowest in (1e-3, 1.0, 50.0):
         tried = {}
 

@@ -36,7 +36,6 @@ def test_gains_of_the_erratum_and_of_the_symbolic_transfer_function(factor, gain
 
 @pytest.mark.parametrize("path", [CircleTarget((0.0, 0.0), 2.0, 0.5), SineTarget((0.0, 0.0), (3.0, 0.0), 2.0, 0.5)])
 def test_e12_on_one_agent(path):
-    """The centre of mass is linear whatever the flock: one agent shows the gain to the integrator's accuracy."""
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     assert response_ratio(run)[0] == pytest.approx(predicted_gain(law.gains, pi, factor=0.25), abs=1e-6)
@@ -61,7 +60,6 @@ def test_the_proof_is_of_targets_that_turn_slowly(frequency, proof):
 
 
 def test_e12_does_not_pass_a_gain_that_is_wrong():
-    """The same run with a law that says another factor: the prediction misses it by more than the tolerance."""
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=CircleTarget((0.0, 0.0), 2.0, 0.5))
     run = simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 20.0))
     mislabelled = replace(run, law=replace(law, target=RescaledVelocity(law.target, 0.25)))
@@ -73,7 +71,6 @@ def test_e12_does_not_pass_a_gain_that_is_wrong():
 
 @pytest.mark.parametrize("periods", [1.0, 1.1, 2.5])
 def test_e12_knows_what_is_left_of_the_start(periods):
-    """Hardly damped, one agent is still on its own way: the gain is right, the run is too short to show it."""
     path = CircleTarget((0.0, 0.0), 2.0, 0.5)
     law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=0.4), target=RescaledVelocity(path, 0.25))
     run = simulate(law, [[30.0, 1.0]], [[0.0, 0.0]], (0.0, 2.0 * periods))
