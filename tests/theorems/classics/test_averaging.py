@@ -11,7 +11,6 @@ from flockana.theorems.classics.averaging import (
     averaging_matrix,
     blocks,
     contraction,
-    final_heading,
     neighbourhood_sizes,
     permanently_connected,
     permanently_separated,
@@ -159,7 +158,3 @@ def test_nothing_is_certain_where_rounding_hides_how_fast_the_net_averages(monke
         found = permanently_connected(LAW, q, heading)
         assert certain(found) is certainly
         assert ("rounding hides" in found.text) is not certainly
-
-
-def test_the_final_heading_is_the_weighted_mean():
-    assert final_heading(np.array([0.0, 1.0]), np.array([1.0, 3.0])) == 0.75

@@ -39,13 +39,6 @@ def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
     assert seen.path.t.size == run.path.t.size
 
 
-def test_told_acceleration_makes_the_leader_s_frame_one_of_rest():
-    run = simulate(compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True), Q, P, (0.0, 3.0))
-    seen = leader_frame.as_the_leader_sees(Observed.alone(run)).run
-    forces = [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)]
-    np.testing.assert_allclose(forces, seen.u, atol=1e-9)
-
-
 def test_links_over_windows_join_who_is_near_an_informed_agent():
     q = np.vstack([Q, [[100.0, 0.0], [107.0, 0.0]]])
     law = compose(**(FEW | {"agents": 9}))
