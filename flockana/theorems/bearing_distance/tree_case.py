@@ -12,7 +12,7 @@ from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.stability import linearise
 from flockana.theorems.sampling import least_distance
-from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Hypothesis, Observed, condition, law_is, stacked
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Hypothesis, Observed, condition, stacked
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,9 @@ def characteristic_residual(A: FloatArray, factors: Sequence[tuple[float, float]
     return float(np.abs(determinants[:, 0] * np.exp(determinants[:, 1] - stated) - 1.0).max())
 
 
-minimal_law = law_is("the minimal law", MinimalFlocking)
+def minimal_law(seen: Observed) -> Hypothesis:
+    """Return the hypothesis that a run is of the minimal law."""
+    return condition("the minimal law is applied", type(seen.law) is MinimalFlocking, detail=type(seen.law).__name__)
 
 
 def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
