@@ -10,7 +10,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import is_sealed, sealed
+from flockana.base.seals import is_sealed
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.tube_certificate import tube_certificate
 from flockana.equilibria.record import write_equilibrium
@@ -206,7 +206,3 @@ def test_a_motion_along_a_mode_is_no_run():
 def test_what_is_no_basin_decides_no_limit():
     with pytest.raises(ArgumentError, match=r"basin = .*: expected a basin, as certify"):
         fl.verify("os-1", TUBE, basin=SimpleNamespace(law=LAW, holds=lambda q, p: True))
-
-
-def test_a_seal_set_by_hand_is_the_one_door():
-    assert is_sealed(sealed(replace(RUN)))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flockana import Algorithm1, Tolerances, verify
+from flockana import Algorithm1, verify
 from tests.adversarial import truth
 from tests.adversarial.cases import effort
 from tests.adversarial.strategies import flocks, seeds
@@ -71,7 +71,3 @@ def test_nothing_turns_into_its_opposite(change, case, seed):
     except UnchangedError:
         assume(False)
     agree(case, other)
-
-
-def test_every_threshold_is_a_pure_number():
-    assert getattr(Tolerances, "units", {}) == {}

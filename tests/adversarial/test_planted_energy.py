@@ -18,19 +18,18 @@ STILL = {"rate": TRUE, "balance": TRUE}
 @given(flocks())
 def test_what_holds_of_every_flock(case):
     law, run = case.law, case.run()
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
-    hold("energy", case, STILL, run=run, may_refuse=rough)
-    hold("collision-energy", case, {"below": TRUE}, run=run, may_refuse=rough)
+    hold("energy", case, STILL, run=run, may_refuse=case.rough)
+    hold("collision-energy", case, {"below": TRUE}, run=run, may_refuse=case.rough)
     if isinstance(law, Algorithm1):
         damped = TRUE if law.gains.c2_alpha > 0.0 else TRUE | FALSE
-        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, run=run, may_refuse=rough)
+        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, run=run, may_refuse=case.rough)
         return
     single = {"i": TRUE, "ii": TRUE, "iii": TRUE}
     if min(law.gains.c1_gamma, law.gains.c2_gamma) == 0.0:
         single = dict.fromkeys(single, OPEN)
     counts = {"iv-instant": TRUE, "iv-none": TRUE, "iv-barrier": TRUE}
-    hold("os-3", case, single | counts, run=run, may_refuse=rough)
-    hold("E13", case, {"corrected": TRUE}, run=run, may_refuse=rough)
+    hold("os-3", case, single | counts, run=run, may_refuse=case.rough)
+    hold("E13", case, {"corrected": TRUE}, run=run, may_refuse=case.rough)
 
 
 @effort(0.15)
@@ -74,10 +73,9 @@ def test_the_printed_energy_of_two_agents(law, speed, apart, data):
     still = apart == 2.0  # out of range for this long
     rises = not still and (inward or apart == 1.0)
     clear = rises and apart == 1.0 and speed > 0.1 and not case.options
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
     expected = REFUTED if clear else FALSE if rises and apart == 1.0 else TRUE if still else TRUE | FALSE
-    hold("energy-printed", case, {"printed-run": expected}, may_refuse=rough)
-    hold("energy", case, STILL, may_refuse=rough)
+    hold("energy-printed", case, {"printed-run": expected}, may_refuse=case.rough)
+    hold("energy", case, STILL, may_refuse=case.rough)
 
 
 @st.composite
@@ -100,9 +98,8 @@ def among_obstacles(draw):
 @given(among_obstacles())
 def test_theorem_6(case):
     run = case.run()
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
-    hold("os-6", case, STILL, run=run, may_refuse=rough)
-    hold("energy", case, STILL, run=run, may_refuse=rough)
+    hold("os-6", case, STILL, run=run, may_refuse=case.rough)
+    hold("energy", case, STILL, run=run, may_refuse=case.rough)
 
 
 @pytest.mark.parametrize("strong", [1.0, 1e-6, 1e3])

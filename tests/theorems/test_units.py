@@ -10,7 +10,6 @@ from tests.theorems.made_up import same_in_all_units
 Q, P, *_ = state(5)
 TREE = fl.MinimalFlocking(edges=tuple((k, k + 1) for k in range(len(Q) - 1)), spacing=7.0)
 MOVING = {name: law for name, (law, _) in LAWS.items() if name not in OWN_RATE} | {"a tree": TREE}
-ABOUT = [(law, name) for law in MOVING for name in theorems_about(MOVING[law], Q, P)]
 
 
 @pytest.fixture(scope="module", params=MOVING)

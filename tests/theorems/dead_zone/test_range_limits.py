@@ -4,7 +4,6 @@ What is true or false of a start is known by algebra here; sizes go from far abo
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 import pytest
@@ -194,13 +193,6 @@ def test_the_distance_bound_is_kept_where_it_is_attained(speed, units):
 
 
 # -- whatever else might be asked -------------------------------------------------------------------------------------
-
-
-@cache
-def judged(discrete):
-    law = SemiImplicitEuler(LAW, 0.01) if discrete else LAW
-    run = simulate(law, *small_flock(3), (0.0, 80.0))
-    return run, {name: said(name, run) for name in ("dead-zone-1-printed", "dead-zone-1-corrected")}
 
 
 @pytest.mark.parametrize("far", [0.0, 1e3, 1e6, 1e9])

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flockana import Algorithm3, PairTerm, Sphere, StaticTarget, Target, Tolerances, simulate, verify
+from flockana import Algorithm3, PairTerm, Sphere, StaticTarget, Tolerances, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.observed import Observed, observed
@@ -121,19 +121,6 @@ class TestTheSign:
         assert never_rises(seen, []).margin == pytest.approx(fall / (fall + 2.0 * 3.0 * (3.0 + 1.0)), rel=1e-4)
 
 
-class Late(Target):
-    """A γ-agent that is at rest at every sample of the run below, and moves in between."""
-
-    def position(self, t):
-        return np.array([np.sin(2.0 * np.pi * t / 0.05), 0.0])
-
-    def rate(self, t):
-        return np.array([2.0 * np.pi / 0.05 * np.cos(2.0 * np.pi * t / 0.05), 0.0])
-
-    def state(self, t):
-        return self.position(t), np.zeros(2)
-
-
 class Lying(StaticTarget):
     """A γ-agent that moves and declares that it does not."""
 
@@ -142,28 +129,12 @@ class Lying(StaticTarget):
 
 
 class TestTheGammaAgent:
-    def test_one_that_moves_between_samples_only_is_seen_to(self):
-        law = Algorithm3(target=Late())
-        run = simulate(law, [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 1.0), t_eval=np.linspace(0.0, 1.0, 21))
-        for name in ("energy", "os-6"):
-            verdict = judged(name, run)
-            assert hypothesis(verdict, "the γ-agent is").status == "unmet"
-            assert verdict.claim("rate").status == "vacuous"
-
     def test_one_that_lies_about_its_rate_takes_the_balance_with_it(self):
         law = Algorithm3(target=Lying((0.0, 0.0)))
         run = simulate(law, [[5.0, 0.0], [12.0, 0.0]], np.zeros((2, 2)), (0.0, 3.0))
         verdict = verify("energy", run)
         assert hypothesis(verdict, "declared rate").status == "unmet"
         assert statuses(verdict) == {"rate": "vacuous", "balance": "vacuous"}
-
-    def test_a_users_path_that_was_seen_at_rest_is_assumed_to_be(self):
-        from flockana.environment.targets import CallableTarget
-
-        law = Algorithm3(target=CallableTarget(lambda t: ((0.0, 0.0), (0.0, 0.0))))
-        verdict = verify("energy", law=law, q0=[[5.0, 0.0]], p0=[[0.0, 1.0]], t_span=(0.0, 1.0))
-        assert hypothesis(verdict, "at rest").status == "assumed"
-        assert verdict.claim("rate").status == "verified"
 
 
 @dataclass(frozen=True)

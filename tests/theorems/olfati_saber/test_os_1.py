@@ -95,12 +95,6 @@ def test_the_energy_hypothesis_has_the_margin_c_star_less_h(run):
     assert energy.margin == pytest.approx(30.0 * 52.383811786644864 - h0, rel=1e-12)
 
 
-def test_a_common_velocity_changes_no_verdict(run):
-    moving = simulate(LAW, run.q[0], run.p[0] + np.array([300.0, 0.0]), (0.0, 30.0))
-    one, two = (hypothesis(verify("os-1", each), "H(0) < c*").margin for each in (run, moving))
-    assert one == pytest.approx(two, rel=1e-9)
-
-
 def test_a_net_that_breaks_makes_it_vacuous():
     verdict = verify("os-1", simulate(LAW, [[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.0], [30.0, 0.0]], (0.0, 2.0)))
     assert verdict.status == "vacuous"
