@@ -66,6 +66,7 @@ def solution(steps):
         return state
 
 
+@pytest.mark.slow
 def test_the_reference_is_known_to_twenty_five_digits():
     with mp.workdps(40):
         assert max(abs(a - b) for a, b in zip(solution(8), solution(12), strict=True)) < mp.mpf("1e-25")

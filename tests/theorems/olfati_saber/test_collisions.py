@@ -26,9 +26,9 @@ def e13():
     return simulate(E13_LAW, *E13_START, (0.0, 0.05))
 
 
-def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
+def head_on(share, m=1, *, aside=0.0, law=None, times=3.0):
     """Two agents that approach each other with a share of c* as their energy, the second one a little aside."""
-    law = law or Algorithm1(gains=Gains(c2_alpha=0.0))
+    law, apart = law or Algorithm1(gains=Gains(c2_alpha=0.0)), 7.0
     q = np.zeros((2, m))
     q[1, 0] = apart
     speed = sqrt(share * law.gains.c1_alpha * law.alpha.c_star - law.energy(0.0, q, 0.0 * q))
@@ -36,9 +36,6 @@ def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
     p[0, 0], p[1, 0] = speed, -speed
     if m > 1:
         q[1, 1] += aside
-        turn = np.eye(m)
-        turn[:2, :2] = [[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]]
-        q, p = q @ turn.T, p @ turn.T
     return simulate(law, q, p, (0.0, times * apart / speed))
 
 
@@ -63,20 +60,10 @@ class TestTwoAgents:
         found = statuses(verify("collision-energy", run))
         assert "refuted" not in found.values()
 
-    @pytest.mark.parametrize("share", [0.9, 1.1, 1.6])
-    def test_a_law_whose_forces_are_far_below_b_over_root_eps(self, share):
-        alpha = AlphaInteraction(d=7e-6, r=7.35e-6)
-        law = Algorithm1(alpha, Gains(c2_alpha=0.0))
-        found = statuses(verify("collision-energy", head_on(share, apart=7e-6, law=law)))
-        assert found["below"] == ("verified" if share < 1.0 else "vacuous")
-
     @pytest.mark.parametrize("aside", [1e-12, 1e-9, 1e-7])
     def test_a_near_miss_is_no_collision(self, aside):
         claim = verify("collision-energy", head_on(1.6, 2, aside=aside)).claim("twice")
         assert claim.status in ("inconclusive", "verified")
-
-    def test_on_a_line_that_is_no_axis_rounding_tilts_the_paths(self):
-        assert verify("collision-energy", head_on(1.6, 2, tilt=0.4)).claim("twice").status == "inconclusive"
 
 
 @given(st.floats(-16.0, -1.0).map(lambda x: 10.0**x), st.sampled_from((-1.0, 1.0)))

@@ -10,7 +10,7 @@ from flockana.interactions import AlphaInteraction, DeadZoneInteraction, Gains
 from flockana.lattice import hexagonal_patch
 from flockana.theorems.observed import Observed
 from flockana.theorems.slides import e11 as module
-from flockana.theorems.slides.e11 import collapse_threshold, collapses
+from flockana.theorems.slides.e11 import collapse_threshold
 
 ORIGIN = StaticTarget((0.0, 0.0))
 LAW = Algorithm2(target=ORIGIN)
@@ -87,12 +87,6 @@ def test_the_threshold_scales_with_the_force():
     assert natural_ratio(strong.alpha) == pytest.approx(1e4 * natural_ratio(LAW.alpha), rel=1e-12)
     for low, high in (collapse_threshold(LAW, 1), np.array(collapse_threshold(strong, 1)) / 1e4):
         assert 3.5 < low < high < 4.5
-
-
-def test_a_hexagon_collapses_between_three_and_five_times_the_gain():
-    assert not collapses(LAW, 1, 3.0)
-    assert collapses(LAW, 1, 5.0)
-    assert len(hexagonal_patch(1, 7.0)) == 7
 
 
 @pytest.mark.parametrize(
