@@ -47,7 +47,7 @@ def mismatch_over(seen: Observed) -> Enclosure:
         sizes, slack = np.array([np.sqrt(np.sum(square, axis=(0, 2)).max()) for square in squares]), seen.run.path.slack
         if slack is not None:  # of steps that were not kept it is known where they went, and not how fast
             sizes[slack.max(axis=1) > 0.0] = np.inf
-        size = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
+        size: FloatArray = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
         return size**2 / (2.0 * seen.n)
 
     return _over(seen, seen.mismatch, bound)
@@ -75,7 +75,8 @@ def spread_over(seen: Observed) -> Enclosure:
     def bound() -> FloatArray:
         steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
         sizes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
-        return seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
+        size: FloatArray = seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
+        return size
 
     return _over(seen, seen.spread, bound)
 

@@ -125,29 +125,6 @@ def test_springs_alone(alpha, drag, n, m, data):
         hold(theorem, case, {"rate": TRUE, "balance": TRUE, "below": TRUE}, run=run, may_refuse=rough)
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
-def test_a_strained_minimum_refutes_the_summaries(unit):
-    """E3: two agents on one corner of a rhombus sit in a strict minimum, with an open basin."""
-    law = Algorithm1(AlphaInteraction(7.0 * unit, 8.4 * unit, 0.1 / unit**2, unit=unit), Gains(c2_alpha=20.0))
-    height = 0.5 * np.sqrt(3.0)
-    q = 7.0 * unit * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, height], [0.5, -height], [0.0, 0.0]])
-    q[4] += 1e-4 * unit
-    case = Case(law, q, np.zeros((5, 2)), 40.0)
-    hold("lattice-limit-printed", case, {"lattice": REFUTED})
-    hold("os-1", case, {"i": FALSE, "ii": TRUE})
-
-
-@pytest.mark.parametrize("off", [0.0, 1e-12, 1e-6])
-@pytest.mark.parametrize("until", [1e-3, 0.3])
-def test_on_top_of_each_other_is_no_limit(off, until):
-    q = np.array([[0.0, 0.0], [off, 0.0]])
-    case = Case(Algorithm1(), q, 0.0 * q, until)
-    hold("lattice-limit-printed", case, {"lattice": OPEN})
-    hold("os-1", case, {"i": OPEN, "ii": TRUE})
-    case = Case(Algorithm2(gains=Gains(c1_gamma=1e-3), target=StaticTarget((0.0, 0.0))), q, 0.0 * q, until)
-    hold("os-3", case, {"ii": OPEN, "iii": TRUE})
-
-
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize(("pull_", "truths"), [(1e-3, VERIFIED), (0.03, VERIFIED), (2.0, REFUTED)])
 def test_a_squeezed_pair(pull_, m, truths):

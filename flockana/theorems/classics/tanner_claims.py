@@ -41,7 +41,7 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
     """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
-    what = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
+    what: dict[str, Any] = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
     return [
         velocities_match(seen, needs, name=names[0], proof=MATCHED),
         dies_out(seen, names[1], needs, series=force, proof=forces, **what),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flockana import MinimalFlocking, rescale, simulate
-from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
+from flockana.measures.perception import both_ways, random_out_tree
 from flockana.theorems.bearing_distance.tree_case import tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles, state
 from flockana.theorems.bearing_distance.tree_spectrum import POLYNOMIAL, tree_spectrum
@@ -81,41 +81,6 @@ def test_the_barrier_is_sharp_but_for_rounding(off, inside):
     if off >= 1e-9:
         assert status == ("verified" if inside else "inconclusive")
     assert status != "refuted"
-
-
-@pytest.mark.parametrize("stretch", [0.5, 0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.4])
-def test_a_bound_that_is_attained_is_kept(stretch):
-    """At rest and pressed, |x| is at ρ - √(2V(0)/μ) at the start: the margin of the bound itself is 0 there."""
-    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=4.0)
-    run = simulate(law, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0))
-    assert said("zone-1-corrected", run)["root-edge"] in ("verified", "inconclusive")
-    if abs(stretch - 1.0) > 1e-3:
-        assert said("zone-1-corrected", run)["root-edge"] == "verified"
-    both = MinimalFlocking(edges=both_ways(PAIR), spacing=1.0, mu=4.0, normalised=False)
-    found = said("zone-1-corrected", simulate(both, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0)))
-    assert found["no-collision"] in ("verified", "inconclusive")
-    if abs(stretch - 1.0) > 1e-3:
-        assert found["no-collision"] == found["energy"] == "verified"
-
-
-@pytest.mark.parametrize("off", [0.5, *SIZES])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
-    law = MinimalFlocking(edges=PAIR, spacing=1.0)
-    run = simulate(law, [[0.0, 0.0], [1.0 + sign * off, 0.0]], [[0.0, 0.0], [1.0, 0.0]], (0.0, 0.5))
-    right, wrong = ("verified", "refuted") if sign > 0.0 else ("refuted", "verified")
-    status = said("zone-1-printed", run)["hurwitz"]
-    assert status != wrong
-    if off >= 1e-6:
-        assert status == right
-
-
-def test_a_passage_between_two_samples_is_not_missed():
-    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=1e-3)
-    start = [[0.0, 0.0], [3.0, 0.2]], [[0.0, 0.0], [-6.0, 0.0]]
-    run = simulate(law, *start, (0.0, 1.2), t_eval=[0.0, 1.2])
-    assert (np.linalg.norm(edge_vectors(run.q, PAIR), axis=2) > 1.0).all()
-    assert said("zone-1-printed", run)["hurwitz"] in ("inconclusive", "refuted")
 
 
 @pytest.mark.parametrize("n", [3, 20, 40])

@@ -10,7 +10,7 @@ from flockana import Algorithm1, Tolerances, simulate, verify
 from flockana.lattice import hexagonal_patch
 from flockana.measures.metrics import cohesion_radius, net_measures
 from flockana.theorems.observed import Observed
-from flockana.theorems.sampling import nets_at, nets_between, radius_over
+from flockana.theorems.sampling import nets_between, radius_over
 from tests.theorems.made_up import hexagon, judged, made_up, statuses
 
 LAW = Algorithm1()
@@ -150,17 +150,3 @@ class TestBetweenSamples:
                 assert nets.components_least[k] <= parts + 1e-9
                 assert parts <= nets.components[k] + 1e-9
                 assert nets.giant[k] - 1e-9 <= n * giant <= nets.giant_most[k] + 1e-9
-
-    def test_at_samples_only_rounding_is_open(self):
-        run = made_up(LAW, [[[0.0], [7.0]], [[0.0], [8.4]], [[0.0], [9.0]]])
-        nets = nets_at(Observed.alone(run))
-        assert nets.open_links.tolist() == [0, 1, 0]
-        assert nets.components.tolist() == [1, 2, 2]
-        assert nets.components_least.tolist() == [1, 1, 2]
-
-    def test_a_map_has_nothing_between_its_steps(self):
-        run = fl.scenario("msn-case2-printed").run().window(0.0, 0.2)
-        seen = Observed.alone(run)
-        assert nets_between(seen).open_links.sum() == 0
-        radius = run.metric("cohesion_radius")
-        np.testing.assert_array_equal(radius_over(seen).mid, np.maximum(radius[:-1], radius[1:]))

@@ -136,10 +136,6 @@ class TestLatticeLimit:
         assumed = Hypothesis("all of Ω_c stays together", "assumed")
         assert lattice_limit(Observed.alone(run), [assumed], Tolerances(), name="i").status == "inconclusive"
 
-    def test_a_strained_state_that_is_no_equilibrium_refutes_nothing(self):
-        run = made_up(LAW, [hexagonal_patch(1, 6.5)] * 2)
-        assert lattice_limit(Observed.alone(run), [], Tolerances(), name="i").status == "inconclusive"
-
     def test_at_rest_at_a_saddle_nothing_is_known(self):
         angle = np.pi / 2.0 + 2.0 * np.pi * np.arange(3) / 3.0
         q = np.vstack([np.zeros((1, 2)), 5.0 * np.column_stack([np.cos(angle), np.sin(angle)])])
@@ -152,10 +148,6 @@ class TestLatticeLimit:
         q = hexagonal_patch(1, 7.0)
         verdict = verify("lattice-limit-printed", simulate(law, q, 0.0 * q, (0.0, 60.0)))
         assert verdict.status == ("refuted" if pull > 1.0 else "inconclusive")
-
-    def test_without_links_there_is_no_lattice_to_speak_of(self):
-        run = simulate(LAW, [[0.0, 0.0], [50.0, 0.0]], np.zeros((2, 2)), (0.0, 5.0))
-        assert verify("lattice-limit-printed", run).status == "inconclusive"
 
 
 def test_a_crossing_between_samples_is_no_collision_bound():
