@@ -1,7 +1,5 @@
 """The catalogue's expected statuses, claim by claim, in other units, places, orders and at other tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

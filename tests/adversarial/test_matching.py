@@ -1,7 +1,5 @@
 """Velocity consensus alone, on both sides of the threshold of two agents, and nets whose fate is known."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

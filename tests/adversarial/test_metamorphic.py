@@ -1,7 +1,5 @@
 """Verdicts that may not change: under other units, places, frames, numbers of the agents, clocks, outputs, methods."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

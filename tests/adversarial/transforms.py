@@ -1,7 +1,5 @@
 """The same physics written down otherwise: other units, another place, another frame, other numbers for the agents."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

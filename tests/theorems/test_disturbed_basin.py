@@ -1,7 +1,5 @@
 """The input-to-state theorem: verified in a light wind, vacuous in a strong one, of noise and of other laws."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

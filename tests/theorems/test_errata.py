@@ -1,7 +1,5 @@
 """The table of errata against the catalogue, and numbers of errata that are known beforehand."""
 
-from __future__ import annotations
-
 from math import tanh
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Verdicts from tubes: decided where the tube is narrow enough, with a reason where it is not."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

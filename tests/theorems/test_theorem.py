@@ -1,7 +1,5 @@
 """How a verdict follows from its claims, and how theorems are found and called."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

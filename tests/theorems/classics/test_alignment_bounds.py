@@ -1,7 +1,5 @@
 """Integrals of the weight, and what the theorems make of starts on both sides of their thresholds."""
 
-from __future__ import annotations
-
 from math import asinh, atan, inf, pi, sqrt
 
 import mpmath

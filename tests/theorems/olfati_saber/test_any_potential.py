@@ -1,7 +1,5 @@
 """Theorems 1 and 3 for any pair potential: numbers by hand, the paper's law as a special case, what is left open."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The certificate of attraction: its Lipschitz constant against the Hessian itself, its verdict against long runs."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

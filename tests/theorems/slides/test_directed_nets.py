@@ -1,7 +1,5 @@
 """Directed nets: two that see each other one-sidedly, by hand, and laws that are off."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum E4 and the bounds behind it, against counts made by hand and by brute force."""
 
-from __future__ import annotations
-
 import tracemalloc
 from itertools import combinations
 
