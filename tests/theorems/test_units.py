@@ -8,7 +8,7 @@ from tests.properties.test_every_law import LAWS, OWN_RATE, state
 from tests.theorems.made_up import same_in_all_units
 
 Q, P, *_ = state(5)
-TREE = fl.MinimalFlocking(edges=tuple((k, k + 1) for k in range(len(Q) - 1)), spacing=7.0)
+TREE = fl.MinimalFlocking(edges=tuple((k, k + 1) for k in range(len(Q) - 1)), spacing=7.0, normalised=False)
 MOVING = {name: law for name, (law, _) in LAWS.items() if name not in OWN_RATE} | {"a tree": TREE}
 
 
