@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from flockana import Algorithm2, AlphaInteraction, CircleTarget, Composition, Gains, LinearTarget, StaticTarget
 from tests.adversarial import truth
-from tests.adversarial.cases import OPEN, REFUTED, TRUE, VACUOUS, VERIFIED, Case, effort, hold
+from tests.adversarial.cases import TRUE, VACUOUS, VERIFIED, Case, effort, hold
 from tests.adversarial.strategies import seeds
 
 THEOREMS = ("cohesion", "su-informed", "su-varying")
@@ -57,17 +57,6 @@ def test_without_damping_an_informed_agent_swings_for_ever():
     slight = Gains(1.0, 1.0, 0.0, 0.0, (1.0, 0.0), (1e-3, 0.0))
     expected = none | dict.fromkeys(COLLISIONS, TRUE) | {"energy": TRUE, "distance": TRUE, "informed": VERIFIED}
     hold("su-informed", Case(Algorithm2(AlphaInteraction(), slight, here), q, p, 9.0), expected)
-
-
-def test_one_agent_through_two_others_with_a_leader():
-    """The start of erratum E13, of whose pairs two meet (`test_planted_collisions`), with the energy of one."""
-    alpha = AlphaInteraction(a=5e4, b=5e4)
-    speed = float(np.sqrt(5.6 * float(truth.psi_alpha(0.0, alpha))))
-    for few in ((0.01, 0.0, 0.0), (0.01, 0.01, 0.01)):
-        law = Algorithm2(alpha, Gains(1.0, 1.0, 0.0, 0.0, few, few), LinearTarget((0.0,), (speed / 3.0,)))
-        case = Case(law, np.array([[-12.0], [0.0], [30.0]]), np.array([[speed], [0.0], [0.0]]), 0.03)
-        expected = {"pairs": REFUTED, "one-instant": TRUE, "no-collision": VACUOUS, "distance": VERIFIED}
-        hold("su-informed", case, expected | {"energy": VERIFIED, "informed": VERIFIED, "linked": OPEN})
 
 
 @effort(0.2)

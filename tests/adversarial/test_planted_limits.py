@@ -164,32 +164,3 @@ def test_flocking_by_definition(drift, size, n, data):
 
 def _above(value, high, low):
     return FALSE if value > high else TRUE if value < low else TRUE | FALSE
-
-
-@effort(0.15)
-@given(st.integers(2, 6), st.sampled_from((1, 2, 3)), powers(-2.0, 3.0), powers(-7.0, 2.0))
-def test_a_lattice_in_steady_flight_flocks_and_parts_do_not(n, m, speed, until):
-    """A chain of links d under one velocity: C = C* = 1, Ẽ = K̃ = 0 for ever. Two that part: R grows as they fly."""
-    law = Algorithm1()
-    d = law.alpha.d
-    q = np.outer(np.arange(n) * d, np.eye(m)[0])
-    p = np.tile(np.full(m, speed), (n, 1))
-    steady = Case(law, q, p, until, {"t_eval": np.linspace(0.0, until, 50)})
-    names = ("giant", "cohesive", "deviation", "mismatch", "flock")
-    hold("alpha-flocking-strict", steady, {"flock": VERIFIED, "deviation": VERIFIED, "mismatch": VERIFIED})
-    hold("alpha-flocking", steady, dict.fromkeys(names[:4], VERIFIED))
-    hold("alpha-flocking", Case(law, q, p, until, {"t_eval": [until]}), dict.fromkeys(names[:4], OPEN))
-    hold("os-1", steady, {"i": TRUE, "ii": TRUE, "iii": TRUE})
-    gap = 1.5 * law.alpha.r
-    far, apart = np.outer([-0.5, 0.5], gap * np.eye(m)[0]), np.outer([-0.5, 0.5], speed * np.eye(m)[0])
-    parting = Case(law, far, apart, until, {"t_eval": np.linspace(0.0, until, 50)})
-    growth = (gap + speed * until) / (gap + 0.5 * speed * until)
-    expected = {
-        "giant": FALSE,
-        "cohesive": _above(growth, 1.51, 1.49),
-        "mismatch": FALSE if speed > 100.0 else TRUE | FALSE,
-    }
-    hold("alpha-flocking", parting, expected)
-    hold("alpha-flocking-strict", parting, {"flock": REFUTED})
-    hold("os-1", parting, dict.fromkeys(("i", "ii", "iii"), OPEN))
-    hold("lattice-limit-printed", parting, {"lattice": FALSE})

@@ -213,12 +213,3 @@ def test_a_loosely_integrated_run_reads_inconclusive_and_never_the_opposite(base
         fine = {claim.name: claim.status for claim in verify(name, run_of(base)).claims}
         for claim in verify(name, loose).claims:
             assert {claim.status, fine[claim.name]} != {"verified", "refuted"}, (name, claim)
-
-
-def test_what_an_integrator_spoils_the_tighter_run_mends():
-    run = simulate(*RUNS["algorithm 1"](), (0.0, 2.0), method="RK4", dt=0.5)
-    off = np.abs(run.energy_residual).max()
-    assert off > 1e-5 * np.abs(run.energy()).max()
-    seen = Observed.of(run)
-    assert np.abs(seen.residual.mid).max() < 1e-6 * off
-    assert seen.residual.half_width.max() == pytest.approx(2.0 * off, rel=0.01)

@@ -28,18 +28,6 @@ def decides_nothing(name, run):
     assert [(c.name, c.status) for c in verdict.claims if c.rigour == "numeric" and c.status in decided] == []
 
 
-@pytest.mark.parametrize("samples", [2, 3, 7, 50])
-def test_the_least_distance_is_a_bound_between_samples_too(samples):
-    """Past each other at 0.5 in straight flight, out of range but for an instant that few samples see."""
-    law = Algorithm1(AlphaInteraction(d=0.1, r=0.12))
-    q, p = [[-30.0, 0.0], [30.0, 0.5]], [[3.0, 0.0], [-3.0, 0.0]]
-    run = Case(law, q, p, 20.0, {"t_eval": np.linspace(0.0, 20.0, samples)}).run()
-    assert run.min_distance() <= 0.5 + 1e-9
-
-
-# --- limits judged from an instant ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["alpha-flocking", "alpha-flocking-strict", "os-1", "os-3", "E13", "collision-energy"])
 def test_one_sample_decides_no_claim_about_a_run_that_is_not_proved(name):
     law = Algorithm1() if name != "os-3" and name != "E13" else Algorithm2(target=ORIGIN)
@@ -47,9 +35,6 @@ def test_one_sample_decides_no_claim_about_a_run_that_is_not_proved(name):
     moving = {"i", "ii", "iii", "giant", "cohesive", "deviation", "mismatch", "flock", "below", "twice", "iv-none"}
     claims = [c for c in verify(name, run).claims if c.name in moving and c.rigour == "numeric"]
     assert {c.name: c.status for c in claims if c.status in decided} == {}
-
-
-# --- runs that failed, blew up or are not the law's -----------------------------------------------------------------
 
 
 @pytest.mark.parametrize("dt", [0.1, 0.5, 3.0])
@@ -90,9 +75,6 @@ def test_a_failed_run_verifies_nothing(name, samples):
         decides_nothing(name, failed(law, samples))
 
 
-# --- a window that begins between two samples -----------------------------------------------------------------------
-
-
 def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
     law = Algorithm2(AlphaInteraction(d=7.0, r=7.35), Gains(1.0, 0.0, c1_gamma=0.0, c2_gamma=0.0), StaticTarget((2.1,)))
     q = np.array([[10.155683774987544], [10.155683774987544], [-1.4624173943616945]])
@@ -101,21 +83,6 @@ def test_where_samples_fall_does_not_say_how_much_a_flock_has_grown():
     for options in ({"t_eval": np.linspace(0.0, until, 700)}, {}, {"method": "LSODA", "rtol": 1e-6}):
         claim = verify("alpha-flocking", simulate(law, q, p, (0.0, until), **options)).claim("cohesive")
         assert claim.status in (("refuted",) if "t_eval" in options else ("refuted", "inconclusive", "vacuous"))
-
-
-# --- flocks that are looked at when they are still -------------------------------------------------------------------
-
-
-def test_a_flock_that_swings_does_not_match_velocities_because_it_is_sampled_once_a_period():
-    gains = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=0.0)
-    law = Algorithm2(gains=gains, target=StaticTarget((0.0,)))
-    for samples in (3, 5, 9):
-        still = np.pi * np.arange(samples)
-        run = simulate(law, [[10.0], [-10.0]], [[0.0], [0.0]], (0.0, float(still[-1])), t_eval=still)
-        assert verify("alpha-flocking", run).claim("mismatch").status == "inconclusive"
-    every = np.linspace(0.0, 2.0 * np.pi, 101)
-    run = simulate(law, [[10.0], [-10.0]], [[0.0], [0.0]], (0.0, float(every[-1])), t_eval=every)
-    assert verify("alpha-flocking", run).claim("mismatch").status == "refuted"
 
 
 def test_a_lattice_that_breathes_is_none_because_it_is_sampled_at_its_length():

@@ -14,8 +14,7 @@ MOVING = {name: law for name, (law, _) in LAWS.items() if name not in OWN_RATE} 
 
 @pytest.fixture(scope="module", params=MOVING)
 def run(request):
-    law = MOVING[request.param]
-    return fl.simulate(law, Q, P, (0.0, 0.3))
+    return fl.simulate(MOVING[request.param], Q, P, (0.0, 0.3))
 
 
 @pytest.mark.parametrize("scaling", [(1e-6, 1.0), (1e3, 1e-3), (25.4, 60.0)])
