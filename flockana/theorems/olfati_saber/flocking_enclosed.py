@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
 from math import floor
 from typing import TYPE_CHECKING
 
@@ -113,16 +114,17 @@ def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     return _components(tube, window, "giant", outside, lambda pairs: tube.n - groups(tube.n, pairs)[0])
 
 
-def _check(*claims: Callable[[Tube, range, Tolerances], Claim]) -> Callable[..., Checked]:
-    """Return a function that checks claims for the starts of a tube."""
+def _check(
+    claims: Iterable[Callable[[Tube, range, Tolerances], Claim]],
+    tube: Tube,
+    basin: BasinLike | None,
+    tolerances: Tolerances,
+) -> Checked:
+    """Return claims for the starts of a tube."""
+    known, window = _window(tube, tolerances)
+    with ctx.workprec(BITS):
+        return [known], [] if known.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]
 
-    def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-        known, window = _window(tube, tolerances)
-        with ctx.workprec(BITS):
-            return [known], [] if known.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]
 
-    return check
-
-
-alpha_flocking = _check(_giant, _cohesive, _deviation, _mismatch)
-alpha_flocking_strict = _check(_connected, _deviation, _mismatch)
+alpha_flocking = partial(_check, (_giant, _cohesive, _deviation, _mismatch))
+alpha_flocking_strict = partial(_check, (_connected, _deviation, _mismatch))
