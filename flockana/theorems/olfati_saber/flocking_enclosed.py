@@ -115,10 +115,7 @@ def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
 
 def _check(
-    claims: Iterable[Callable[[Tube, range, Tolerances], Claim]],
-    tube: Tube,
-    basin: BasinLike | None,
-    tolerances: Tolerances,
+    claims: Iterable[Callable[..., Claim]], tube: Tube, basin: BasinLike | None, tolerances: Tolerances
 ) -> Checked:
     """Return claims for the starts of a tube."""
     known, window = _window(tube, tolerances)

@@ -13,6 +13,7 @@ from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, ru
 from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)
+_PROOFS = ("cohesion", "collisions")  # of (i) and of (iv), for the paper's own pair law
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
@@ -46,8 +47,8 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
     needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
     end, caught = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), final_basin(seen).certificate
-    bounded, paper = any_potential.bounded_at_contact(seen, none), any_potential.is_paper(seen)
-    stays, apart = ("cohesion", "collisions") if paper else (any_potential.PROOF, any_potential.PROOF)
+    bounded = any_potential.bounded_at_contact(seen, none)
+    stays, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
     claims = [
         any_potential.cohesive(seen, needs, name="i", proof=stays),
         _minimum(seen, needs, end, tolerances),
