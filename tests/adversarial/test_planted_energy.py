@@ -58,7 +58,8 @@ def test_the_printed_energy_of_two_agents(law, speed, apart, data):
     until = 0.5 * time * min(1.0, 0.2 / speed)
     case = Case(free, q, p, until, data.draw(ways(until, until / 200.0)))
     still = apart == 2.0  # out of range for this long
-    rises = not still and (inward or apart == 1.0)
+    at_balance = apart == 1.0 and np.size(case.options.get("t_eval", (0.0, until))) == 1  # where V is still for once
+    rises = not still and not at_balance and (inward or apart == 1.0)
     clear = rises and apart == 1.0 and speed > 0.1 and not case.options
     expected = REFUTED if clear else FALSE if rises and apart == 1.0 else TRUE if still else TRUE | FALSE
     hold("energy-printed", case, {"printed-run": expected}, may_refuse=case.rough)
