@@ -12,9 +12,9 @@ import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
-from flockana.theorems.headline import does_not_hold
+from flockana.theorems.headline import does_not_hold, overall
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, By, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances, overall
+from flockana.theorems.theorem import About, By, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
 
 
 def judged(name: str, margin: Enclosure, needs: Needs = (), *, about: About = "run", **fields: Any) -> Claim:

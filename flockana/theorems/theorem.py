@@ -1,6 +1,5 @@
 """Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -8,7 +7,7 @@ from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged
+from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged, overall, plain
 from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
@@ -226,7 +225,7 @@ class Verdict:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; infinities and NaN become text."""
-        data: dict[str, Any] = _plain(asdict(self))
+        data: dict[str, Any] = plain(asdict(self))
         for claim in data["claims"]:
             claim["needs"] = [need["name"] for need in claim["needs"]]
         head = {"theorem": data.pop("theorem"), "status": self.status, "summary": self.summary, "rigour": self.rigour}
@@ -396,39 +395,3 @@ def unmet(hypotheses: Needs) -> Hypothesis | None:
     'c2α > 0'
     """
     return next((hypothesis for hypothesis in hypotheses if hypothesis.status == "unmet"), None)
-
-
-def overall(statuses: Iterable[Status]) -> Status:
-    """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
-
-    Parameters
-    ----------
-    statuses : iterable of str
-        Of the claims.
-
-    Examples
-    --------
-    >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])
-    ('refuted', 'verified', 'vacuous')
-    """
-    given = set(statuses)
-    order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
-    return next((status for status in order if status in given), "vacuous")
-
-
-def _plain(value: Any) -> Any:
-    import numpy as np
-
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return str(value)
