@@ -2,41 +2,24 @@
 
 from collections.abc import Iterable
 from math import sqrt
+from typing import Any
 
 from flockana.base.scales import Scales
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.basin import Basin
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
+from flockana.theorems.limits import dies_out
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
 
 def velocities_match(
-    seen: Observed,
-    needs: Iterable[Hypothesis],
-    *,
-    name: str,
-    caught: Iterable[Certificate] = (),
-    proof: str | None = None,
+    seen: Observed, needs: Needs, *, name: str, caught: Iterable[Certificate] = (), proof: str | None = None
 ) -> Claim:
     """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
-    series = seen.mismatch.mid
-    return limit_claim(
-        name,
-        needs,
-        caught,
-        computed=float(series[-1]),
-        stated="K̃ -> 0",
-        witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
-        proof=proof,
-        evidence=evidence(seen.t, series, "K̃"),
-        detail=f"velocity mismatch K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    what: dict[str, Any] = {"what": "velocity mismatch K̃", "of": "K̃", "start": "K̃ at the start"}
+    return dies_out(seen, name, needs, caught, series=seen.mismatch.mid, stated="K̃ -> 0", proof=proof, **what)
 
 
 def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
@@ -44,7 +27,7 @@ def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:
     return end.force <= tolerances.force and end.mismatch <= tolerances.velocity * scales.energy
 
 
-def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str) -> Claim:
+def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str) -> Claim:
     """Return the claim that the limit is an α-lattice: decided where the flock stays near a strict minimum."""
     # There the limit is known up to its distance. An equilibrium with c1γ > 0 is no lattice, as λJ presses on every
     # link, so that a small strain verifies nothing.
@@ -55,11 +38,7 @@ def lattice_limit(seen: Observed, needs: Iterable[Hypothesis], tolerances: Toler
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     decides = [Certificate(float(room.lo), caught.certificate.text, 0.0)] if known and not pressed else []
     strained = Certificate(float(-room.hi), caught.certificate.text, 0.0) if known else None
-    return limit_claim(
-        name,
-        needs,
-        decides,
-        escape=strained,
+    return limit_claim(name, needs, decides, escape=strained).described(
         computed=end.strain,
         stated=f"|link - d|/d <= {tolerances.lattice:g} in the limit",
         witness={"force": end.force, "links": end.links, "curvature": end.curvature},

@@ -27,11 +27,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.measures.frame import moving_frame
 from flockana.measures.nets import LinkArray, components, links
-from flockana.theorems.limits import Certificate
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 WINDOWS = np.geomspace(1e-8, 0.25, 25)  # of the law's length: distances up to which L is taken
 _SYMMETRIC = 1e-9  # of the largest: a rotation that moves the agents by less is no motion, as in `rigid_motions`

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypedDict, TypeGuard, Unpack, overload
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -15,18 +16,17 @@ from flockana.base.seals import ensure_sealed
 from flockana.dynamics.simulate import simulate
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.wrapped import wrappers_of
-from flockana.theorems.claims import vacuous
 from flockana.theorems.fits import ensure_fits
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.theorem import Hypothesis, Theorem, Tolerances, Verdict
 
 if TYPE_CHECKING:
-    from flockana.recorded.recording import Recording
     from flockana.theorems.together import Verdicts
 
 T_SPAN = (0.0, 20.0)  # of a law that is run without one
 _RUN = "a run as simulate returned it, or its window, its rescaled copy or its file"
+_KINDS = {"recording": ("flockana.recorded.recording", "Recording"), "tube": ("flockana.certified.tube", "Tube")}
 _REMEDY = "simulate(law, q0, p0, t_span) makes one; samples from elsewhere are judged as Recording(t, q, p, bound=...)"
 
 
@@ -174,7 +174,7 @@ def verify(
     >>> verify("E8").claim("printed").computed
     0.6666666666666666
     """
-    if _is_recording(trajectory):
+    if _is("recording", trajectory):
         if basin is not None or q0 is not None or p0 is not None or t_span is not None or q is not None:
             raise ArgumentError("a recording: expected verify(theorem, recording, law=...), or d= and r= without a law")
         from flockana.theorems.on_recordings import verify_recording, verify_recording_together
@@ -201,7 +201,7 @@ def verify(
     if given not in needed:
         options = " or ".join(", ".join(sorted(option)) or "nothing" for option in needed)
         raise ArgumentError(f"{item.id} is checked on {options}: got {', '.join(sorted(given)) or 'nothing'}")
-    if item.kind == "trajectory" and _is_tube(trajectory):
+    if item.kind == "trajectory" and _is("tube", trajectory):
         return _verified_tube(item, trajectory, basin, used, subject)
     if basin is not None:
         raise ArgumentError("a basin decides the limit of a tube: expected verify(theorem, enclose(...), basin=...)")
@@ -210,7 +210,7 @@ def verify(
     subject_data: tuple[Any, ...] = ()
     if item.kind == "configuration":
         subject_data = (ensure_points("q", q), ensure_positive("d", d), ensure_positive("r", r))
-    return Verdict(item.id, *item.examine(*subject_data, used), used, subject, item.author)
+    return item.verdict(item.examine(*subject_data, used), used, subject)
 
 
 def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
@@ -230,13 +230,12 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
     return trajectory
 
 
-def _is_recording(run: Any) -> TypeGuard[Recording]:
-    """Return whether a value is a recording, without importing recordings unless needed."""
+def _is(kind: str, run: Any) -> bool:
+    """Return whether a value is a recording or a tube, without importing what it is an instance of unless needed."""
     if run is None or isinstance(run, Trajectory):
         return False
-    from flockana.recorded.recording import Recording
-
-    return isinstance(run, Recording)
+    module, name = _KINDS[kind]
+    return isinstance(run, getattr(import_module(module), name))
 
 
 def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
@@ -244,17 +243,7 @@ def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subj
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
     detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
-    claims = tuple(vacuous(name, missed, by=item.by(name)) for name in item.claims)
-    return Verdict(item.id, (missed,), claims, tolerances, subject, item.author)
-
-
-def _is_tube(run: Any) -> bool:
-    """Return whether a value is a tube, without importing Arb unless needed."""
-    if run is None or isinstance(run, Trajectory):
-        return False
-    from flockana.certified.tube import Tube
-
-    return isinstance(run, Tube)
+    return item.verdict(((missed,), item.silenced(missed)), tolerances, subject)
 
 
 def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances, subject: str) -> Verdict:
@@ -268,9 +257,7 @@ def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances,
         if not isinstance(basin, Basin):
             raise ArgumentError(f"basin = {format_value(basin)}: expected a basin, as certify(...) returns it, or None")
         basin.ensure_unedited()
-    return Verdict(
-        item.id, *item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject, item.author
-    )
+    return item.verdict(item.examine(tube, basin, tolerances, check=item.enclosed), tolerances, subject)
 
 
 def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subject: str) -> Verdict:
@@ -280,5 +267,4 @@ def _verified_run(item: Theorem, run: Trajectory, tolerances: Tolerances, subjec
     ensure_fits(run)
     seen = Observed.of(run)
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    known = with_resolution(*examined(item, seen, tolerances), seen)
-    return Verdict(item.id, *known, tolerances, subject, item.author)
+    return item.verdict(with_resolution(*examined(item, seen, tolerances), seen), tolerances, subject)

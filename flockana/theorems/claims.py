@@ -4,7 +4,7 @@ A claim about a run holds if a margin, an enclosure over time, is nowhere negati
 decides instead, and the numbers stand beside it.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,14 +12,12 @@ import numpy as np
 
 from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import SOURCES, printed
-from flockana.theorems.headline import does_not_hold
+from flockana.theorems.headline import does_not_hold, overall
 from flockana.theorems.proofs import CITES, RIGOUR
-from flockana.theorems.theorem import About, By, Claim, Hypothesis, Rigour, Status, Theorem, Tolerances, overall
+from flockana.theorems.theorem import About, By, Claim, Hypothesis, Needs, Rigour, Status, Theorem, Tolerances
 
 
-def judged(
-    name: str, margin: Enclosure, needs: Iterable[Hypothesis] = (), *, about: About = "run", **fields: Any
-) -> Claim:
+def judged(name: str, margin: Enclosure, needs: Needs = (), *, about: About = "run", **fields: Any) -> Claim:
     """Return a claim that holds if no entry of its margin is negative.
 
     Numbers of one run verify nothing about all cases, though they refute it, and decide nothing about a limit. A proof
@@ -56,7 +54,7 @@ def conclude(
     name: str,
     by_numbers: Status,
     margin: Enclosure,
-    needs: Iterable[Hypothesis] = (),
+    needs: Needs = (),
     *,
     about: About,
     rigour: Rigour = "numeric",
@@ -134,9 +132,7 @@ def _finite(margin: Enclosure) -> float:
     return next((end for end in ends if np.isfinite(end)), 0.0)
 
 
-def counted(
-    name: str, most: int, certain: int, possible: int, needs: Iterable[Hypothesis] = (), **fields: Any
-) -> Claim:
+def counted(name: str, most: int, certain: int, possible: int, needs: Needs = (), **fields: Any) -> Claim:
     """Return a claim that at most `most` things happen, from counts of certain and of possible ones.
 
     Parameters
@@ -157,7 +153,7 @@ def counted(
     return judged(name, margin, needs, **fields)
 
 
-def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+def spectral(name: str, margin: float, error: float, needs: Needs = (), **fields: Any) -> Claim:
     """Return a claim about eigenvalues, roots or integrals, whose margin is known to an error by their residual.
 
     So are claims about stored numbers, such as a configuration (`of_state`), and about the orbit of a map in floating
@@ -183,7 +179,7 @@ def spectral(name: str, margin: float, error: float, needs: Iterable[Hypothesis]
 of_state = of_map = spectral
 
 
-def by_count(name: str, failures: int, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+def by_count(name: str, failures: int, needs: Needs = (), **fields: Any) -> Claim:
     """Return a claim by the number of instants or cases in which it fails, where no rounding can change a sign.
 
     Parameters
@@ -262,7 +258,7 @@ def vacuous(name: str, reason: str | Hypothesis, **fields: Any) -> Claim:
     return Claim(name, "vacuous", detail=reason, **fields)
 
 
-def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields: Any) -> Claim:
+def undecided(name: str, detail: str, needs: Needs = (), **fields: Any) -> Claim:
     """Return a claim of which nothing is known here; vacuous if a hypothesis is unmet.
 
     Parameters
@@ -281,6 +277,9 @@ def undecided(name: str, detail: str, needs: Iterable[Hypothesis] = (), **fields
     return Claim(name, status, detail=detail, needs=needs, **fields)
 
 
+_EXPECTED: Mapping[Status, str] = {"refuted": "printed", "verified": "corrected"}
+
+
 def erratum(
     name: str,
     *,
@@ -288,7 +287,7 @@ def erratum(
     statement: str,
     source: str,
     check: Callable[[Tolerances], list[Claim]],
-    expected: Mapping[Status, str],
+    expected: Mapping[Status, str] = _EXPECTED,
     references: tuple[str, ...] = (),
     author: By = "source",
     corrected: tuple[str, ...] = (),
@@ -303,7 +302,8 @@ def erratum(
     check : callable
         Returns the claims, from the tolerances.
     expected : mapping of str to str
-        By expected status the names of claims, with blanks between; the status of the whole follows from them.
+        By expected status the names of claims, with blanks between; by default of "printed" and "corrected". The
+        status of the whole follows from them.
     references : tuple of str
         Keys of the bibliography; by default the source of the numbered errata of that letter.
     author, corrected, ours

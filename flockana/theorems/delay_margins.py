@@ -5,9 +5,8 @@ from flockana.equilibria.solve import find_equilibrium
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error, scalar_margin
-from flockana.theorems.claims import spectral
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
+from flockana.theorems.theorem import Theorem
+from flockana.theorems.toolkit import EPS, Checked, Claim, Tolerances, spectral
 
 _WHAT = {
     "all": "all terms delayed",
@@ -29,17 +28,11 @@ def _pair(law: Algorithm1) -> Claim:
     stiffness, damping = (float(matrix[0, 0] - matrix[0, 1]) for matrix in system.late)
     swept, exact = delay_margin(system).delay, scalar_margin(stiffness, damping).delay
     off = abs(swept - exact) / exact
-    return spectral(
-        "pair",
-        _ALIKE - off,
-        64.0 * EPS,
+    return spectral("pair", _ALIKE - off, 64.0 * EPS, proof="second-order-modes").described(
         computed={"sweep": swept, "closed form": exact},
         stated="τ* = atan2(ωd, k)/ω with ω² = ½(d² + √(d⁴ + 4k²))",
-        proof="second-order-modes",
-        detail=(
-            f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}; a sweep over frequency finds it to {off:.1g} "
-            "of its value"
-        ),
+        detail=f"k = {stiffness:.5g}, d = {damping:.4g}: τ* = {exact:.6g}; a sweep over frequency finds it to "
+        f"{off:.1g} of its value",
     )
 
 
@@ -50,9 +43,7 @@ def _delay(law: Algorithm1 | Algorithm2, delayed: str) -> Claim:
     critical = delay_margin(system)
     below, error_below = _rightmost(system, (1.0 - _AROUND) * critical.delay)
     above, error_above = _rightmost(system, (1.0 + _AROUND) * critical.delay)
-    return spectral(
-        f"algorithm-{kind}-{delayed}",
-        *min((-below, error_below), (above, error_above)),
+    return spectral(f"algorithm-{kind}-{delayed}", *min((-below, error_below), (above, error_above))).described(
         computed={"n": len(q), "delay": critical.delay, "frequency": critical.frequency},
         stated="the rightmost root has Re s < 0 just below the margin and Re s > 0 just above",
         witness={"Re s below": below, "Re s above": above},

@@ -1,20 +1,17 @@
 """Input-to-state stability: a bounded disturbance leaves a flock near its certified equilibrium."""
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import FlockanaError
 from flockana.equilibria.solve import find_equilibrium
 from flockana.laws.disturbed import Disturbed
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.frame import moving_frame
-from flockana.theorems.claims import conclude, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Theorem, Tolerances, unmet
+from flockana.theorems.claims import conclude
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Status, Tolerances, run_theorem
+from flockana.theorems.toolkit import Enclosure, FloatArray, Observed, condition
 
 _CLAIMS, _PROOF = ("stays", "ultimate"), "disturbed-basins"
 _SLACK = 1e-12  # relative: rounding of a force's length
@@ -51,7 +48,8 @@ def largest_push(law: Disturbed, shape: tuple[int, int]) -> float:
     return float(sum(sizes)) * (1.0 + _SLACK)
 
 
-def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
+def _case(seen: Observed) -> tuple[Hypothesis, _Case | None]:
+    """Return the hypothesis on the start and the disturbance, and the case if it is met."""
     from flockana.certified.basin import certify
     from flockana.certified.disturbed import ultimate_bound
     from flockana.certified.structure import in_lengths_of_unit
@@ -60,48 +58,35 @@ def _hypotheses(seen: Observed, kept: list[_Case]) -> Iterator[Hypothesis]:
     q, p = seen.given.q[0] / unit, seen.given.p[0] / unit
     name = "the start lies in a certified basin, too deep for the disturbance to leave"
     if len(q) > _MOST:
-        yield Hypothesis(
-            name, "unmet", detail=f"{len(q)} agents: expected at most {_MOST}, of which a basin is proved here"
-        )
-        return
+        text = f"{len(q)} agents: expected at most {_MOST}, of which a basin is proved here"
+        return condition(name, False, detail=text), None
     try:
-        bound = ultimate_bound(
-            certify(find_equilibrium(in_lengths_of_unit(law.law), q)), largest_push(law, q.shape) / unit
-        )
+        basin = certify(find_equilibrium(in_lengths_of_unit(law.law), q))
+        bound = ultimate_bound(basin, largest_push(law, q.shape) / unit)
     except FlockanaError as error:
-        yield Hypothesis(name, "unmet", detail=f"no basin: {error}")
-        return
+        return condition(name, False, detail=f"no basin: {error}"), None
     largest, push = unit * float(bound.largest), unit * float(bound.disturbance)
     margin, rounded = largest - push, "" if unit == 1.0 else " (the law in lengths of ℓ, rounded)"
     detail = f"‖d‖ <= {push:.4g}, and {largest:.4g} could drive the flock out{rounded}"
     if not bound.stays or not bound.holds(q, p):
         text = detail if not bound.stays else f"{detail}; the start is not certainly deep enough in the basin"
-        yield Hypothesis(name, "unmet", margin=margin, detail=text)
-        return
-    kept.append(_Case(bound, q, p, unit))
-    yield Hypothesis(name, "met", margin=margin, detail=detail)
+        return condition(name, False, margin, text), None
+    return condition(name, True, margin, detail), _Case(bound, q, p, unit)
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    kept: list[_Case] = []
-    hypotheses = list(_hypotheses(seen, kept))
-    if (missed := unmet(hypotheses)) is not None:
-        return hypotheses, [vacuous(name, missed) for name in _CLAIMS]
-    return hypotheses, [_stays(seen, kept[0]), _ultimate(seen, kept[0])]
+    need, case = _case(seen)
+    return [need], [] if case is None else [_stays(seen, case), _ultimate(seen, case)]
 
 
 def _stays(seen: Observed, case: _Case) -> Claim:
     """Return the proved claim that the flock stays in the basin, with the run's samples for comparison."""
     basin, unit = case.bound.basin, case.unit
     radius, apart = unit * float(basin.radius), unit * float(basin.distance)
-    return _nearer(
-        seen,
-        case,
-        "stays",
-        0,
-        radius,
+    claim = _nearer(seen, case, "stays", 0, radius)
+    return claim.described(
         stated=f"nearer than {radius:.4g} to the orbit at all times, no two agents within {apart:.4g}",
-        detail="proved by the Lyapunov function of the basin; at the samples at most {reached:.3g} away",
+        detail=f"proved by the Lyapunov function of the basin; at the samples at most {claim.computed:.3g} away",
     )
 
 
@@ -120,20 +105,16 @@ def _ultimate(seen: Observed, case: _Case) -> Claim:
         since = ball(float(run.t[first]) - float(run.t[0]))
         start = (ball(basin.overshoot) * excess).sqrt() * (-ball(basin.rate) * since).exp()
         allowed = case.unit * float((start + ball(bound.excess).sqrt()) * (2 / ball(basin.curvature)).sqrt())
-    return _nearer(
-        seen,
-        case,
-        "ultimate",
-        first,
-        allowed,
+    claim = _nearer(seen, case, "ultimate", first, allowed)
+    return claim.described(
         stated=f"in the end at most {distance:.4g} from the orbit, with speeds of at most {speed:.4g}",
         witness={"allowed by then": allowed},
-        detail="in the last fifth of the run at most {reached:.3g} from the orbit; proved are "
+        detail=f"in the last fifth of the run at most {claim.computed:.3g} from the orbit; proved are "
         f"{distance:.4g} in the end, and {allowed:.4g} by then",
     )
 
 
-def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float, *, detail: str, **fields: Any) -> Claim:
+def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float) -> Claim:
     """Return a proved claim that the flock is nearer to the orbit than a bound, with samples for comparison."""
     basin, run, unit = case.bound.basin, seen.given, case.unit
     some = np.unique(np.linspace(first, len(run.t) - 1, _SAMPLES).astype(int))
@@ -142,11 +123,10 @@ def _nearer(seen: Observed, case: _Case, name: str, first: int, allowed: float, 
     error = float(np.linalg.norm(seen.shape_error[some], axis=1).max())
     margin = Enclosure(allowed - reached - error, allowed - reached, np.maximum(allowed, allowed - reached))
     by_samples: Status = "verified" if margin.lo > 0.0 else "inconclusive"
-    text = detail.format(reached=reached)
-    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached, detail=text, **fields)
+    return conclude(name, by_samples, margin, about="all", proof=_PROOF, computed=reached)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="disturbed-basin",
     title="A bounded disturbance leaves a flock near its certified equilibrium",
     statement=(
@@ -156,7 +136,6 @@ THEOREM = Theorem(
         "the rate α wherever it is larger than (W c/α)²."
     ),
     source="ours",
-    kind="trajectory",
     check=_check,
     law=_law,
     claims=_CLAIMS,

@@ -157,9 +157,9 @@ class Enclosure:
             lo, mid, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
         return _outward(lo, mid, hi, ulps=ulps)
 
-    def falling(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
+    def falling(self, function: Callable[[FloatArray], Any]) -> Enclosure:
         """Return a non-increasing function, as `rising`."""
-        return -self.rising(lambda x: -np.asarray(function(x), dtype=np.float64), ulps=ulps)
+        return -self.rising(lambda x: -np.asarray(function(x), dtype=np.float64))
 
     def clip(self, least: float) -> Enclosure:
         """Return max(x, least)."""

@@ -6,17 +6,14 @@ inconclusive. A limit is claimed from the certified basin that the tube ends in.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import positive_room
 from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, Enclosure, Hypothesis, Needs, Tolerances, judged, positive_room
 
 if TYPE_CHECKING:
     from flint import arb
@@ -73,7 +70,7 @@ def ends(ball: arb) -> Enclosure:
     return Enclosure.between(*((down(ball.lower()), up(ball.upper())) if ball.is_finite() else (-inf, inf)))
 
 
-def decided(name: str, margin: arb, needs: Iterable[Hypothesis] = (), *, detail: str = "", **fields: Any) -> Claim:
+def decided(name: str, margin: arb, needs: Needs = (), *, detail: str = "", **fields: Any) -> Claim:
     """Return a claim that holds if its margin is certainly not negative, and fails if it is certainly negative."""
     room = ends(margin)
     if room.lo < 0.0 <= room.hi:
@@ -103,7 +100,7 @@ def met(tube: Tube) -> dict[Pair, float]:
     return times
 
 
-def no_collision(case: TubeAndBasin, needs: Iterable[Hypothesis], *, name: str, proof: str | None = None) -> Claim:
+def no_collision(case: TubeAndBasin, needs: Needs, *, name: str, proof: str | None = None) -> Claim:
     """The claim that no two agents ever coincide: all distances are certainly positive, or a pair certainly meets."""
     from flint import arb
 
@@ -129,9 +126,7 @@ def no_collision(case: TubeAndBasin, needs: Iterable[Hypothesis], *, name: str, 
     )
 
 
-def in_the_limit(
-    case: TubeAndBasin, needs: Iterable[Hypothesis], margin: arb | None = None, *, name: str, **fields: Any
-) -> Claim:
+def in_the_limit(case: TubeAndBasin, needs: Needs, margin: arb | None = None, *, name: str, **fields: Any) -> Claim:
     """Return a claim about the limit of every start: by a margin of the basin that the tube ends in, if it has one."""
     if case.basin is None:
         return limit_claim(name, needs, [Certificate(-1.0, case.doubt)], rigour="interval", **fields)
@@ -146,9 +141,7 @@ def in_the_limit(
     )
 
 
-def converges(
-    case: TubeAndBasin, needs: Iterable[Hypothesis], *, name: str, stated: str, detail: str, proof: str | None = None
-) -> Claim:
+def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: str, proof: str | None = None) -> Claim:
     """The claim that every start of the tube converges to the orbit of the basin that it ends in, or by a proof."""
     last = case.tube.t[-1]
     caught = f"{detail}; all states at t = {last:g} lie in a certified basin" if case.basin is not None else ""

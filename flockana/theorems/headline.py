@@ -1,14 +1,15 @@
-"""The status of a verdict with counts, in one line."""
+"""The status of a verdict with counts, in one line, and its numbers as plain data."""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from flockana.theorems.theorem import Claim, Verdict
+    from flockana.theorems.theorem import Claim, Status, Verdict
 
 # whose a claim is, in words
 BYLINES: Mapping[str, str] = {"source": "the source's", "corrected": "corrected", "flockana": "our extension"}
@@ -73,3 +74,40 @@ def _listed(claims: Iterable[Claim]) -> str:
 def _short(claim: Claim) -> str:
     """Return a claim's statement where that is short, else its name."""
     return claim.stated if isinstance(claim.stated, str) and len(claim.stated) <= _SHORT else claim.name
+
+
+def overall(statuses: Iterable[Status]) -> Status:
+    """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
+
+    Parameters
+    ----------
+    statuses : iterable of str
+        Of the claims.
+
+    Examples
+    --------
+    >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])
+    ('refuted', 'verified', 'vacuous')
+    """
+    given = set(statuses)
+    order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
+    return next((status for status in order if status in given), "vacuous")
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON has it; infinities, NaN and what it does not know become text."""
+    import numpy as np
+
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)

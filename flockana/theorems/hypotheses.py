@@ -72,34 +72,19 @@ def law_is(
         if composed and type(run.law) is Composition:
             terms = ", ".join(type(term).__name__ for term in run.law.terms)
             return condition("a composition of terms is applied", True, detail=terms)
-        law = applied(run, name, *laws, formulas=formulas or composed)
-        return common_gains(run) if one_gain and law.status != "unmet" and run.law.gains.per_agent else law
+        law, known = run.law, type(run.law) in laws
+        welcome = (FormulaInteraction,) if formulas or composed else ()
+        other = [
+            f"{member} is {type(getattr(law, member)).__name__}"
+            for member, kind in _MEMBERS.items()
+            if hasattr(law, member) and type(getattr(law, member)) not in (kind, *welcome)
+        ]
+        detail = ", ".join([type(law).__name__, *(other if known else [])])
+        if one_gain and known and not other and law.gains.per_agent:
+            return common_gains(run)
+        return condition(f"{name} is applied", known and not other, detail=detail)
 
     return applied_to
-
-
-def applied(run: Observed, name: str, *laws: type, formulas: bool = False) -> Hypothesis:
-    """Return the hypothesis that a run is of one of these laws itself, and not of a derived class.
-
-    Parameters
-    ----------
-    run : Observed
-        The run.
-    name : str
-        The laws, as the hypothesis names them.
-    *laws : type
-        Classes of laws.
-    formulas : bool
-        Whether the pair law may be a formula's.
-    """
-    law, welcome = run.law, (FormulaInteraction,) if formulas else ()
-    other = [
-        f"{member} is {type(getattr(law, member)).__name__}"
-        for member, known in _MEMBERS.items()
-        if hasattr(law, member) and type(getattr(law, member)) not in (known, *welcome)
-    ]
-    detail = ", ".join([type(law).__name__, *(other if type(law) in laws else [])])
-    return condition(f"{name} is applied", type(law) in laws and not other, detail=detail)
 
 
 def hypothesis_from_fact(name: str, fact: Fact) -> Hypothesis:
@@ -164,7 +149,7 @@ def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
     return condition(" and ".join(f"{text} > 0" for text in values), least > 0.0, least, detail)
 
 
-def common_gains(run: Observed) -> Hypothesis:
+def common_gains(run: Observed | Tube) -> Hypothesis:
     """Return the hypothesis that all agents have the same c1γ and c2γ, so that shape and centre decouple.
 
     Parameters

@@ -4,11 +4,9 @@ from math import isfinite
 
 import numpy as np
 
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.measures.nets import links
 from flockana.theorems.olfati_saber.collisions import contacts_of
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, lengths
 
 
 def squash(x: float) -> float:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from flockana.theorems.claims import conclude
 from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.theorem import Claim, Hypothesis, Status
+from flockana.theorems.theorem import Claim, Hypothesis, Needs, Status
 
 _ROUNDING = 1e-12  # of a ratio of two energies
 _LAST = 8  # the last eighth of a run is its end
@@ -52,7 +52,7 @@ def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
 
 def limit_claim(
     name: str,
-    needs: Iterable[Hypothesis],
+    needs: Needs,
     certificates: Iterable[Certificate] = (),
     *,
     escape: Certificate | None = None,
@@ -77,7 +77,27 @@ def limit_claim(
     return replace(claim, detail="; ".join(filter(None, parts)))
 
 
-def without_assumed(needs: Iterable[Hypothesis], make: Callable[[list[Hypothesis]], Claim]) -> Claim:
+def dies_out(
+    seen: Any,
+    name: str,
+    needs: Needs,
+    certificates: Iterable[Certificate] = (),
+    *,
+    series: Any,
+    what: str,
+    **fields: Any,
+) -> Claim:
+    """Return the claim that a series of a run tends to 0: `of` is its symbol, `start` the name of its first value."""
+    t, start, of = seen.t, fields.pop("start", ""), fields.pop("of", "")
+    told = evidence(t, series, of) if of else ""
+    return limit_claim(name, needs, certificates, evidence=told, **fields).described(
+        computed=float(series[-1]),
+        witness={"time": float(t[-1])} | ({start: float(series[0])} if start else {}),
+        detail=f"{what} goes from {series[0]:.3g} to {series[-1]:.3g} at t = {t[-1]:g}",
+    )
+
+
+def without_assumed(needs: Needs, make: Callable[[list[Hypothesis]], Claim]) -> Claim:
     """Return a claim under the hypotheses that are met alone, if a certificate verifies it so; else under all of them.
 
     A certificate of the limit itself does not rest on what is only assumed; a refutation would.

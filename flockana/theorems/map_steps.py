@@ -5,10 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw
+from flockana.theorems.toolkit import FloatArray, Trajectory
 
 SAME = 1e-8  # of the largest number: other machine code steps to 1e-13, another law does not
 SLACK = 100.0  # how often what a nudge grows to a sample may be off: rounding grows alike where the map is chaotic

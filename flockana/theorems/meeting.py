@@ -4,12 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import PairInteraction
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.toolkit import EPS, Enclosure, Hypothesis, Observed, Trajectory
 
 
 class PairEnergies(NamedTuple):

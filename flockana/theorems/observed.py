@@ -28,7 +28,7 @@ from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.rounding import EPS, energy_rounding
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, failure, largest_over, paired
 from flockana.theorems.step_resolution import NAME
-from flockana.theorems.theorem import Claim, Hypothesis, Status
+from flockana.theorems.theorem import Claim, Hypothesis, Known, Needs, Status
 
 
 class End(NamedTuple):
@@ -104,31 +104,24 @@ class Observed(ResultCache):
 
     # half widths ---------------------------------------------------------------------------------------------------
 
-    @cached_property
-    def shape_error(self) -> FloatArray:
-        """Half width of ‖q_i − q_c‖ of each agent at each sample, shape (T, n)."""
-        return self._at_samples(self.errors.shape, _rounding(self.run.q))
+    # of ‖q_i − q_c‖ and ‖p_i − p_c‖ of each agent at each sample, shape (T, n); of q_c and p_c, shape (T,)
+    shape_error = cached_property(lambda self: self._at_samples(self.errors.shape, self.run.q))
+    speed_error = cached_property(lambda self: self._at_samples(self.errors.speed, self.run.p))
+    centre_error = cached_property(lambda self: self._at_samples(self.errors.centre, self.run.q))
+    drift_error = cached_property(lambda self: self._at_samples(self.errors.drift, self.run.p))
+    # of any q_i − q_c and p_i − p_c over each interval between samples, shape (T − 1,)
+    between_error = cached_property(lambda self: self._between_samples(self.errors.shape, self.run.q))
+    between_speed_error = cached_property(lambda self: self._between_samples(self.errors.speed, self.run.p))
 
-    @cached_property
-    def speed_error(self) -> FloatArray:
-        """Half width of ‖p_i − p_c‖ of each agent at each sample, shape (T, n)."""
-        return self._at_samples(self.errors.speed, _rounding(self.run.p))
-
-    @cached_property
-    def centre_error(self) -> FloatArray:
-        """Half width of q_c at each sample, shape (T,)."""
-        return self._at_samples(self.errors.centre, _rounding(self.run.q))
-
-    @cached_property
-    def drift_error(self) -> FloatArray:
-        """Half width of p_c at each sample, shape (T,)."""
-        return self._at_samples(self.errors.drift, _rounding(self.run.p))
-
-    def _at_samples(self, errors: FloatArray, rounding: float) -> FloatArray:
+    def _at_samples(self, errors: FloatArray, x: FloatArray) -> FloatArray:
         widths = self._windowed(errors, self.t, self.t)
         if self.begins_exactly:
             widths[0] = 0.0
-        return widths + rounding
+        return widths + _rounding(x)
+
+    def _between_samples(self, errors: FloatArray, x: FloatArray) -> FloatArray:
+        worst: FloatArray = self._windowed(errors, self.t[:-1], self.t[1:]).max(axis=1)
+        return worst + _rounding(x)
 
     @property
     def begins_exactly(self) -> bool:
@@ -152,18 +145,6 @@ class Observed(ResultCache):
         """Return both runs in another frame that keeps all distances between agents."""
         given, run, other = (change(each) for each in (self.given, self.run, self.other))
         return replace(self, given=given, run=run, other=other)
-
-    @cached_property
-    def between_error(self) -> FloatArray:
-        """Half width of any q_i − q_c over each interval between samples, shape (T − 1,)."""
-        worst: FloatArray = self._windowed(self.errors.shape, self.t[:-1], self.t[1:]).max(axis=1)
-        return worst + _rounding(self.run.q)
-
-    @cached_property
-    def between_speed_error(self) -> FloatArray:
-        """Half width of any p_i − p_c over each interval between samples, shape (T − 1,)."""
-        worst: FloatArray = self._windowed(self.errors.speed, self.t[:-1], self.t[1:]).max(axis=1)
-        return worst + _rounding(self.run.p)
 
     # observables ---------------------------------------------------------------------------------------------------
 
@@ -205,7 +186,9 @@ class Observed(ResultCache):
     @cached_property
     def residual(self) -> Enclosure:
         """Residual of the energy balance H − ∫ dH/dt at each sample, shape (T,)."""
-        rounding = 2.0 * energy_rounding(self.run) + _work_rounding(self.run)
+        run = self.run
+        of_work = float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())
+        rounding = 2.0 * energy_rounding(run) + of_work
         return self.series(lambda run: run.energy_residual, floor=self.floors.work + rounding)
 
     @cached_property
@@ -282,9 +265,7 @@ def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
     return tuple(judged)
 
 
-def with_resolution(
-    hypotheses: Iterable[Hypothesis], claims: Iterable[Claim], seen: Observed
-) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+def with_resolution(hypotheses: Needs, claims: Iterable[Claim], seen: Observed) -> Known:
     """Return hypotheses and claims, with one more hypothesis where steps may not resolve the law."""
     claims = with_doubt(claims, seen)
     if not seen.unresolved:
@@ -331,7 +312,3 @@ def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
 def _rounding(x: FloatArray) -> float:
     """Return the rounding of each x_i − x_c, x_c a mean of n numbers."""
     return float((x.shape[1] + 4) * EPS * np.abs(x).max())
-
-
-def _work_rounding(run: Trajectory) -> float:
-    return float(run.stats.get("steps", len(run.t)) * EPS * np.abs(run.extra["work"]).max())

@@ -10,16 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.scheme import Scheme
 from flockana.recorded.steps import predicted
-from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.os_6 import start_of_condition
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Claim, Hypothesis, Known, Theorem, Tolerances
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged
 
 ON_STEPS = {
     "energy": "where no term adds energy, H rises in a step by no more than the scheme's own defect",
@@ -47,18 +42,17 @@ def is_about_steps(item: Theorem, seen: Observed) -> bool:
     return item.law(seen).status == "unmet" and item.law(_of_law(seen, law)).status != "unmet"
 
 
-def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     """Return the verdict on a scheme's run of a theorem about the flow of its law: its claims vacuous, ours judged."""
     law: Scheme = seen.law
     detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
-    claims = [vacuous(name, missed, by=item.by(name)) for name in item.claims]
     if item.id not in ON_STEPS or len(seen.t) < 2:
-        return (missed,), tuple(claims)
+        return (missed,), item.silenced(missed)
     flow = _of_law(seen, law)
     needs, _ = item.check(flow, tolerances)
     since = start_of_condition(flow) if item.id == "os-6" else 0
-    return (missed,), (*claims, *_of_energy(seen.run, since, list(needs), tolerances))
+    return (missed,), (*item.silenced(missed), *_of_energy(seen.run, since, list(needs), tolerances))
 
 
 def _of_law(seen: Observed, law: Scheme) -> Observed:
@@ -78,19 +72,15 @@ def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerance
     worst, total = int(np.argmax(np.abs(defect))), float(defect.sum())
     own = f"the scheme's defect is {defect[worst]:.3g} at most, at t = {run.t[worst + 1]:.6g}, and {total:.3g} in all"
     rises, most = int((change > 0.0).sum()), max(float(change.max()), 0.0)
-    falls = judged(
-        "steps-fall",
-        Enclosure.around(tolerances.energy - change / unit, rounding),
-        needs,
+    falls = judged("steps-fall", Enclosure.around(tolerances.energy - change / unit, rounding), needs).described(
         computed=float(change.max()) / unit,
         stated=f"H rises by no more than {tolerances.energy:g} of the largest |H| from sample to sample",
         detail=f"H rises at {rises} of {len(change)} samples, by {most:.3g} at most; {own}",
     )
     lost = energy[:-1] - led
     within = judged(
-        "steps-defect",
-        Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit),
-        needs,
+        "steps-defect", Enclosure.around(tolerances.energy + lost / unit, rounding + np.abs(led - rough) / unit), needs
+    ).described(
         computed=float(lost.min()) / unit,
         stated="H(t + dt) - H(t) <= the scheme's defect: H at the end of the step less H where the law's flow leads",
         detail=f"along the flow from each sample H falls by {lost.min():.3g} at least; {own}",

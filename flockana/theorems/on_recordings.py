@@ -13,22 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
-from flockana.base.vectors import centres, lengths
+from flockana.base.vectors import centres
 from flockana.dynamics.simulate import simulate
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.following import Following, following
 from flockana.recorded.recording import Recording
 from flockana.theorems.catalogue import theorem
-from flockana.theorems.claims import vacuous
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.observed import Observed, with_resolution
 from flockana.theorems.of_schemes import is_about_steps, on_steps
 from flockana.theorems.second_runs import DOUBT, Errors, centred, doubt_about, largest_over
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances, Verdict
+from flockana.theorems.theorem import HypothesisStatus, Known, Theorem, Verdict
 from flockana.theorems.together import Verdicts, theorems_about
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Hypothesis, Tolerances, Trajectory, lengths, vacuous
 
 DEFINITIONS = ("alpha-flocking", "alpha-flocking-strict", "os-5-terminal")  # which need no law
 _WAYS = 3  # random directions in which states are moved to the ends of their enclosures
@@ -70,7 +67,7 @@ class ObservedRecording(Observed):
     @property
     def residual(self) -> Enclosure:
         """Energy balance of the law's solution: a recording has no work of its own."""
-        return replace_class(self, Observed).residual
+        return Observed(self.given, self.run, self.other, self.errors, self.doubt).residual
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
@@ -94,11 +91,6 @@ class ObservedRecording(Observed):
             else []
         )
         return (recorded, *moved)
-
-
-def replace_class(seen: Observed, kind: type[Observed]) -> Observed:
-    """Return the same observed run as an object of another class."""
-    return kind(seen.given, seen.run, seen.other, seen.errors, seen.doubt)
 
 
 def _unit(x: FloatArray) -> FloatArray:
@@ -130,16 +122,14 @@ def verify_recording(
     law.check_agents(rec.n)
     follow = rec.cached(f"following {law!r}", lambda: following(rec, law))
     first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail)
-    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
-    named = f"{name}: {rec.accuracy}"
+    named = f"{_named(rec, subject)}: {rec.accuracy}"
     if follow.status == "unmet":
-        claims = tuple(vacuous(each, first, by=item.by(each)) for each in item.claims or ("all",))
-        return Verdict(item.id, (first,), claims, tolerances, named, item.author)
+        claims = item.silenced(first) or (vacuous("all", first, by=item.author),)
+        return item.verdict(((first,), claims), tolerances, named)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine
-    hypotheses, claims = with_resolution(*examined(item, seen, tolerances), seen)
-    decided = tuple(_weighed(claim, rec, first) for claim in claims)
-    return Verdict(item.id, (first, *hypotheses), decided, tolerances, named, item.author)
+    known = with_resolution(*examined(item, seen, tolerances), seen)
+    return item.verdict(_weighed(known, rec, first), tolerances, named)
 
 
 def verify_recording_together(rec: Recording, tolerances: Tolerances, *, law: Any = None, **case: Any) -> Verdicts:
@@ -168,24 +158,23 @@ def _of_samples(
         rec = rec.with_velocities()
     run = rec.trajectory(d=d, r=r)
     place, speed = _widths(rec)
-    errors = Errors(
-        run.t,
-        place + place.mean(axis=1)[:, None],
-        speed + speed.mean(axis=1)[:, None],
-        place.mean(axis=1),
-        speed.mean(axis=1),
-    )
+    errors = Errors(run.t, *_half_widths(place, speed))
     doubt = "" if len(run.t) > 1 else "one sample shows no motion"
     seen = ObservedRecording(run, run, run, errors, doubt, place=float(place[-1].max()))
-    stated = Hypothesis(
-        "the accuracy of the samples is stated", "met" if rec.accuracy.decides else "assumed", detail=str(rec.accuracy)
-    )
-    hypotheses, claims = with_resolution(*item.examine(seen, tolerances), seen)
-    decided = tuple(_weighed(claim, rec, stated) for claim in claims)
-    name = subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
-    return Verdict(
-        item.id, (stated, *hypotheses), decided, tolerances, f"{name}, at its samples: {rec.accuracy}", item.author
-    )
+    status: HypothesisStatus = "met" if rec.accuracy.decides else "assumed"
+    stated = Hypothesis("the accuracy of the samples is stated", status, detail=str(rec.accuracy))
+    known = _weighed(with_resolution(*item.examine(seen, tolerances), seen), rec, stated)
+    return item.verdict(known, tolerances, f"{_named(rec, subject)}, at its samples: {rec.accuracy}")
+
+
+def _named(rec: Recording, subject: str) -> str:
+    return subject or f"a recording{' (' + rec.source + ')' if rec.source else ''}"
+
+
+def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:
+    """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from those of each agent."""
+    means = place.mean(axis=1), speed.mean(axis=1)
+    return place + means[0][:, None], speed + means[1][:, None], *means
 
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
@@ -212,12 +201,8 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     speed = np.broadcast_to(np.asarray(follow.speed, dtype=np.float64), rec.q.shape[:2])
     if not rec.accuracy.decides:
         place, speed = np.zeros(place.shape), np.zeros(speed.shape)
-    off = (
-        lengths(centred(apart)) + place + place.mean(axis=1)[:, None],
-        lengths(centred(slip)) + speed + speed.mean(axis=1)[:, None],
-        lengths(centres(apart)[:, None])[:, 0] + place.mean(axis=1),
-        lengths(centres(slip)[:, None])[:, 0] + speed.mean(axis=1),
-    )
+    differ = *map(lengths, map(centred, (apart, slip))), *(lengths(centres(x)[:, None])[:, 0] for x in (apart, slip))
+    off = [a + b for a, b in zip(differ, _half_widths(place, speed), strict=True)]
     times, end = seen.errors.t, float(place[-1].max())
     if isinstance(law, DiscreteLaw):
         return ObservedRecording(given, run, seen.other, Errors(rec.t, *off), place=end)
@@ -227,7 +212,12 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
     return ObservedRecording(given, run, seen.other, Errors(times, *widened), unresolved=seen.unresolved, place=end)
 
 
-def _weighed(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
+def _weighed(known: Known, rec: Recording, first: Hypothesis) -> Known:
+    """Return hypotheses, one more in front, and claims with the rigour that the accuracy allows."""
+    return (first, *known[0]), tuple(_weighed_claim(claim, rec, first) for claim in known[1])
+
+
+def _weighed_claim(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
     """A claim with the rigour that the accuracy allows; one under a hypothesis that is only assumed decides nothing."""
     if claim.status not in ("verified", "refuted"):
         return claim

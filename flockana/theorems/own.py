@@ -6,11 +6,9 @@ from typing import Any
 import numpy as np
 
 from flockana.base.errors import ArgumentError, format_value
-from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed, by_both_runs
-from flockana.theorems.theorem import Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.observed import by_both_runs
+from flockana.theorems.theorem import Theorem
+from flockana.theorems.toolkit import Claim, Enclosure, Hypothesis, Observed, Tolerances, Trajectory, judged
 
 
 def claim(name: str, margin: Callable[[Trajectory], Any], *, statement: str = "") -> Theorem:

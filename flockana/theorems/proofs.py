@@ -2,45 +2,16 @@
 
 from flockana.theorems.theorem import Rigour
 
-RIGOUR: dict[str, Rigour] = {
-    "any-potential": "smt",
-    "any-potential-limits": "smt",
-    "barrier": "interval",
-    "bearing-distance": "smt",
-    "bearing-distance-printed": "smt",
-    "certified-basins": "symbolic",
-    "cohesion": "smt",
-    "collisions": "smt",
-    "compressed-patches": "interval",
-    "constant-acceleration": "symbolic",
-    "convergence": "smt",
-    "cucker-smale": "smt",
-    "dead-zone": "smt",
-    "delayed-consensus": "interval",
-    "deviation-energy": "symbolic",
-    "distinct-pairs": "interval",
-    "disturbed-basins": "symbolic",
-    "double-agent": "interval",
-    "energy-identities": "symbolic",
-    "headings": "smt",
-    "informed-agents": "smt",
-    "links-kept": "smt",
-    "matched-velocities": "smt",
-    "n-max": "interval",
-    "net-measures": "smt",
-    "nonplanar-fcc": "symbolic",
-    "second-order-modes": "smt",
-    "smoothness": "symbolic",
-    "speed-bound": "interval",
-    "stand-off": "symbolic",
-    "strained-thirteen": "interval",
-    "tanner": "smt",
-    "theorem5-counts": "smt",
-    "theorem5-crossings": "smt",
-    "theorem6": "smt",
-    "tracking-gain": "interval",
-    "turned-axes": "symbolic",
+_PROOFS: dict[Rigour, str] = {
+    "symbolic": "certified-basins constant-acceleration deviation-energy disturbed-basins energy-identities "
+    "nonplanar-fcc smoothness stand-off turned-axes",
+    "smt": "any-potential any-potential-limits bearing-distance bearing-distance-printed cohesion collisions "
+    "convergence cucker-smale dead-zone headings informed-agents links-kept matched-velocities net-measures "
+    "second-order-modes tanner theorem5-counts theorem5-crossings theorem6",
+    "interval": "barrier compressed-patches delayed-consensus distinct-pairs double-agent n-max speed-bound "
+    "strained-thirteen tracking-gain",
 }
+RIGOUR: dict[str, Rigour] = {proof: rigour for rigour, proofs in _PROOFS.items() for proof in proofs.split()}
 
 CITES: dict[str, tuple[str, ...]] = {
     "any-potential-limits": ("Barbalat", "LaSalle"),

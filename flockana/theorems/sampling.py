@@ -6,33 +6,25 @@ w²/ℓ + c at most where the distance is ℓ. Control polygons of the paths bou
 allowance for the paths' own error (`flockana.kernels.paths`) is added.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
-from flockana.dynamics.between import Course
-from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.paths import bernstein
 from flockana.measures.nets import LinkArray, components, link_lengths, links
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, lengths, stacked
 
 
 def _motion(seen: Observed) -> FloatArray:
     """Return the largest ‖p_i − p_c‖ and ‖u_i − u_c‖ on the paths, and the paths' error, shape (3, T − 1)."""
-    path = seen.run.path
-    bounds = np.empty((3, len(path.t) - 1))
-    for k, (points, off) in enumerate(_polygons(seen)):
-        h = float(path.t[k + 1] - path.t[k])
-        legs = 5.0 / h * np.diff(points - points.mean(axis=0), axis=1)
-        bounds[:, k] = *(lengths(x).max() for x in (legs, 4.0 / h * np.diff(legs, axis=1))), off.max()
-    motion = seen.run.over_intervals(np.maximum, bounds)
+    bounds = []
+    for h, points, off in polygons(seen.run):
+        legs = _legs(h, points - points.mean(axis=0))
+        bounds.append([lengths(legs).max(), lengths(4.0 / h * np.diff(legs, axis=1)).max(), off.max()])
+    motion = seen.run.over_intervals(np.maximum, np.reshape(bounds, (-1, 3)).T)
     motion[0] += seen.between_speed_error
     motion[2] += seen.between_error
     return motion
@@ -49,16 +41,16 @@ def mismatch_over(seen: Observed) -> Enclosure:
 
     Between samples it is bounded by its values at the control points of the velocities, as it is convex.
     """
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.mismatch)
-    path, bounds = seen.run.path, np.empty(len(seen.run.path.t) - 1)
-    for k, (points, _) in enumerate(_polygons(seen)):
-        legs = 5.0 / float(path.t[k + 1] - path.t[k]) * np.diff(points - points.mean(axis=0), axis=1)
-        bounds[k] = np.sqrt(np.sum(legs**2, axis=(0, 2)).max())
-    if path.slack is not None:  # of steps that were not kept it is known where they went, and not how fast
-        bounds[path.slack.max(axis=1) > 0.0] = np.inf
-    size = seen.run.over_intervals(np.maximum, bounds) + np.sqrt(seen.n) * seen.between_speed_error
-    return _with_bound(_ends(seen.mismatch), size**2 / (2.0 * seen.n))
+
+    def bound() -> FloatArray:
+        squares = (_legs(h, points - points.mean(axis=0)) ** 2 for h, points, _ in polygons(seen.run))
+        sizes, slack = np.array([np.sqrt(np.sum(square, axis=(0, 2)).max()) for square in squares]), seen.run.path.slack
+        if slack is not None:  # of steps that were not kept it is known where they went, and not how fast
+            sizes[slack.max(axis=1) > 0.0] = np.inf
+        size: FloatArray = seen.run.over_intervals(np.maximum, sizes) + np.sqrt(seen.n) * seen.between_speed_error
+        return size**2 / (2.0 * seen.n)
+
+    return _over(seen, seen.mismatch, bound)
 
 
 def stretch_between(seen: Observed) -> FloatArray:
@@ -74,33 +66,27 @@ def stretch_between(seen: Observed) -> FloatArray:
 
 def radius_over(seen: Observed) -> Enclosure:
     """Return the largest cohesion radius from each sample to the next, shape (T − 1,), or (1,) of one sample."""
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.radius)
-    return _with_bound(_ends(seen.radius), seen.run.cohesion_bounds + seen.between_error)
+    return _over(seen, seen.radius, lambda: seen.run.cohesion_bounds + seen.between_error)
 
 
 def spread_over(seen: Observed) -> Enclosure:
     """Return the largest √Σ‖q_i − q_c‖² from each sample to the next, shape (T − 1,), or (1,) of one sample."""
-    if seen.is_map or len(seen.t) == 1:
-        return _ends(seen.spread)
-    bounds = np.empty(len(seen.run.path.t) - 1)
-    for k, (points, off) in enumerate(_polygons(seen)):
-        sizes = np.sqrt(np.sum((points - points.mean(axis=0)) ** 2, axis=(0, 2)))
-        bounds[k] = sizes.max() + np.linalg.norm(off)
-    most = seen.run.over_intervals(np.maximum, bounds) + np.sqrt(seen.n) * seen.between_error
-    return _with_bound(_ends(seen.spread), most)
+
+    def bound() -> FloatArray:
+        steps = ((points - points.mean(axis=0), off) for _, points, off in polygons(seen.run))
+        sizes = [np.sqrt(np.sum(x**2, axis=(0, 2))).max() + np.linalg.norm(off) for x, off in steps]
+        size: FloatArray = seen.run.over_intervals(np.maximum, np.array(sizes)) + np.sqrt(seen.n) * seen.between_error
+        return size
+
+    return _over(seen, seen.spread, bound)
 
 
-def _ends(at_samples: Enclosure) -> Enclosure:
-    """Return the larger of the values at both ends of each interval."""
-    if len(at_samples.mid) == 1:
+def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]) -> Enclosure:
+    """Return the larger of the values at both ends of each interval, and at most a bound of what is between them."""
+    if len(seen.t) == 1:
         return at_samples
-    return stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
-
-
-def _with_bound(at_ends: Enclosure, bound: FloatArray) -> Enclosure:
-    """Return an enclosure from the largest value at the ends to a bound."""
-    return Enclosure(at_ends.lo, at_ends.mid, np.maximum(at_ends.hi, bound))
+    ends = stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
+    return ends if seen.is_map else Enclosure(ends.lo, ends.mid, np.maximum(ends.hi, bound()))
 
 
 def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
@@ -108,23 +94,30 @@ def least_distance(seen: Observed, i: Any, j: Any) -> Enclosure:
     at_samples = seen.distances(i, j).min()
     if seen.is_map or len(seen.t) == 1:
         return at_samples
-    least = np.empty(len(seen.run.path.t) - 1)
-    for k, (points, off) in enumerate(_polygons(seen)):
+    least = []
+    for _, points, off in polygons(seen.run):
         apart = points[j] - points[i]
         ways = apart.mean(axis=1, keepdims=True)
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), np.finfo(float).tiny)
-        least[k] = (np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min()
-    between = seen.run.over_intervals(np.minimum, least) - 2.0 * seen.between_error
+        least.append((np.sum(apart * ways, axis=2).min(axis=1) - off[i] - off[j]).min())
+    between = seen.run.over_intervals(np.minimum, np.array(least)) - 2.0 * seen.between_error
     low = max(min(float(between.min()), float(at_samples.lo)), 0.0)
     return Enclosure(low, at_samples.mid, at_samples.hi)
 
 
-def _polygons(seen: Observed) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Return control points of the agents' paths in each step, (n, 6, 3), and the error of each path."""
-    path = seen.run.path
-    for k, h in enumerate(np.diff(path.t).tolist()):
+def polygons(run: Trajectory, steps: Iterable[int] | None = None) -> Iterator[tuple[float, FloatArray, FloatArray]]:
+    """Yield the length of each step, control points of the agents' paths in it, (n, 6, 3), and each path's error."""
+    path = run.path
+    for k in range(len(path.t) - 1) if steps is None else steps:
+        h = float(path.t[k + 1] - path.t[k])
         points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
-        yield points, allowance if path.slack is None else allowance + path.slack[k]
+        yield h, points, allowance if path.slack is None else allowance + path.slack[k]
+
+
+def _legs(h: float, points: FloatArray) -> FloatArray:
+    """Return the control points of velocities."""
+    legs: FloatArray = 5.0 / h * np.diff(points, axis=1)
+    return legs
 
 
 @dataclass(frozen=True)
@@ -172,8 +165,7 @@ def _nets_between(seen: Observed) -> Nets:
     if seen.doubt:
         return _unknown_nets(seen, len(seen.t) - 1)
     run, r, rounding, rows = seen.run, reach(seen), _rounding(seen), []
-    h, (speed, force, off), path = np.diff(run.t), _motion(seen), run.path
-    first = np.searchsorted(path.t, run.t)
+    h, (speed, force, off), first = np.diff(run.t), _motion(seen), np.searchsorted(run.path.t, run.t)
     for k in range(len(run.t) - 1):
         error = 2.0 * float(off[k]) + rounding
         pairs = links(run.q[k], r + 4.0 * float(speed[k] * h[k]) + 2.0 * error)
@@ -181,7 +173,7 @@ def _nets_between(seen: Observed) -> Nets:
         low, high = ends.min(axis=0), ends.max(axis=0)
         slack = _slack(low, r, h[k], 2.0 * speed[k], 2.0 * force[k]) + error
         if (unsure := (low - slack < r) & (high + slack >= r)).any():  # those two do not move as fast as the fastest
-            own = _relative(path, range(first[k], first[k + 1]), pairs[unsure])
+            own = _relative(run, range(first[k], first[k + 1]), pairs[unsure])
             own[0][:] += 2.0 * seen.between_speed_error[k]
             slack[unsure] = np.minimum(slack[unsure], _slack(low[unsure], r, h[k], *own) + error)
         near = low - slack < r
@@ -202,13 +194,11 @@ def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArra
     return slack
 
 
-def _relative(path: Course, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
+def _relative(run: Trajectory, steps: range, pairs: LinkArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest relative speed and acceleration of some pairs over some steps."""
     speed, force = np.zeros((2, len(pairs)))
-    for k in steps:
-        h = float(path.t[k + 1] - path.t[k])
-        points = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))[0]
-        legs = 5.0 / h * np.diff(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
+    for h, points, _ in polygons(run, steps):
+        legs = _legs(h, points[pairs[:, 1]] - points[pairs[:, 0]])
         speed = np.maximum(speed, lengths(legs).max(axis=1))
         force = np.maximum(force, lengths(4.0 / h * np.diff(legs, axis=1)).max(axis=1))
     return speed, force

@@ -35,11 +35,9 @@ def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, w
     return _judged(name, list(holds), 1.0, what, about="all", stated=stated, witness=witness)
 
 
-def mostly(
-    name: str, holds: Iterable[bool | None], what: str, stated: str, *, least: float = 0.5, witness: Any = None
-) -> Claim:
-    """Return a claim that a share is at least a bound: verified by its lower end, refuted by its upper one."""
-    return _judged(name, list(holds), least, what, stated=stated, witness=witness)
+def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
+    """Return a claim that a share is at least half: verified by its lower end, refuted by its upper one."""
+    return _judged(name, list(holds), 0.5, what, stated=stated, witness=witness)
 
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:

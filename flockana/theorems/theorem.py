@@ -1,13 +1,13 @@
 """Theorems, hypotheses, claims and verdicts, and how a verdict follows from its claims."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 from flockana.base.errors import ArgumentError
 from flockana.theorems.errata import Erratum, erratum_of
-from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged
+from flockana.theorems.headline import BYLINES, does_not_hold, headline, merged, overall, plain
 from flockana.theorems.tolerances import Tolerances as Tolerances
 from flockana.theorems.written import verdict_html, verdict_latex
 
@@ -116,6 +116,23 @@ class Claim:
                 "inconclusive"
             )
 
+    def described(self, *, detail: str = "", **fields: Any) -> "Claim":
+        """Return the claim with words and numbers added to what was decided.
+
+        Parameters
+        ----------
+        detail : str
+            Put before the detail that the claim has.
+        **fields
+            `computed`, `stated` and `witness`.
+
+        Examples
+        --------
+        >>> Claim("i", "verified", detail="proved").described(stated="1 + 1 = 2", detail="by algebra").detail
+        'by algebra; proved'
+        """
+        return replace(self, detail="; ".join(filter(None, (detail, self.detail))), **fields)
+
     @property
     def explanation(self) -> str:
         """Detail; for a vacuous claim with the unmet hypothesis in front."""
@@ -208,7 +225,7 @@ class Verdict:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; infinities and NaN become text."""
-        data: dict[str, Any] = _plain(asdict(self))
+        data: dict[str, Any] = plain(asdict(self))
         for claim in data["claims"]:
             claim["needs"] = [need["name"] for need in claim["needs"]]
         head = {"theorem": data.pop("theorem"), "status": self.status, "summary": self.summary, "rigour": self.rigour}
@@ -231,7 +248,9 @@ class Verdict:
         return verdict_latex(self)
 
 
+Known = tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]  # what a theorem says of one case
 Lead = Callable[[Any, Claim], float]
+Needs = Iterable[Hypothesis]  # hypotheses under which something is claimed
 Checked = tuple[list[Hypothesis], list[Claim]]  # what a theorem's `check` returns
 
 
@@ -281,14 +300,14 @@ class Theorem:
     statement: str
     source: str
     kind: Kind
-    check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]]
+    check: Callable[..., tuple[Needs, Iterable[Claim]]]
     references: tuple[str, ...] = ("olfati-saber-2006",)
     expected: Mapping[str, Status] = field(default_factory=dict)
     leads: Mapping[str, Lead] = field(default_factory=dict)
     law: Callable[[Any], Hypothesis] | None = None
     claims: tuple[str, ...] = ()
     reason: str = "{unmet}: {detail}"
-    enclosed: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
+    enclosed: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None
     author: By = "source"
     corrected: tuple[str, ...] = ()
     ours: tuple[str, ...] = ()
@@ -312,9 +331,32 @@ class Theorem:
         """
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
-    def examine(
-        self, *case: Any, check: Callable[..., tuple[Iterable[Hypothesis], Iterable[Claim]]] | None = None
-    ) -> tuple[tuple[Hypothesis, ...], tuple[Claim, ...]]:
+    def verdict(self, known: Known, used: Tolerances, on: str) -> Verdict:
+        """Return the verdict of hypotheses and claims.
+
+        Parameters
+        ----------
+        known : tuple
+            Hypotheses and claims, as `examine` returns them.
+        used : Tolerances
+            Thresholds.
+        on : str
+            What it was checked on.
+        """
+        return Verdict(self.id, *known, used, on, self.author)
+
+    def silenced(self, missed: Hypothesis) -> tuple[Claim, ...]:
+        """Return all claims as vacuous under an unmet hypothesis.
+
+        Parameters
+        ----------
+        missed : Hypothesis
+            The unmet one.
+        """
+        text = f"{does_not_hold(missed.name)}: {missed.detail}".removesuffix(": ")
+        return tuple(Claim(name, "vacuous", detail=text, needs=(missed,), by=self.by(name)) for name in self.claims)
+
+    def examine(self, *case: Any, check: Callable[..., tuple[Needs, Iterable[Claim]]] | None = None) -> Known:
         """Hypotheses and claims of one case; claims that `check` leaves out for an unmet hypothesis are vacuous.
 
         Parameters
@@ -339,7 +381,10 @@ class Theorem:
         )
 
 
-def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
+run_theorem = partial(Theorem, kind="trajectory")
+
+
+def unmet(hypotheses: Needs) -> Hypothesis | None:
     """Return the first unmet hypothesis; None if no hypothesis is unmet.
 
     Parameters
@@ -353,39 +398,3 @@ def unmet(hypotheses: Iterable[Hypothesis]) -> Hypothesis | None:
     'c2α > 0'
     """
     return next((hypothesis for hypothesis in hypotheses if hypothesis.status == "unmet"), None)
-
-
-def overall(statuses: Iterable[Status]) -> Status:
-    """Status of a theorem from those of its claims: refuted if one is, else inconclusive, verified, vacuous.
-
-    Parameters
-    ----------
-    statuses : iterable of str
-        Of the claims.
-
-    Examples
-    --------
-    >>> overall(["verified", "refuted"]), overall(["vacuous", "verified"]), overall([])
-    ('refuted', 'verified', 'vacuous')
-    """
-    given = set(statuses)
-    order: tuple[Status, ...] = ("refuted", "inconclusive", "verified")
-    return next((status for status in order if status in given), "vacuous")
-
-
-def _plain(value: Any) -> Any:
-    import numpy as np
-
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return str(value)

@@ -8,11 +8,10 @@ import numpy as np
 
 from flockana.base.progress import progress_bar
 from flockana.base.tables import MARKS, html_table, latex_table, tex, text_table
-from flockana.dynamics.trajectory import Trajectory
 from flockana.theorems.catalogue import catalogue, theorem, verify
-from flockana.theorems.observed import Observed
 from flockana.theorems.of_schemes import ON_STEPS, is_about_steps
-from flockana.theorems.theorem import Theorem, Tolerances, Verdict, unmet
+from flockana.theorems.theorem import Theorem, Verdict
+from flockana.theorems.toolkit import Observed, Tolerances, Trajectory, unmet
 
 _HEADS = ("theorem", "status", "rigour", "decided by", "title")
 _COLUMN = 28  # characters

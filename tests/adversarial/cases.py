@@ -34,6 +34,11 @@ class Case:
     options: Mapping[str, Any] = field(default_factory=dict)
     since: float = 0.0
 
+    @property
+    def rough(self):
+        """Whether it is integrated so loosely that its samples need not fit its law."""
+        return self.options.get("method") == "RK4" or self.options.get("rtol", 0.0) > 1e-6
+
     def run(self):
         return simulate(self.law, self.q0, self.p0, (self.since, self.since + self.until), **self.options)
 

@@ -4,8 +4,6 @@ Number by number in `published.json`; of runs in `published_runs.json`, whose ma
 `python -m tests.adversarial.published` writes both anew.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """Any pair potential: truths of random ones, and what lacks a property, which nothing is claimed of."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The catalogue's expected statuses, claim by claim, in other units, places, orders and at other tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -58,7 +56,6 @@ CHANGES = {name: (lambda case, rng, by=by: in_units(case, *by)) for name, by in 
 
 @pytest.mark.parametrize("name", published_runs())
 def test_short_runs_say_what_was_published(name):
-    """Status, margin and size of the error, claim by claim."""
     entry = scenario(name)
     found = changes_of_run(name, entry.verify(entry.run()))
     assert found == [], "if it is meant: python -m tests.adversarial.published"

@@ -1,7 +1,5 @@
 """Verdicts that the mechanism makes impossible: cases that were wrong, and a fuzz over laws, starts and tolerances."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,7 +8,7 @@ from hypothesis import strategies as st
 import flockana as fl
 from flockana import DirectedNet, FixedNetFlocking, LogPotential, ProximityFlocking, RationalWeight
 from flockana.laws.link_keeping import LinkKeeping
-from flockana.theorems import Tolerances, theorem, theorems, verify
+from flockana.theorems import theorem, theorems, verify
 from tests.adversarial.cases import effort
 
 TRIANGLE = ([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[0.1, 0.0], [0.0, -0.2], [0.0, 0.1]])
@@ -39,7 +37,6 @@ def test_a_true_rate_is_never_refuted_however_long_and_loose_the_run(decay, unti
 
 
 def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before():
-    """The numbers alone: they reach as far as the spread is above the error of the run, and say so."""
     from flockana.theorems.classics.alignment_bounds import Guarantee
     from flockana.theorems.observed import Observed
 
@@ -49,18 +46,6 @@ def test_without_its_proof_the_rate_is_open_in_the_noise_and_verified_before():
         bounded, rate, limit = Guarantee(seen, 2.0).claims(("bounded", "rate", "flock"), [], proof="")
         assert (bounded.status, rate.status, limit.status) == ("verified", "verified", "inconclusive")
         assert f"to t = {min(until, 11.57):.4g}" in rate.detail
-
-
-@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e5])
-def test_a_true_rate_reads_alike_in_all_units(unit):
-    law = fl.CuckerSmale(RationalWeight(1.0, 0.5, unit))
-    q, p = (unit * np.array(x) for x in TRIANGLE)
-    assert verify("ha-liu", law=law, q0=q, p0=p, t_span=(0.0, 100.0)).status == "verified"
-
-
-def test_a_search_finds_no_counterexample_to_a_theorem_that_is_proved():
-    case = replace(fl.scenario("cucker-smale"), t_span=(0.0, 100.0))
-    assert not fl.falsify("ha-liu", case, claim="rate", budget=10, seed=1).found
 
 
 # --- limits (V3) ------------------------------------------------------------------------------------------------------
@@ -79,7 +64,6 @@ def test_an_agent_that_is_dragged_away_after_the_run_is_not_said_to_follow():
 @pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"method": "RK45", "rtol": 1e-3}, {}])
 @pytest.mark.parametrize("gap", [1e-8, 1e-5, 1e-2])
 def test_a_link_that_is_kept_is_never_refuted(how, gap):
-    """Two agents that swing through each other, and are thrown back at the pole a dozen times or more."""
     law = LinkKeeping(((0, 1),), r=1.0, k=1.0, c=0.0)
     run = fl.simulate(law, [[0.0], [1.0 - gap]], [[0.0], [1e-3]], (0.0, 20.0 * gap**0.5), **how)
     statuses = {claim.name: claim.status for claim in verify("links-kept", run).claims}
@@ -197,18 +181,3 @@ def hold_of_a_run(law, seed, spread, speed, until, rtol):
 def test_the_fuzz_knows_claims_by_their_names():
     for name, claims in {**TRUE_CLAIMS, **LIMITS}.items():
         assert set(claims) <= set(theorem(name).claims), name
-
-
-def test_a_longer_or_looser_run_never_turns_one_decision_into_the_other():
-    """Seven agents of Algorithm 2: statuses over spans and tolerances, decided ones alike."""
-    law = fl.Algorithm2(target=fl.StaticTarget((0.0, 0.0)))
-    rng = np.random.default_rng(5)
-    q, p = rng.uniform(-9.0, 9.0, (7, 2)), rng.uniform(-1.0, 1.0, (7, 2))
-    seen: dict[tuple[str, str], set[str]] = {}
-    for rtol in (1e-2, 1e-5, 1e-8, 1e-11):
-        for until in (20.0, 60.0, 200.0):
-            run = fl.simulate(law, q, p, (0.0, until), rtol=rtol)
-            for name in ("os-3", "energy", "collision-energy", "cohesion"):
-                for claim in verify(name, run, tolerances=Tolerances()).claims:
-                    seen.setdefault((name, claim.name), set()).add(claim.status)
-    assert [key for key, statuses in seen.items() if {"verified", "refuted"} <= statuses] == []

@@ -10,7 +10,7 @@ import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
-from flockana.base.seals import is_sealed, sealed
+from flockana.base.seals import is_sealed
 from flockana.certified.certificate import basin_certificate
 from flockana.certified.tube_certificate import tube_certificate
 from flockana.equilibria.record import write_equilibrium
@@ -27,7 +27,6 @@ FOUND = fl.falsify("collision-energy", "head-on", claim="twice", budget=60)
 
 
 def doors(kind, folder):
-    """Each use of a kind as evidence."""
     at_rest = ([[0.0], [7.0]], [[0.0], [0.0]])
     return {
         "run": (RUN, [lambda run: fl.verify("energy", run), lambda run: fl.verify("os-1", run)]),
@@ -73,7 +72,6 @@ FIELDS = [(kind, field.name) for kind, cls in KINDS.items() for field in fields(
 
 
 def altered(value):
-    """Something else of about the same kind."""
     if isinstance(value, bool) or value is None:
         return 1
     if isinstance(value, np.ndarray):
@@ -178,7 +176,6 @@ def test_the_law_of_a_user_with_a_function_of_its_own_keeps_its_seal():
 
 @pytest.mark.parametrize("stats", [{}, {"rtol": 10}, {"method": "DOP853", "rtol": 1e-8, "atol": 1e-10}])
 def test_a_recording_is_measured_and_drawn_but_not_judged(stats):
-    """The random walk at zero velocity of the review, with whatever facts it brings."""
     q = np.cumsum(np.random.default_rng(0).normal(size=(20, 3, 2)), axis=0)
     walk = fl.Trajectory(
         np.arange(20.0), q, 0.0 * q, 0.0 * q, fl.Algorithm2(target=fl.StaticTarget((0, 0))), stats=stats
@@ -209,8 +206,3 @@ def test_a_motion_along_a_mode_is_no_run():
 def test_what_is_no_basin_decides_no_limit():
     with pytest.raises(ArgumentError, match=r"basin = .*: expected a basin, as certify"):
         fl.verify("os-1", TUBE, basin=SimpleNamespace(law=LAW, holds=lambda q, p: True))
-
-
-def test_a_seal_set_by_hand_is_the_one_door():
-    """It is no secret, and documented as the helper of tests and loaders."""
-    assert is_sealed(sealed(replace(RUN)))

@@ -1,7 +1,5 @@
 """Statements that need no run: what the sources print and what is true, claim by claim, asked again and again."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -24,7 +24,6 @@ THEOREMS = ("E12", "linearised-decay-terminal")
     seeds,
 )
 def test_the_centre_of_mass_is_a_filter(ratio, zeta, factor, periods, circle, seed):
-    """No transient contradicts the transfer function; when it has died out, what is measured agrees."""
     rng = np.random.default_rng(seed)
     omega = ratio
     gains = Gains(1.0, 0.1, 0.0, 0.0, 1.0, 2.0 * zeta)
@@ -55,7 +54,6 @@ def test_a_pair_near_its_balance_moves_as_linearised(m, pull):
 
 @pytest.mark.parametrize("gains", [Gains(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), Gains(0.0, 0.0, 0.0, 0.0, 1.0, 0.0)])
 def test_without_damping_nothing_decays(gains):
-    """No decay rate, however small, is measured of a flock that swings for ever."""
     q = np.array([[0.0, 0.0], [7.05, 0.0]])
     for law in (Algorithm1(gains=gains), Algorithm2(gains=gains, target=StaticTarget((3.5, 0.0)))):
         hold("linearised-decay-terminal", Case(law, q, 0.0 * q, 3.0), {"decay": OPEN, "random": OPEN})

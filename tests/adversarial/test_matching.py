@@ -1,7 +1,5 @@
 """Velocity consensus alone, on both sides of the threshold of two agents, and nets whose fate is known."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np
@@ -29,7 +27,6 @@ units = st.sampled_from((1.0, 1e-6, 1e4))
 @effort(0.4)
 @given(st.sampled_from((0.8, 1.0, 2.0)), st.sampled_from((0.1, 1.0, 3.0)), powers(-9.0, -0.3), st.booleans(), units)
 def test_two_agents_beside_their_threshold(decay, start, off, above, unit):
-    """Below the integral they match, above it they part for ever, as near to it as rounding allows."""
     law = CuckerSmale(RationalWeight(2.0, decay, unit))
     speed = truth.weight_left(start * unit, 4.0, unit, decay) * (1.0 + off if above else 1.0 - off)
     case = Case(law, [[0.0], [start * unit]], [[-0.3 * unit], [speed - 0.3 * unit]], 1.0)
@@ -44,7 +41,6 @@ def test_two_agents_beside_their_threshold(decay, start, off, above, unit):
 @effort(0.4)
 @given(st.integers(2, 6), st.integers(1, 3), st.sampled_from((0.0, 0.3, 0.5, 1.0)), powers(-6.0, 1.5), seeds, units)
 def test_flocks_that_match(n, m, decay, speed, seed, unit):
-    """Both theorems are true of every start, and the weaker hypothesis never vacuous where the stronger is met."""
     rng = np.random.default_rng(seed)
     q, p = unit * rng.normal(size=(n, m)), unit * speed * rng.normal(size=(n, m))
     case = Case(CuckerSmale(RationalWeight(1.0, decay, unit), mean=bool(seed % 2)), q, p, 1.0)
@@ -73,7 +69,6 @@ def test_flocks_in_steps(n, decay, step, speed, seed, unit):
 @effort(0.3)
 @given(st.integers(2, 5), st.integers(1, 2), powers(-4.0, 0.3), seeds, units, st.sampled_from((0.1, 20.0)))
 def test_paths_with_a_potential(n, m, speed, seed, unit, until):
-    """A path of agents, its links near d; cut in two, the theorem says nothing."""
     rng = np.random.default_rng(seed)
     q = np.zeros((n, m))
     q[:, 0] = unit * np.arange(n)
@@ -87,7 +82,6 @@ def test_paths_with_a_potential(n, m, speed, seed, unit, until):
 @effort(0.2)
 @given(powers(-3.0, 1.0), units)
 def test_two_agents_in_a_net_of_proximity(speed, unit):
-    """A pair that leaves d with a share of what V(R) holds: below it stays linked; far above it does not."""
     held = sqrt(1.6**-2 - 1.0 + 2.0 * np.log(1.6))
     assume(abs(speed / held - 1.0) > 0.01)
     law = ProximityFlocking(LogPotential(unit**2, unit), 1.6 * unit)

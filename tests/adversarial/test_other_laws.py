@@ -17,42 +17,26 @@ APART, STILL = np.array([[0.0, 0.0], [8.0, 0.0]]), np.zeros((2, 2))
 ON_RUNS = [name for name in theorems() if theorem(name).kind == "trajectory"]
 
 
-@dataclass(frozen=True)
-class Pushed1(Algorithm1):
-    def flow(self, t, q, p):
-        return super().flow(t, q, p)[0] + 1.0, 1.0
-
-
-@dataclass(frozen=True)
-class Pushed2(Algorithm2):
-    def flow(self, t, q, p):
-        return 2.0 * super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class Pushed3(Algorithm3):
-    def flow(self, t, q, p):
-        return 2.0 * super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class PushedDeadZone(DeadZoneFlocking):
-    def flow(self, t, q, p):
-        return -super().flow(t, q, p)[0], 1.0
-
-
-@dataclass(frozen=True)
-class PushedMinimal(MinimalFlocking):
-    def flow(self, t, q, p):
-        return -super().flow(t, q, p)[0], 1.0
+def pushed(law, **options):
+    """A law that descends from this one, with another force."""
+    flow = {"flow": lambda self, t, q, p: (law.flow(self, t, q, p)[0] + 1.0, 1.0)}
+    return type("Pushed", (law,), flow)(**options)
 
 
 PUSHED = {
-    Pushed1(): ("os-1", "energy", "collision-energy", "lattice-limit-printed", "linearised-decay-terminal"),
-    Pushed2(target=ORIGIN): ("os-3", "E11", "E12", "E13", "energy", "collision-energy", "linearised-decay-terminal"),
-    Pushed3(target=ORIGIN): ("os-6", "energy", "energy-printed", "linearised-decay-terminal"),
-    PushedDeadZone(): ("dead-zone-1-printed", "dead-zone-1-corrected"),
-    PushedMinimal(edges=((0, 1),), spacing=7.0): ("zone-1-printed", "zone-1-corrected"),
+    pushed(Algorithm1): ("os-1", "energy", "collision-energy", "lattice-limit-printed", "linearised-decay-terminal"),
+    pushed(Algorithm2, target=ORIGIN): (
+        "os-3",
+        "E11",
+        "E12",
+        "E13",
+        "energy",
+        "collision-energy",
+        "linearised-decay-terminal",
+    ),
+    pushed(Algorithm3, target=ORIGIN): ("os-6", "energy", "energy-printed", "linearised-decay-terminal"),
+    pushed(DeadZoneFlocking): ("dead-zone-1-printed", "dead-zone-1-corrected"),
+    pushed(MinimalFlocking, edges=((0, 1),), spacing=7.0): ("zone-1-printed", "zone-1-corrected"),
 }
 
 

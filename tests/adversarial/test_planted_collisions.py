@@ -70,11 +70,7 @@ def test_head_on(case):
     """H(0) = (1 ± 10⁻ᵏ) c*, far above and far below, damped and not, from within range and from far off."""
     run = case.run()
     for theorem, expected in verdicts_on(case):
-        hold(theorem, case, expected, run=run, may_refuse=_rough(case))
-
-
-def _rough(case):
-    return case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-6
+        hold(theorem, case, expected, run=run, may_refuse=case.rough)
 
 
 @effort(0.2)
@@ -87,7 +83,7 @@ def test_a_near_miss_is_no_collision(law, offset, apart, data):
     p = np.array([[0.5 * speed, 0.0], [-0.5 * speed, 0.0]])
     until = 2.0 * s0 / speed + 3.0 * truth.law_time(law)
     case = Case(law, q, p, until, data.draw(ways(until, until / 1000.0)))
-    hold("collision-energy", case, {"below": OPEN, "twice": TRUE}, may_refuse=_rough(case))
+    hold("collision-energy", case, {"below": OPEN, "twice": TRUE}, may_refuse=case.rough)
 
 
 E13_LAW = Algorithm2(
@@ -113,7 +109,7 @@ def test_one_agent_through_two_others(size, seed, data):
     printed = OPEN if share >= 3.0 else (REFUTED if clear else FALSE) if met > int(share) else TRUE
     run = case.run()
     for theorem, names in (("E13", ("printed", "corrected")), ("os-3", ("iv-printed", "iv-instant"))):
-        hold(theorem, case, dict(zip(names, (printed, TRUE), strict=True)), run=run, may_refuse=_rough(case))
+        hold(theorem, case, dict(zip(names, (printed, TRUE), strict=True)), run=run, may_refuse=case.rough)
 
 
 @pytest.mark.parametrize("n", [2, 3, 4])

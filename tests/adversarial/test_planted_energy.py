@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from flockana import Algorithm1, Algorithm3, BetaInteraction, Gains, Sphere, StaticTarget, Wall
 from tests.adversarial import truth
-from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, VERIFIED, Case, effort, hold
-from tests.adversarial.strategies import flocks, pair_laws, powers, seeds, starts, ways
+from tests.adversarial.cases import FALSE, OPEN, REFUTED, TRUE, Case, effort, hold
+from tests.adversarial.strategies import flocks, pair_laws, powers, starts, ways
 
 THEOREMS = ("energy", "energy-printed", "os-6", "os-3", "os-1", "E13")
 STILL = {"rate": TRUE, "balance": TRUE}
@@ -17,35 +17,19 @@ STILL = {"rate": TRUE, "balance": TRUE}
 @effort(1.0)
 @given(flocks())
 def test_what_holds_of_every_flock(case):
-    """Nothing proved is ever refuted, whatever the start, the parameters, the method or the step."""
     law, run = case.law, case.run()
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
-    hold("energy", case, STILL, run=run, may_refuse=rough)
-    hold("collision-energy", case, {"below": TRUE}, run=run, may_refuse=rough)
+    hold("energy", case, STILL, run=run, may_refuse=case.rough)
+    hold("collision-energy", case, {"below": TRUE}, run=run, may_refuse=case.rough)
     if isinstance(law, Algorithm1):
         damped = TRUE if law.gains.c2_alpha > 0.0 else TRUE | FALSE
-        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, run=run, may_refuse=rough)
+        hold("os-1", case, {"ii": damped, "iii": TRUE, "iii-barrier": TRUE}, run=run, may_refuse=case.rough)
         return
     single = {"i": TRUE, "ii": TRUE, "iii": TRUE}
     if min(law.gains.c1_gamma, law.gains.c2_gamma) == 0.0:
         single = dict.fromkeys(single, OPEN)
     counts = {"iv-instant": TRUE, "iv-none": TRUE, "iv-barrier": TRUE}
-    hold("os-3", case, single | counts, run=run, may_refuse=rough)
-    hold("E13", case, {"corrected": TRUE}, run=run, may_refuse=rough)
-
-
-@effort(0.15)
-@given(pair_laws(damping=(0.3, 2.0)), seeds)
-def test_a_good_run_is_verified(law, seed):
-    """`always inconclusive` is no answer: the identity of a run that resolves its law reads verified."""
-    d, time = law.alpha.d, truth.law_time(law)
-    rng = np.random.default_rng(seed)
-    q, p = (
-        d * np.array([[0.0], [0.9], [2.1]]) + 0.05 * d * rng.normal(size=(3, 1)),
-        0.3 * d / time * rng.normal(size=(3, 1)),
-    )
-    case = Case(law, q, p, 5.0 * time, {"rtol": 1e-10, "atol": 1e-13 * min(d, d / time)})
-    hold("energy", case, {"rate": VERIFIED, "balance": VERIFIED})
+    hold("os-3", case, single | counts, run=run, may_refuse=case.rough)
+    hold("E13", case, {"corrected": TRUE}, run=run, may_refuse=case.rough)
 
 
 def algorithm3(law, obstacles=(), **gains):
@@ -74,12 +58,12 @@ def test_the_printed_energy_of_two_agents(law, speed, apart, data):
     until = 0.5 * time * min(1.0, 0.2 / speed)
     case = Case(free, q, p, until, data.draw(ways(until, until / 200.0)))
     still = apart == 2.0  # out of range for this long
-    rises = not still and (inward or apart == 1.0)
+    at_balance = apart == 1.0 and np.size(case.options.get("t_eval", (0.0, until))) == 1  # where V is still for once
+    rises = not still and not at_balance and (inward or apart == 1.0)
     clear = rises and apart == 1.0 and speed > 0.1 and not case.options
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
     expected = REFUTED if clear else FALSE if rises and apart == 1.0 else TRUE if still else TRUE | FALSE
-    hold("energy-printed", case, {"printed-run": expected}, may_refuse=rough)
-    hold("energy", case, STILL, may_refuse=rough)
+    hold("energy-printed", case, {"printed-run": expected}, may_refuse=case.rough)
+    hold("energy", case, STILL, may_refuse=case.rough)
 
 
 @st.composite
@@ -102,9 +86,8 @@ def among_obstacles(draw):
 @given(among_obstacles())
 def test_theorem_6(case):
     run = case.run()
-    rough = case.options.get("method") == "RK4" or case.options.get("rtol", 0.0) > 1e-5
-    hold("os-6", case, STILL, run=run, may_refuse=rough)
-    hold("energy", case, STILL, run=run, may_refuse=rough)
+    hold("os-6", case, STILL, run=run, may_refuse=case.rough)
+    hold("energy", case, STILL, run=run, may_refuse=case.rough)
 
 
 @pytest.mark.parametrize("strong", [1.0, 1e-6, 1e3])

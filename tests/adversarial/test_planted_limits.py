@@ -94,7 +94,6 @@ def test_a_pair_that_leaves_is_caught_by_nothing(alpha, share, until, late):
 @effort(0.2)
 @given(near_balance(damping=(0.0,), pulls=(0.01,)), st.floats(0.1, 0.9), st.integers(10, 60))
 def test_samples_chosen_to_look_like_a_decay(drawn, factor, count):
-    """Undamped, kept only where the speed happens to be a factor smaller each time: an envelope of samples is none."""
     law, q, p, spring, _, _ = drawn
     omega = np.sqrt(spring)
     phases = np.pi * np.arange(1, count + 1) - np.arcsin(np.maximum(factor ** np.arange(1, count + 1), 1e-9))
@@ -126,30 +125,6 @@ def test_springs_alone(alpha, drag, n, m, data):
         hold(theorem, case, {"rate": TRUE, "balance": TRUE, "below": TRUE}, run=run, may_refuse=rough)
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
-def test_a_strained_minimum_refutes_the_summaries(unit):
-    """E3: two agents on one corner of a rhombus sit in a strict minimum, with an open basin."""
-    law = Algorithm1(AlphaInteraction(7.0 * unit, 8.4 * unit, 0.1 / unit**2, unit=unit), Gains(c2_alpha=20.0))
-    height = 0.5 * np.sqrt(3.0)
-    q = 7.0 * unit * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, height], [0.5, -height], [0.0, 0.0]])
-    q[4] += 1e-4 * unit
-    case = Case(law, q, np.zeros((5, 2)), 40.0)
-    hold("lattice-limit-printed", case, {"lattice": REFUTED})
-    hold("os-1", case, {"i": FALSE, "ii": TRUE})
-
-
-@pytest.mark.parametrize("off", [0.0, 1e-12, 1e-6])
-@pytest.mark.parametrize("until", [1e-3, 0.3])
-def test_on_top_of_each_other_is_no_limit(off, until):
-    """At rest at a maximum of the pair's potential nothing moves yet: no minimum, no lattice, and no counterexample."""
-    q = np.array([[0.0, 0.0], [off, 0.0]])
-    case = Case(Algorithm1(), q, 0.0 * q, until)
-    hold("lattice-limit-printed", case, {"lattice": OPEN})
-    hold("os-1", case, {"i": OPEN, "ii": TRUE})
-    case = Case(Algorithm2(gains=Gains(c1_gamma=1e-3), target=StaticTarget((0.0, 0.0))), q, 0.0 * q, until)
-    hold("os-3", case, {"ii": OPEN, "iii": TRUE})
-
-
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize(("pull_", "truths"), [(1e-3, VERIFIED), (0.03, VERIFIED), (2.0, REFUTED)])
 def test_a_squeezed_pair(pull_, m, truths):
@@ -166,7 +141,6 @@ def test_a_squeezed_pair(pull_, m, truths):
 @effort(0.25)
 @given(powers(-3.0, 3.0), powers(-3.0, 3.0), st.integers(2, 4), st.data())
 def test_flocking_by_definition(drift, size, n, data):
-    """Undamped springs without pair forces: K̃ and R in closed form, also where samples fall on turning points only."""
     alpha = AlphaInteraction()
     law = Algorithm2(alpha, Gains(0.0, 0.0, 0.0, 0.0, 1.0, 0.0), StaticTarget((0.0, 0.0)))
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
@@ -189,34 +163,4 @@ def test_flocking_by_definition(drift, size, n, data):
 
 
 def _above(value, high, low):
-    """Of a claim that a value stays below a threshold somewhere between low and high."""
     return FALSE if value > high else TRUE if value < low else TRUE | FALSE
-
-
-@effort(0.15)
-@given(st.integers(2, 6), st.sampled_from((1, 2, 3)), powers(-2.0, 3.0), powers(-7.0, 2.0))
-def test_a_lattice_in_steady_flight_flocks_and_parts_do_not(n, m, speed, until):
-    """A chain of links d under one velocity: C = C* = 1, Ẽ = K̃ = 0 for ever. Two that part: R grows as they fly."""
-    law = Algorithm1()
-    d = law.alpha.d
-    q = np.outer(np.arange(n) * d, np.eye(m)[0])
-    p = np.tile(np.full(m, speed), (n, 1))
-    steady = Case(law, q, p, until, {"t_eval": np.linspace(0.0, until, 50)})
-    names = ("giant", "cohesive", "deviation", "mismatch", "flock")
-    hold("alpha-flocking-strict", steady, {"flock": VERIFIED, "deviation": VERIFIED, "mismatch": VERIFIED})
-    hold("alpha-flocking", steady, dict.fromkeys(names[:4], VERIFIED))
-    hold("alpha-flocking", Case(law, q, p, until, {"t_eval": [until]}), dict.fromkeys(names[:4], OPEN))
-    hold("os-1", steady, {"i": TRUE, "ii": TRUE, "iii": TRUE})
-    gap = 1.5 * law.alpha.r
-    far, apart = np.outer([-0.5, 0.5], gap * np.eye(m)[0]), np.outer([-0.5, 0.5], speed * np.eye(m)[0])
-    parting = Case(law, far, apart, until, {"t_eval": np.linspace(0.0, until, 50)})
-    growth = (gap + speed * until) / (gap + 0.5 * speed * until)
-    expected = {
-        "giant": FALSE,
-        "cohesive": _above(growth, 1.51, 1.49),
-        "mismatch": FALSE if speed > 100.0 else TRUE | FALSE,
-    }
-    hold("alpha-flocking", parting, expected)
-    hold("alpha-flocking-strict", parting, {"flock": REFUTED})
-    hold("os-1", parting, dict.fromkeys(("i", "ii", "iii"), OPEN))
-    hold("lattice-limit-printed", parting, {"lattice": FALSE})

@@ -69,7 +69,6 @@ def test_which_margins_of_runs_are_near(was, now, expected):
 
 @pytest.fixture(scope="module")
 def judged():
-    """The verdicts on a short run."""
     entry = scenario("head-on")
     return entry.verify(entry.run())
 

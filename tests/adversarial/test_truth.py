@@ -5,21 +5,16 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, StaticTarget
 from tests.adversarial import truth
+from tests.reference.values import ALPHA
 
-# d, r, ε, h, a, b, ψ_α(0), ψ_α(r_α): 40-digit quadrature
-TABLE = [
-    (7.0, 8.4, 0.1, 0.2, 5.0, 5.0, 52.383811786644864, 0.73590113426239231),
-    (1.9, 2.8, 0.1, 0.4, 7.0, 9.0, 8.2894763964404246, 1.9197227378044615),
-    (15.0, 18.0, 0.1, 0.1, 3.0, 3.0, 77.314354838042652, 0.80748441845582953),
-]
 FREE = Algorithm2(AlphaInteraction(), Gains(0.0, 0.0, 0.0, 0.0, 2.0, 0.0), StaticTarget((0.0, 0.0)))
 
 
-@pytest.mark.parametrize("row", TABLE)
-def test_potentials(row):
-    alpha = AlphaInteraction(*row[:6])
-    assert float(truth.psi_alpha(0.0, alpha)) == pytest.approx(row[6], rel=1e-14)
-    assert float(truth.far(alpha)) == pytest.approx(row[7], rel=1e-14)
+@pytest.mark.parametrize(("par", "values"), ALPHA.items())
+def test_potentials(par, values):
+    alpha = AlphaInteraction(*par)
+    assert float(truth.psi_alpha(0.0, alpha)) == pytest.approx(values[3], rel=1e-14)
+    assert float(truth.far(alpha)) == pytest.approx(values[4], rel=1e-14)
 
 
 def test_the_force_is_the_slope_of_the_potential():
@@ -30,7 +25,6 @@ def test_the_force_is_the_slope_of_the_potential():
 
 
 def test_the_reduced_problem_is_the_whole_one():
-    """Two agents head on: meeting time of the reduced problem, and the order of the full one, damped and not."""
     law = Algorithm1(gains=Gains(c1_alpha=1.0, c2_alpha=0.05))
     s0 = 7.0
     for share, meet in ((1.5, True), (1.01, False)):

@@ -1,20 +1,11 @@
 """The same physics written down otherwise: other units, another place, another frame, other numbers for the agents."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 
 from flockana import Capsule, LedDeadZoneFlocking, MinimalFlocking, Polygon, Sphere, Wall, rescale
-from flockana.environment.targets import (
-    CallableTarget,
-    CircleTarget,
-    LinearTarget,
-    RescaledVelocity,
-    SineTarget,
-    StaticTarget,
-)
+from flockana.environment import targets
 from tests.adversarial.cases import Case
 
 UNITS = {
@@ -53,9 +44,9 @@ def boosted(case, velocity):
     if law.obstacles:
         raise UnchangedError("obstacles stand still")
     if law.target is not None:
-        if not isinstance(law.target, LinearTarget):
+        if not isinstance(law.target, targets.LinearTarget):
             raise UnchangedError("no straight line")
-        law = replace(law, target=LinearTarget(np.array(law.target.q), np.array(law.target.p) + velocity))
+        law = replace(law, target=targets.LinearTarget(np.array(law.target.q), np.array(law.target.p) + velocity))
     return replace(case, law=law, q0=np.asarray(case.q0) + back, p0=np.asarray(case.p0) + velocity)
 
 
@@ -80,7 +71,7 @@ def renumbered(case, order):
 def delayed_start(case, by):
     """The clock started earlier: only where nothing in the law tells the time."""
     target = getattr(case.law, "target", None)
-    if not isinstance(target, StaticTarget | None) or _led(case.law):
+    if not isinstance(target, targets.StaticTarget | None) or _led(case.law):
         raise UnchangedError("the γ-agent tells the time")
     options = dict(case.options)
     if options.get("t_eval") is not None:
@@ -105,15 +96,15 @@ def _world(law, turn, shift):
 
 
 def _target(target, turn, shift):
-    if isinstance(target, RescaledVelocity):
-        return RescaledVelocity(_target(target.target, turn, shift), target.factor)
-    if isinstance(target, CallableTarget):
-        return CallableTarget(
+    if isinstance(target, targets.RescaledVelocity):
+        return targets.RescaledVelocity(_target(target.target, turn, shift), target.factor)
+    if isinstance(target, targets.CallableTarget):
+        return targets.CallableTarget(
             lambda t: (np.asarray(target.state(t)[0]) @ turn + shift, np.asarray(target.state(t)[1]) @ turn)
         )
-    if isinstance(target, StaticTarget | LinearTarget):
+    if isinstance(target, targets.StaticTarget | targets.LinearTarget):
         return type(target)(np.array(target.q) @ turn + shift, np.array(target.p) @ turn)
-    name = {SineTarget: "start", CircleTarget: "centre"}[type(target)]
+    name = {targets.SineTarget: "start", targets.CircleTarget: "centre"}[type(target)]
     if not np.array_equal(turn, np.eye(len(turn))):
         raise UnchangedError("its axis is one of the coordinates")
     return replace(target, **{name: np.array(getattr(target, name)) + shift})

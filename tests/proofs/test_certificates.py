@@ -14,6 +14,7 @@ from flockana.theorems.theorem import Theorem
 from proofs.proof import load, names
 
 IDS = set(names())
+MODULES = {module.__name__ for module in modules("flockana.theorems")}
 TABLES = ("THEOREM", "RIGOUR", "CITES")  # of all proofs, or followed by themselves
 
 
@@ -57,6 +58,8 @@ def cited(module, name, seen):
             found |= strings(one) or {"energy-identities"}  # which it names by default
         elif isinstance(one, ast.Return) and one.value is not None and name == "_enclosed":
             found |= strings(one.value)
+        elif isinstance(one, ast.Attribute) and (source := ".".join(imported.get(getattr(one.value, "id", ""), ""))):
+            found |= cited(source, one.attr, seen) if source in MODULES and one.attr != "THEOREM" else set()
         elif isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load) and one.id != name:
             found |= cited(module, one.id, seen)
     return found

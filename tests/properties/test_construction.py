@@ -17,7 +17,6 @@ ALLOWED = {
 
 
 def calls(tree):
-    """Names of the functions that a module calls."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             function = node.func

@@ -135,7 +135,6 @@ def test_a_symmetry_that_a_law_lacks_is_seen_to_fail(law, symmetry):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_a_state_that_cannot_be_written_gives_the_same_and_stays_what_it_was(name):
-    """Compiled code writes where it likes: that it leaves what it is handed alone is shown here."""
     q, p, *_ = state(3)
     free, frozen = (q.copy(), p.copy()), (q.copy(), p.copy())
     for x in frozen:

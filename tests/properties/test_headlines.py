@@ -1,7 +1,5 @@
 """Statuses of verdicts.json against their claims, and whose those are."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """What lectures and model answers say in words, by numbers: statements that were false once."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

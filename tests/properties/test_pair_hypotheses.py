@@ -48,7 +48,6 @@ def verdict_of(name, law):
 
 
 def test_these_are_the_theorems_that_admit_a_formula():
-    """A theorem that comes to admit pair laws by formulas has to name here what it asks of them."""
     good = simulate(law_of(), START, 0.0 * START, (0.0, 0.05))
     of_runs = [theorem(name) for name in theorems() if theorem(name).kind == "trajectory"]
     admitting = {one.id for one in of_runs if one.law is not None and one.law(good).status != "unmet"}

@@ -10,7 +10,6 @@ MOST = 10.0  # times rtol, of the largest energy of the run
 
 
 def conserving(name):
-    """Whether a scenario's law is continuous and has an energy."""
     item = scenario(name)
     return not isinstance(item.law, DiscreteLaw) and np.isfinite(item.law.hamiltonian(0.0, item.q0, item.p0))
 

@@ -29,7 +29,6 @@ def pair(s2):
 
 
 def field(state):
-    """Right-hand side of (q, p) as one list."""
     c1, c2, pull, drag = (mp.mpf(getattr(LAW.gains, f"{c}_{of}")) for of in ("alpha", "gamma") for c in ("c1", "c2"))
     q, p = (np.array(half, dtype=object).reshape(3, 2) for half in (state[:6], state[6:]))
     u = -pull * q - drag * p
@@ -60,7 +59,6 @@ def extrapolated(state, step):
 
 @cache
 def solution(steps):
-    """(q, p) at the end."""
     with mp.workdps(40):
         state = np.array([mp.mpf(x) for x in (*np.ravel(Q0), *np.ravel(P0))], dtype=object)
         for _ in range(steps):
@@ -68,6 +66,7 @@ def solution(steps):
         return state
 
 
+@pytest.mark.slow
 def test_the_reference_is_known_to_twenty_five_digits():
     with mp.workdps(40):
         assert max(abs(a - b) for a, b in zip(solution(8), solution(12), strict=True)) < mp.mpf("1e-25")

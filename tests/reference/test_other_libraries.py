@@ -1,15 +1,13 @@
-"""Nets by scipy's tree, networkx and shapely; ψ_α within arb's enclosures; A by finite differences of the flow."""
+"""Nets by scipy's tree, networkx and shapely; A by finite differences of the flow."""
 
 import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from flint import arb, ctx
 from scipy.spatial import cKDTree
 
 import flockana as fl
-from flockana import AlphaInteraction, lattice
-from tests.reference.values import ALPHA
+from flockana import lattice
 
 FLOCKS = [(1, 2, 10.0), (40, 1, 60.0), (60, 2, 25.0), (200, 2, 60.0), (80, 3, 20.0)]
 
@@ -45,7 +43,6 @@ def test_links_are_those_of_a_tree_and_components_those_of_networkx(n, m, size):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_crossings_are_those_of_shapely(seed):
-    """In general position: two links cross if they share an inner point, and none of their ends lies on the other."""
     q = flock(30, 2, 14.0, seed)
     pairs = fl.links(q, 8.4)
     lines = shapely.linestrings(q[pairs])
@@ -53,45 +50,6 @@ def test_crossings_are_those_of_shapely(seed):
     expected = sorted({(min(a, b), max(a, b)) for a, b in zip(first.tolist(), second.tolist(), strict=True)})
     assert len(expected) > 10
     assert sorted(tuple(sorted(pair)) for pair in lattice.crossings(q, pairs).tolist()) == expected
-
-
-@pytest.mark.parametrize("par", list(ALPHA))
-def test_psi_alpha_lies_in_arbs_enclosures(par):
-    """∫ φ_α by arb's own quadrature, which bounds its error, with the rounding that is promised: 1e-13 c*."""
-    pair, before = AlphaInteraction(*par), ctx.prec
-    ctx.prec = 120
-    try:
-        d, r, eps, h, a, b = map(arb, par)
-        sigma = lambda x: ((1 + eps * x * x).sqrt() - 1) / eps  # noqa: E731
-        d_alpha, r_alpha, c = sigma(d), sigma(r), abs(a - b) / (4 * a * b).sqrt()
-
-        def phi(z, analytic):
-            s = z - d_alpha + c
-            return ((a + b) * s / (1 + s * s).sqrt(analytic=analytic) + a - b) / 2
-
-        def tapered(z, analytic):
-            return (1 + ((z / r_alpha - h) / (1 - h)).cos_pi()) / 2 * phi(z, analytic)
-
-        knee = h * r_alpha
-        for share in (0.0, 0.05, 0.3, 0.6, 0.77, 0.9, 0.999, 1.0):
-            z = share * r_alpha
-            low, high = (z, d_alpha) if z < d_alpha else (d_alpha, z)
-            exact = arb(0)
-            for function, start, end in (
-                (phi, low.min(knee), high.min(knee)),
-                (tapered, low.max(knee), high.max(knee)),
-            ):
-                exact += integral(function, start, end)
-            exact = -exact if z < d_alpha else exact
-            assert abs(arb(float(pair.psi_alpha(float(z)))) - exact) < 1e-13 * arb(pair.c_star)
-    finally:
-        ctx.prec = before
-
-
-def integral(function, start, end):
-    from flint import acb
-
-    return acb.integral(function, acb(start), acb(end)).real
 
 
 Q = lattice.hexagonal_spiral(5, 7.0) + np.random.default_rng(1).uniform(-0.5, 0.5, (5, 2))

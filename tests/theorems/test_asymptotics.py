@@ -36,7 +36,6 @@ def test_velocities_match_by_a_basin_and_never_by_a_decay_alone():
 
 
 def test_where_a_net_can_flex_no_basin_is_known_and_a_lattice_is_open():
-    """A chain of three in the plane bends freely: at rest with links of d it is a lattice, and no strict minimum."""
     chain = np.array([[-5.0, 5.0], [0.0, 0.0], [5.0, 5.0]]) * 7.0 / np.sqrt(50.0)
     law = Algorithm1(gains=Gains(c2_alpha=2.0))
     seen = Observed.of(simulate(law, 1.03 * chain, [[0.0, 0.1], [0.0, -0.2], [0.0, 0.1]], (0.0, 400.0)))

@@ -5,10 +5,8 @@ import pytest
 import sympy as sp
 
 from flockana.base.errors import ArgumentError
-from flockana.theorems import Claim, Hypothesis, Tolerances
 from flockana.theorems.claims import by_count, counted, equal, erratum, exact, judged, undecided, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, limit_claim
+from flockana.theorems.toolkit import Certificate, Claim, Enclosure, Hypothesis, Tolerances, limit_claim
 
 MET, ASSUMED, UNMET = (Hypothesis(status, status) for status in ("met", "assumed", "unmet"))
 HOLDS, OPEN, FAILS = Enclosure.around(1.0, 0.1), Enclosure.around(0.0, 0.1), Enclosure.around(-1.0, 0.1)
@@ -89,7 +87,6 @@ def test_a_claim_refuses_a_status_that_its_hypotheses_do_not_allow(status, about
 
 
 def test_the_error_is_how_far_the_margin_may_be_off_towards_0():
-    """An end on the far side, such as none at all between samples, says nothing of the decision."""
     claims = [judged("i", Enclosure(*ends)) for ends in ((-np.inf, -3.0, -1.0), (0.5, 3.0, np.inf), (-1.0, 3.0, 4.0))]
     assert [(c.status, c.margin, c.error) for c in claims] == [
         ("refuted", -3.0, 2.0),

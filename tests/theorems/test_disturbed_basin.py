@@ -1,7 +1,5 @@
 """The input-to-state theorem: verified in a light wind, vacuous in a strong one, of noise and of other laws."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -21,6 +19,7 @@ def test_a_light_wind_is_borne():
     assert all(claim.margin > 0.0 for claim in found.claims)
 
 
+@pytest.mark.slow
 def test_it_is_the_same_in_other_units_and_its_numbers_are_the_units_own():
     run = simulate(Disturbed(Algorithm1(), swing=[[0.1], [-0.1]], frequency=0.7), PAIR, 0.0 * PAIR, (0.0, 10.0))
     here, there = (verify("disturbed-basin", rescale(run, length=length)) for length in (1.0, 1000.0))

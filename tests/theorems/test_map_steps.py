@@ -39,7 +39,6 @@ def test_an_edit_of_any_number_of_any_sample_is_refused(theorem, run, name, k):
 
 
 def test_a_map_that_is_another_function_each_time_is_told():
-    """An edit that was sealed again stands for it here."""
     for run, k in ((_HEADINGS, 1), (_DEAD_ZONE, 1), (_HEADINGS, -1)):
         q = run.q.copy()
         q[k] += 1e-5
@@ -54,7 +53,6 @@ def test_one_that_was_saved_is_as_good(tmp_path):
 
 
 def test_rounding_that_grows_between_samples_accuses_nobody():
-    """As other machine code makes it, which rounds otherwise in each step, where the map forgets nothing."""
     law, q, p = SemiImplicitEuler(fl.Algorithm1(), dt=0.05), np.array([[0.0], [5.0], [9.0]]), np.zeros((3, 1))
     t, states = np.arange(0.0, 3.0, 0.5), [(q, p, np.zeros((3, 1)))]
     for k in range(50):

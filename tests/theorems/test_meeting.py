@@ -46,7 +46,6 @@ def test_a_pair_that_falls_together_has_no_least():
 
 
 def test_the_least_is_a_bound_where_it_is_proved():
-    """Of the paper's law and of formulas; a pair law that says nothing is looked at, and its least assumed."""
     alpha, other = AlphaInteraction(), pair_law("k*(s-r)**2", adjacency=0, range=3.0, length=2.0, parameters={"k": 1.0})
     assert meeting(run_of(alpha)) == (2.5 * alpha.c_star, 0.0)
     assert least_is_known(run_of(alpha)) == least_is_known(run_of(other)) == []

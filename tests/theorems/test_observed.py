@@ -59,15 +59,7 @@ def test_the_start_is_exact_and_what_comes_after_is_as_wide_as_the_runs_differ()
     assert Observed.of(seen.given) is seen
 
 
-def test_of_the_finest_run_the_second_one_is_looser_and_the_run_itself_the_best():
-    run = fl.simulate(SPRING, *START, rtol=1e-13)
-    seen = Observed.of(run)
-    assert seen.run is run
-    assert seen.other.stats["rtol"] == pytest.approx(1e-11)
-
-
 def test_a_difference_of_0_proves_nothing_below_the_solvers_floors():
-    """Two agents out of each other's range fly straight on: both runs agree to the bit."""
     seen = observed(fl.Algorithm1(), [[0.0], [99.0]], [[-1.0], [1.0]], (0.0, 1.0))
     assert np.array_equal(seen.run.q, seen.other.q)
     assert seen.shape_error[-1].min() >= seen.other.floors.place > 0.0
@@ -79,12 +71,6 @@ def test_widths_follow_the_motion_and_forget_what_was_longer_ago_than_a_law_time
     widths = seen.shape_error.max(axis=1)
     assert widths.max() > 1e-4
     assert widths[-1] < 1e-5
-
-
-def test_the_output_times_change_no_enclosure_by_much():
-    dense, sparse = (observed(SPRING, *START, rtol=1e-5, t_eval=t) for t in (np.linspace(0.0, 6.0, 61), [0.0, 6.0]))
-    ratio = dense.shape_error[-1].max() / sparse.shape_error[-1].max()  # samples between steps are interpolated
-    assert 0.5 < ratio < 10.0
 
 
 @pytest.mark.parametrize(("length", "time"), [(1e-6, 1.0), (25.4, 60.0), (2.0**30, 2.0**-12)])
@@ -173,7 +159,6 @@ def test_a_window_keeps_what_is_known_and_begins_inexactly():
 
 
 def test_what_is_computed_once_is_kept_with_what_is_known_of_the_errors():
-    """At the finest tolerances the run itself is the tighter of the two, seen with its error or as if exact."""
     run = fl.simulate(fl.Algorithm1(), [[0.0], [7.5]], [[0.0], [0.0]], (0.0, 20.0), rtol=1e-13)
     exact = final_basin(Observed.alone(run))
     known = Observed.of(run)

@@ -6,6 +6,7 @@ import pytest
 
 from flockana import Algorithm1, Algorithm2, Algorithm3, AlphaInteraction, Gains, Sphere, StaticTarget
 from flockana.theorems.rounding import deepest_of, energy_error, frame_error, pair_force_error, spread_error
+from tests.adversarial import truth
 
 PAIRS = [
     AlphaInteraction(d=7.0, r=8.4),
@@ -47,35 +48,15 @@ def test_the_force_of_a_pair_is_as_exact_as_is_said_and_not_much_better(pair):
 
 @pytest.mark.parametrize("pair", PAIRS)
 def test_the_energy_of_a_flock_is_as_exact_as_is_said(pair):
-    """Far from the origin too: against the same flock with its places and potential in fifty digits."""
     rng, law = np.random.default_rng(0), Algorithm1(pair)
     for far in (0.0, 1e4):
         q = pair.d * (far + rng.uniform(0.0, 2.0, (5, 2)))
         p = law.scales.speed * rng.normal(size=(5, 2))
         energy = law.structural_energy(q, p)
-        with mpmath.workdps(50):
-            v = [[mpmath.mpf(x) for x in row] for row in p.tolist()]
-            mean = [sum(column) / 5 for column in zip(*v, strict=True)]
-            exact = sum((x - c) ** 2 for row in v for x, c in zip(row, mean, strict=True)) / 2
-            for i in range(5):
-                for j in range(i):
-                    gap = [mpmath.mpf(a) - mpmath.mpf(b) for a, b in zip(q[i].tolist(), q[j].tolist(), strict=True)]
-                    exact += law.gains.c1_alpha * potential(pair, mpmath.sqrt(sum(x * x for x in gap)))
+        exact = truth.structural_energy(law, q, p)
         bound = energy_error(law, q[None], p[None], np.array([energy]))[0]
         assert abs(float(energy - exact)) <= bound
         assert bound <= 1e-6 * abs(energy)
-
-
-def potential(pair, x):
-    """ψ_α(‖x‖_σ): the work from distance d to x."""
-    with mpmath.workdps(30):
-        ends = sorted({mpmath.mpf(pair.d), min(x, mpmath.mpf(pair.r))})
-        if len(ends) < 2:
-            return mpmath.mpf(0)
-        knee = mpmath.sqrt((1 + pair.eps * pair.h * mpmath.mpf(pair.r_alpha)) ** 2 - 1) / mpmath.sqrt(pair.eps)
-        knots = sorted({*ends, *(one for one in (knee,) if ends[0] < one < ends[1])})
-        sign = 1 if x > pair.d else -1
-        return sign * mpmath.quad(lambda s: exact_force(pair, s), knots)
 
 
 def test_the_frame_and_the_spread():
@@ -109,7 +90,6 @@ def test_what_an_energy_of_zero_at_rest_is_off_by_is_that_of_its_pairs(n, pairs)
 
 
 def test_a_pull_and_an_obstacle_add_theirs():
-    """The pull by the square of the farthest place from the γ-agent; an obstacle by its largest energy and force."""
     eps, q = np.finfo(float).eps, np.array([[[0.0, 0.0], [-50.0, 0.0]]])
     pull = Gains(c1_alpha=0.0, c1_gamma=3.0)
     law = Algorithm2(gains=pull, target=StaticTarget((0.0, 20.0)))

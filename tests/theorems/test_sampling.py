@@ -8,24 +8,14 @@ import pytest
 import flockana as fl
 from flockana.lattice import hexagonal_patch
 from flockana.laws.msn import MSNDiscretisation
+from flockana.theorems import sampling
 from flockana.theorems.observed import Observed
-from flockana.theorems.sampling import (
-    fastest_between,
-    least_distance,
-    mismatch_over,
-    nets_at,
-    nets_between,
-    radius_over,
-    spread_over,
-    stretch_between,
-)
 
 COARSE = np.linspace(0.0, 3.0, 7)
 
 
 @pytest.fixture(scope="module")
 def runs():
-    """(a few samples of a flock that swings, many of the same)."""
     law = fl.Algorithm2(gains=fl.Gains(c2_alpha=0.1, c2_gamma=0.0), target=fl.StaticTarget((0.0, 0.0)))
     q = 1.1 * hexagonal_patch(1, 7.0)
     p = np.random.default_rng(0).normal(0.0, 2.0, q.shape)
@@ -34,13 +24,15 @@ def runs():
 
 
 def largest(series):
-    """In each interval between the coarse samples."""
     return np.array([series[500 * k : 500 * (k + 1) + 1].max() for k in range(6)])
 
 
 def test_the_mismatch_is_bounded_and_not_by_much(runs):
     coarse, fine = runs
-    true, bound = largest(fine.metric("normalised_velocity_mismatch")), mismatch_over(Observed.alone(coarse)).hi
+    true, bound = (
+        largest(fine.metric("normalised_velocity_mismatch")),
+        sampling.mismatch_over(Observed.alone(coarse)).hi,
+    )
     assert np.all(bound >= true * (1.0 - 1e-9))
     assert np.all(bound <= 1.05 * true)
     at_ends = coarse.metric("normalised_velocity_mismatch")
@@ -51,7 +43,7 @@ def test_no_distance_strays_further_than_its_bound(runs):
     coarse, fine = runs
     i, j = np.triu_indices(coarse.n, 1)
     lengths = np.linalg.norm(fine.q[:, i] - fine.q[:, j], axis=2)
-    for k, bound in enumerate(stretch_between(Observed.alone(coarse))):
+    for k, bound in enumerate(sampling.stretch_between(Observed.alone(coarse))):
         part = lengths[500 * k : 500 * (k + 1) + 1]
         low, high = np.minimum(part[0], part[-1]), np.maximum(part[0], part[-1])
         assert max((low - part).max(), (part - high).max()) <= bound
@@ -62,9 +54,9 @@ def test_where_steps_were_not_kept_speeds_are_unknown(runs):
     slack = np.zeros((len(coarse.path.t) - 1, coarse.n))
     slack[0, 3] = 1e-12
     thin = replace(coarse, between=replace(coarse.between, slack=slack))
-    bound = mismatch_over(Observed.alone(thin)).hi
+    bound = sampling.mismatch_over(Observed.alone(thin)).hi
     assert bound[0] == np.inf
-    np.testing.assert_array_equal(bound[1:], mismatch_over(Observed.alone(coarse)).hi[1:])
+    np.testing.assert_array_equal(bound[1:], sampling.mismatch_over(Observed.alone(coarse)).hi[1:])
 
 
 def straight(q, p, until, samples=2):
@@ -82,13 +74,13 @@ def straight(q, p, until, samples=2):
 )
 def test_straight_ways_may_stray_by_what_their_speeds_allow(apart, speed, until, expected):
     run = straight([[0.0, 0.0], [apart, 0.0]], [[-speed, 0.0], [speed, 0.0]], until)
-    assert stretch_between(run) == pytest.approx([expected], rel=1e-8)
-    assert fastest_between(run) == pytest.approx([speed], rel=1e-9)
-    assert mismatch_over(run).hi == pytest.approx([0.5 * speed**2], rel=1e-9)
+    assert sampling.stretch_between(run) == pytest.approx([expected], rel=1e-8)
+    assert sampling.fastest_between(run) == pytest.approx([speed], rel=1e-9)
+    assert sampling.mismatch_over(run).hi == pytest.approx([0.5 * speed**2], rel=1e-9)
     ends = 0.5 * apart + speed * until
-    assert radius_over(run).hi == pytest.approx([ends], rel=1e-9)
-    assert spread_over(run).hi == pytest.approx(np.sqrt(2.0) * ends, rel=1e-9)
-    assert least_distance(run, [0], [1]).lo == pytest.approx(apart, rel=1e-9)
+    assert sampling.radius_over(run).hi == pytest.approx([ends], rel=1e-9)
+    assert sampling.spread_over(run).hi == pytest.approx(np.sqrt(2.0) * ends, rel=1e-9)
+    assert sampling.least_distance(run, [0], [1]).lo == pytest.approx(apart, rel=1e-9)
 
 
 @pytest.mark.parametrize(("share", "open_links"), [(0.9, 1), (1.1, 0)])
@@ -99,12 +91,12 @@ def test_a_pair_is_open_as_far_from_the_range_as_it_might_come_between_samples(s
     gap = share * until**2 / 8.0 * 2.0 * w**2 / r
     q = [[0.0, 0.0], [r + gap, 0.0], [50.0, 0.0], [50.0, 7.0]]
     run = straight(q, [[0.0, 0.0], [0.0, w], [0.0, 3.0], [0.0, 3.0]], until)
-    net = nets_between(run)
+    net = sampling.nets_between(run)
     assert net.open_links.tolist() == [open_links]
     assert net.links.tolist() == [1]
     assert (net.components.tolist(), net.components_least.tolist()) == ([3], [3 - open_links])
     assert (net.giant.tolist(), net.giant_most.tolist()) == ([2], [2])
-    assert nets_at(run).open_links.tolist() == [0, 0]
+    assert sampling.nets_at(run).open_links.tolist() == [0, 0]
 
 
 def test_a_link_that_parts_is_open_while_it_does():
@@ -113,30 +105,29 @@ def test_a_link_that_parts_is_open_while_it_does():
     linked = apart < 8.4
     assert linked[0]
     assert not linked[-1]
-    net = nets_between(run)
+    net = sampling.nets_between(run)
     assert net.open_links.tolist() == (linked[:-1] & ~linked[1:]).astype(float).tolist()
-    assert nets_at(run).links.tolist() == linked.astype(float).tolist()
-    assert nets_at(run).components.tolist() == (2.0 - linked).tolist()
+    assert sampling.nets_at(run).links.tolist() == linked.astype(float).tolist()
+    assert sampling.nets_at(run).components.tolist() == (2.0 - linked).tolist()
 
 
 def test_a_map_moves_at_its_samples_only():
     run = Observed.of(
         fl.simulate(MSNDiscretisation(fl.Algorithm1(), dt=0.5), [[0.0], [99.0]], [[1.0], [-1.0]], (0.0, 1.0))
     )
-    assert stretch_between(run).tolist() == [0.0, 0.0]
-    assert mismatch_over(run).hi == pytest.approx([0.5, 0.5])
-    assert radius_over(run).hi == pytest.approx([49.5, 49.0])
-    assert nets_between(run).components.tolist() == [2.0, 2.0]
+    assert sampling.stretch_between(run).tolist() == [0.0, 0.0]
+    assert sampling.mismatch_over(run).hi == pytest.approx([0.5, 0.5])
+    assert sampling.radius_over(run).hi == pytest.approx([49.5, 49.0])
+    assert sampling.nets_between(run).components.tolist() == [2.0, 2.0]
 
 
 def test_what_the_run_is_off_by_is_added_to_every_bound(runs):
-    """Two runs that differ by a shift of one agent: bounds grow by the error that stands for it."""
     coarse, _ = runs
     exact, loose = (
         Observed.alone(coarse),
         Observed.of(fl.simulate(coarse.law, coarse.q[0], coarse.p[0], (0.0, 3.0), t_eval=COARSE, rtol=1e-3)),
     )
     assert (loose.between_error > 1e-6).all()
-    assert (radius_over(loose).hi - radius_over(exact).hi > 0.5 * loose.between_error).all()
-    assert (stretch_between(loose) > stretch_between(exact)).all()
-    assert np.all(radius_over(loose).lo <= radius_over(exact).mid)
+    assert (sampling.radius_over(loose).hi - sampling.radius_over(exact).hi > 0.5 * loose.between_error).all()
+    assert (sampling.stretch_between(loose) > sampling.stretch_between(exact)).all()
+    assert np.all(sampling.radius_over(loose).lo <= sampling.radius_over(exact).mid)

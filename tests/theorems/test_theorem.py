@@ -1,14 +1,11 @@
 """How a verdict follows from its claims, and how theorems are found and called."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np
 import pytest
 
-from flockana.base.errors import ArgumentError, UnknownNameError
-from flockana.laws.olfati_saber import Algorithm1
+from flockana.base.errors import ArgumentError
 from flockana.scenarios.scenario import differences
 from flockana.theorems import Claim, Hypothesis, Theorem, Tolerances, Verdict, theorem, theorems, verify
 from flockana.theorems.olfati_saber.os_5 import CLAIMS
@@ -74,14 +71,6 @@ def test_corrections_and_extensions_are_told_apart():
     assert Verdict("x", (), claims).summary == expected
 
 
-def test_a_theorem_that_calls_itself_ours_is_not_its_sources():
-    for name in theorems():
-        item = theorem(name)
-        source = item.source.lower()
-        assert item.author != "source" or not source.startswith("ours"), name
-        assert item.author == "source" or "ours" in source or "corrected" in source, name
-
-
 def test_the_account_of_a_vacuous_claim_begins_with_the_need_that_does_not_hold():
     needs = (MET, UNMET)
     assert Claim("i", "vacuous", needs=needs, detail="3 links").explanation == f"{NOT}; 3 links"
@@ -109,14 +98,6 @@ def test_a_theorem_says_whose_each_claim_is():
     }
 
 
-def test_what_a_theorem_names_as_corrected_or_its_own_are_claims_of_it():
-    for name in theorems():
-        item = theorem(name)
-        known = {*item.claims, *(key.partition(":")[2] for key in item.expected)}
-        known |= set(CLAIMS) if name == "os-5" else set()
-        assert {*item.corrected, *item.ours} <= known, name
-
-
 def test_the_rigour_of_a_verdict_is_the_weakest_among_the_claims_that_decide_it():
     claims = (Claim("a", "refuted", "symbolic"), Claim("b", "refuted", "interval"), Claim("c", "verified", "numeric"))
     assert Verdict("x", (), claims).rigour == "interval"
@@ -138,43 +119,14 @@ def test_every_theorem_has_what_its_users_read():
         item = theorem(name)
         assert item.id == name
         assert len(item.statement) > 40
-        assert item.source
         assert item.references
         assert (item.kind == "fixed") == bool(item.expected), "fixed theorems carry their own expectation"
-
-
-def test_errata_are_listed_after_theorems_and_in_order():
-    names = theorems()
-    errata = [name for name in names if name[0] in "EJL"]
-    assert list(names[-len(errata) :]) == errata
-    numbers = [int(name[1:]) for name in errata if name[0] == "E"]
-    assert numbers == sorted(numbers)
-
-
-def test_unknown_theorem():
-    with pytest.raises(UnknownNameError, match=r"unknown theorem 'os1'; did you mean 'os-1'\?"):
-        verify("os1")
-
-
-@pytest.mark.parametrize(
-    ("name", "arguments", "message"),
-    [
-        ("os-1", {}, r"os-1 is checked on trajectory or law, p0, q0, t_span: got nothing"),
-        ("E8", {"q": [[0.0]]}, r"E8 is checked on nothing: got q"),
-        ("os-1", {"law": Algorithm1(), "p0": [[0.0]]}, r"got law, p0"),
-        ("os-1", {"trajectory": 3}, r"trajectory = 3: expected a Trajectory"),
-    ],
-)
-def test_wrong_arguments_are_named(name, arguments, message):
-    with pytest.raises(ArgumentError, match=message):
-        verify(name, **arguments)
-
-
-def test_a_law_can_be_given_instead_of_a_run():
-    still = [[0.0, 0.0], [0.0, 0.0]]
-    verdict = verify("energy", law=Algorithm1(), q0=[[0.0, 0.0], [8.0, 0.0]], p0=still, t_span=(0.0, 1.0))
-    assert verdict.status == "verified"
-    assert verdict.claim("balance").computed < 1e-8
+        assert (item.kind == "trajectory") == bool(item.claims), name
+        source = item.source.lower()
+        assert item.author == "source" or "ours" in source or "corrected" in source, name
+        assert item.author != "source" or (source and not source.startswith("ours")), name
+        known = {*item.claims, *(key.partition(":")[2] for key in item.expected)}
+        assert {*item.corrected, *item.ours} <= known | (set(CLAIMS) if name == "os-5" else set()), name
 
 
 def test_claims_are_found_by_name():
@@ -230,11 +182,6 @@ def test_the_law_is_asked_before_the_check_and_comes_first():
     assert [claim.status for claim in claims] == ["vacuous"] * 3
 
 
-def test_every_theorem_about_runs_declares_its_claims():
-    for item in map(theorem, theorems()):
-        assert bool(item.claims) == (item.kind == "trajectory"), item.id
-
-
 def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():
     claim = Claim("one", "verified", computed=1)
     mine = Theorem("mine", "Mine", "One is one.", "nowhere", "fixed", lambda tolerances: ((), (claim,)))
@@ -242,13 +189,6 @@ def test_a_theorem_of_ones_own_is_checked_without_a_place_in_the_catalogue():
     assert (verdict.theorem, verdict.status, verdict.claims) == ("mine", "verified", (claim,))
     with pytest.raises(ArgumentError, match=r"mine is checked on nothing: got d"):
         verify(mine, d=1.0)
-
-
-def test_no_claim_has_an_error_below_0():
-    """With which every margin, however small, would decide."""
-    assert Claim("i", "verified", margin=1.0, error=0.0).error == 0.0
-    with pytest.raises(ArgumentError, match="claim 'i' has error = -1e-13: expected none below 0"):
-        Claim("i", "verified", margin=1.0, error=-1e-13)
 
 
 @pytest.mark.parametrize(
@@ -265,8 +205,3 @@ def test_no_claim_has_an_error_below_0():
 def test_tolerances_are_validated(bad, message):
     with pytest.raises(ArgumentError, match=message):
         Tolerances(**bad)
-
-
-def test_verify_takes_tolerances_and_nothing_like_them():
-    with pytest.raises(ArgumentError, match=r"tolerances = \{\}: expected flockana.Tolerances"):
-        verify("E8", tolerances={})

@@ -3,8 +3,7 @@
 import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
-from flockana.theorems.claims import erratum, exact, undecided
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, undecided
 
 
 def _two_agents_abscissa(ratio: float) -> float:

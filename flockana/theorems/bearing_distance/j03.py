@@ -4,11 +4,9 @@ from itertools import permutations
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.claims import erratum, exact, spectral
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, exact, spectral
 
 _EIGENVALUES = 1e-6  # of matrices of 6 rows and entries up to 4000, well apart: 1e-12 of these entries times 100
 _TREE_SHAPES = (((0, 1), (1, 2), (2, 3)), ((0, 1), (0, 2), (0, 3)), ((0, 1), (1, 2), (1, 3), (0, 4)))
@@ -56,36 +54,23 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     error, abscissa = _pairing(400.0)
     _, stiffer = _pairing(4000.0)
     return [
-        spectral(
-            "printed",
-            -error,
-            _EIGENVALUES,
+        spectral("printed", -error, _EIGENVALUES, about="all", disproof="bearing-distance-printed").described(
             computed=error,
             stated="λ² + λ μ_i + γ_i = 0, index by index, for any graph",
             witness={"graph": "undirected path of four", "|x|": _PATH_LENGTHS, "α_i r_i": _PATH_SPACING, "μ": 400.0},
-            about="all",
-            disproof="bearing-distance-printed",
             detail=f"on an undirected path the best pairing misses an eigenvalue by {error:.3f}: the matrices do not "
             "commute",
         ),
-        spectral(
-            "hurwitz",
-            -stiffer,
-            _EIGENVALUES,
+        spectral("hurwitz", -stiffer, _EIGENVALUES, about="all", disproof="bearing-distance-printed").described(
             computed=stiffer,
             stated="negative real parts of all eigenvalues, since μ_i and γ_i have positive ones",
             witness={"graph": "the same path, every |x_e| > α_i r_i", "μ": 4000.0, "at μ = 400": abscissa},
-            about="all",
-            disproof="bearing-distance-printed",
             detail=f"with μ = 4000 an eigenvalue has real part {stiffer:.4f}, though every edge is longer than α_i r_i",
         ),
-        exact(
-            "trees",
-            not any(residuals.values()),
+        exact("trees", not any(residuals.values()), proof="bearing-distance").described(
             computed="residual 0" if not any(residuals.values()) else str(residuals),
             stated="on rooted trees det(s² I + s A^a + A^s) = Π (s² + s + w_e)",
             witness=list(residuals),
-            proof="bearing-distance",
             detail="on a chain, a star and a mixed tree the determinant factors edge by edge: both matrices are "
             "triangular in one order",
         ),

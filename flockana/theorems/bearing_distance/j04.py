@@ -4,8 +4,7 @@ import numpy as np
 
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import edge_vectors, incidence, receivers
-from flockana.theorems.claims import equal, erratum, of_state
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, of_state
 
 _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 _PROOF = "bearing-distance-printed"
@@ -31,10 +30,7 @@ def _loop() -> Claim:
     error, undirected = (
         float(np.abs(-left * w @ D.T @ q - left @ D.T @ p - u).max()) for left in (D_in, D)
     )  # W^a = I on a tree
-    return of_state(
-        "loop",
-        _SAME - error / float(np.abs(u).max()),
-        _ROUNDING,
+    return of_state("loop", _SAME - error / float(np.abs(u).max()), _ROUNDING).described(
         computed=error,
         stated="u = -D_in W^s Dᵀ p - D_in W^a Dᵀ v, with D_in where the text says 'like the incidence matrix'",
         witness={"with D in place of D_in": undirected},

@@ -3,13 +3,9 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways, incidence
-from flockana.theorems.claims import erratum, judged
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.observed import observed
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, erratum, judged, lengths, observed, stacked
 
 _STARTS, _END = 20, 60.0
 _RUNAWAY, _THRUST = np.array([0.0, 5.0 / 3.0, 5.0 / 3.0]), 2.0 / 3.0  # distances of ends and middle; all |u|
@@ -60,9 +56,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
                 f"differs from one of the two by {0.5 * abs(wanted[1] - wanted[0]):g} or more"
             ),
         ),
-        judged(
-            "runaway",
-            tolerances.lattice - off,
+        judged("runaway", tolerances.lattice - off).described(
             computed={"largest error": worst, "attracts at the rate": rate},
             stated=f"at t = {_END:g} ends together, 5/3 behind the middle, all with the acceleration 2/3",
             witness={"starts": _STARTS, "t": _END},

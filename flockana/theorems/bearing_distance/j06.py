@@ -20,11 +20,7 @@ def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> 
     verdict = Verdict(theorem.id, *with_resolution(*theorem.examine(seen, tolerances), seen))
     said = [claim.status for claim in verdict.claims]
     wrong, zeros = said.count("refuted"), (verdict.claim("spectrum").computed or {}).get("zero modes", "no")
-    return counted(
-        f"{name}-{m}",
-        0,
-        wrong,
-        wrong + said.count("inconclusive"),
+    return counted(f"{name}-{m}", 0, wrong, wrong + said.count("inconclusive")).described(
         computed={claim.name: claim.status for claim in verdict.claims},
         stated=f"every claim of zone-1-corrected, with {4 * (m - 1)} zero modes",
         witness={"edges": _TREE, "q(0)": q.tolist(), "p(0)": p.tolist()},

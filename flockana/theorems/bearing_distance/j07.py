@@ -4,27 +4,23 @@ from math import tanh
 
 import numpy as np
 
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts
-from flockana.theorems.claims import erratum, of_map, spectral
-from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, lengths, mostly, of_map, spectral
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: numbers that differ by less are the same; of a few hundred steps
 
 
-def dragged_speed(dt: float, *, u_max: float = 2.0, v_max: float = 4.0) -> float:
+def dragged_speed(dt: float) -> float:
     """The largest speed that full thrust holds against (10), a fixed point of v^max tanh((v + dt u^max)/v^max)."""
     from scipy.optimize import brentq
 
-    return float(brentq(lambda v: v_max * tanh((v + dt * u_max) / v_max) - v, 1e-6, v_max, xtol=1e-14))
+    return float(brentq(lambda v: 4.0 * tanh((v + dt * 2.0) / 4.0) - v, 1e-6, 4.0, xtol=1e-14))
 
 
-def _late_speed(run: Trajectory) -> float:
-    """Mean speed of all agents over the second half of a run."""
-    return float(lengths(run.p[len(run.t) // 2 :]).mean())
+def _late_speeds(law: ZoneFlocking) -> list[float]:
+    """Mean speed of all agents over the second half of a run, by seed."""
+    return [float(lengths(run.p[len(run.t) // 2 :]).mean()) for run in runs_from_random_starts(law)]
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -32,33 +28,21 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     after = law.step(0.0, np.zeros((1, 2)), np.array([[3.0, 0.0]]), law.start(np.zeros((1, 2)), np.array([[3.0, 0.0]])))
     step, bound = float(after[1][0, 0]), dragged_speed(law.dt)
     off, shortfall = abs(step / (4.0 * tanh(0.75)) - 1.0), bound / law.desired_speed - 1.0
-    printed = [_late_speed(run) for run in runs_from_random_starts(ZoneFlocking.printed(own_velocity="measured"))]
-    clipped = [
-        _late_speed(run)
-        for run in runs_from_random_starts(
-            ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
-        )
-    ]
+    printed = _late_speeds(ZoneFlocking.printed(own_velocity="measured"))
+    clip = ZoneFlocking.printed(own_velocity="measured", order="synchronous", speed_bound="clip")
+    clipped = _late_speeds(clip)
     near = 0.05 * law.desired_speed
     return [
-        of_map(
-            "step",
-            _SAME - off,
-            _ROUNDING,
+        of_map("step", _SAME - off, _ROUNDING, proof="speed-bound").described(
             computed=step,
             stated=4.0 * tanh(0.75),
             witness="one agent at the desired speed, no input",
-            proof="speed-bound",
             detail=f"applied to the state, (10) makes a speed of 3 into {step:.4g} in every step: a drag",
         ),
-        spectral(
-            "reachable",
-            shortfall,
-            _ROUNDING,
+        spectral("reachable", shortfall, _ROUNDING, disproof="speed-bound").described(
             computed=bound,
             stated=f"the desired speed {law.desired_speed:g} is below the bound 4, so it can be kept",
             witness={dt: dragged_speed(dt) for dt in (0.1, 0.05, 0.01, 0.001)},
-            disproof="speed-bound",
             detail=f"with all inputs within u^max = 2 no speed above {bound:.4f} lasts (steps of 0.1 s); with "
             "finer steps the limit is lower",
         ),
@@ -67,15 +51,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [abs(v - law.desired_speed) <= near for v in printed],
             "with (10) on the state the mean speed is about 3",
             "mean speed about 3 m/s",
-            witness={"mean speed over seeds": float(np.mean(printed))},
-        ),
+        ).described(witness={"mean speed over seeds": float(np.mean(printed))}),
         mostly(
             "clip",
             [abs(v - law.desired_speed) <= near for v in clipped],
             "with v min(1, v^max/|v|) the mean speed is about 3",
             "a plain clip lets the flock keep 3 m/s",
-            witness={"mean speed over seeds": float(np.mean(clipped))},
-        ),
+        ).described(witness={"mean speed over seeds": float(np.mean(clipped))}),
     ]
 
 

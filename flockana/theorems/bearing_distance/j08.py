@@ -5,9 +5,7 @@ import numpy as np
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.nets import components, links
 from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, zone_start
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, mostly, of_state
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding
 
@@ -20,10 +18,7 @@ def _forms(tolerances: Tolerances) -> Claim:
         position, bearing = (ZoneFlocking(form=form).behaviours(q, p) for form in ("position", "bearing"))
         largest = max(float(np.abs(term).max()) for term in position.values())
         worst = max(worst, *(float(np.abs(position[name] - bearing[name]).max()) / largest for name in position))
-    return of_state(
-        "forms",
-        _SAME - worst,
-        _ROUNDING,
+    return of_state("forms", _SAME - worst, _ROUNDING).described(
         computed=worst,
         stated="with the true velocity both forms of all six behaviours are equal",
         witness={"starts": SEEDS},
@@ -45,15 +40,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [error < 0.1 for error in drift],
             "with (17) the estimate is within 0.1 m/s of the velocity after 20 s",
             "the estimate (17) makes the bearing form equivalent (Remark 3)",
-            witness={"mean error of the estimate, by seed": drift},
-        ),
+        ).described(witness={"mean error of the estimate, by seed": drift}),
         always(
             "holds-together",
             [count == 1 for count in flocks],
             f"with (17) the flock is one component ({np.median(flocks):g} in the median)",
             "the flock stays together with the estimate as well",
-            witness={"components by seed": flocks},
-        ),
+        ).described(witness={"components by seed": flocks}),
         mostly("measured", connected, "with the true velocity the flock is one component", "odometry repairs it"),
     ]
 

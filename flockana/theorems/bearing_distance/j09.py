@@ -6,10 +6,7 @@ from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import DURATION, runs_from_random_starts
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.observed import observed
-from flockana.theorems.shares import always
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, always, erratum, observed, of_map
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps of one agent
 _UNBOUNDED = 1e6  # an input bound that never acts
@@ -34,21 +31,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     stand_off = 6.0 - 3.0 * 5.0 / 5.0  # s − v^d w^ga/w^ss
     clear = sum(d > a for d, a in zip(disc, annulus, strict=True))
     return [
-        of_map(
-            "printed",
-            through / stand_off,
-            _ROUNDING,
+        of_map("printed", through / stand_off, _ROUNDING, about="all", disproof="stand-off").described(
             computed=through,
             stated="an agent keeps clear of an alien that it sees",
             witness={"alien": (20.0, 0.0), "q(0)": (0.0, 0.0), "p(0)": (3.0, 0.0)},
-            about="all",
-            disproof="stand-off",
             detail="N_i^s ends at a_i: nearer than 5 m the alien exerts no force: an agent runs straight through it",
         ),
-        of_map(
-            "corrected",
-            1e-3 - abs(gap / stand_off - 1.0),
-            _ROUNDING,
+        of_map("corrected", 1e-3 - abs(gap / stand_off - 1.0), _ROUNDING).described(
             computed=gap,
             stated=stand_off,
             witness="the same agent and alien, 0 < d <= s_i",
@@ -60,8 +49,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             f"as printed ten agents keep more than 1.5 m from a hunting alien ({np.median(annulus):.2f} m in the "
             f"median; as corrected {np.median(disc):.2f} m, farther in {clear} of {len(disc)})",
             "the flock keeps more than 1.5 m from an alien that hunts it (share 1)",
-            witness={"printed": annulus, "corrected": disc},
-        ),
+        ).described(witness={"printed": annulus, "corrected": disc}),
     ]
 
 

@@ -2,14 +2,11 @@
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.theorems.bearing_distance.random_starts import SEEDS, runs_from_random_starts, separated_start, zone_start
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, Trajectory, always, erratum, mostly, of_state
 
 _STARTS = 2000
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: forces that differ by less are the same; their rounding
@@ -33,10 +30,7 @@ def _weights_cancel() -> Claim:
         forces, other_forces = (law.behaviours(q, p) for law in (printed, other))
         pairs = [(forces[name], other_forces[name]) for name in ("cohesion", "alignment")]
         worst = max(worst, *(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs))
-    return of_state(
-        "weights",
-        worst - _SAME,
-        _ROUNDING,
+    return of_state("weights", worst - _SAME, _ROUNDING).described(
         computed=worst,
         stated="w^lc = 0.75 and w^la = 0.25 weigh cohesion against alignment",
         witness={"(w^lc, w^la)": [(0.75, 0.25), (40.0, 7.0)], "starts": SEEDS},
@@ -57,27 +51,21 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         always("distances", separated, "agents start more than 1.5 m apart", "distances above 1.5 m throughout"),
         always(
-            "order",
-            [c >= _IN_ORDER for c in printed],
-            f"{order}, with everything as printed,",
-            "C = 1 within 2 s",
-            witness={"least C from 2 s on, by seed": printed},
-        ),
+            "order", [c >= _IN_ORDER for c in printed], f"{order}, with everything as printed,", "C = 1 within 2 s"
+        ).described(witness={"least C from 2 s on, by seed": printed}),
         mostly(
             "unordered-still",
             [c < _IN_ORDER for c in mended],
             f"C falls below {_IN_ORDER:g} after {_FROM:g} s, with J7 and J8 corrected and the printed weights,",
             "C does not reach 1 within 2 s with J7 and J8 corrected",
-            witness={"least C from 2 s on, by seed": mended},
-        ),
+        ).described(witness={"least C from 2 s on, by seed": mended}),
         _weights_cancel(),
         mostly(
             "recommended",
             [c >= _IN_ORDER and d > _SAFE for c, d in zip(C, D, strict=True)],
             f"with gains 0.25 and 8 and separated, connected starts: {order}, distances of 1.5 m kept,",
             "the recommended settings do what is reported",
-            witness={"least C from 2 s on": C, "least distance": D},
-        ),
+        ).described(witness={"least C from 2 s on": C, "least distance": D}),
     ]
 
 

@@ -4,14 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components
-from flockana.theorems.claims import erratum
-from flockana.theorems.observed import observed
-from flockana.theorems.shares import always, mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, mostly, observed
 
 N, SIDE, DT = 60, 30.0, 0.1
 DURATION = {2: 20.0, 3: 10.0}
@@ -50,8 +46,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             printed[2][:, 1] == 1,
             f"2-D as printed: one component at the end ({np.median(printed[2][:, 1]):g} in the median)",
             "cohesive at the end",
-            witness={"components by seed": printed[2][:, 1].astype(int).tolist()},
-        ),
+        ).described(witness={"components by seed": printed[2][:, 1].astype(int).tolist()}),
         *(_recommended(m) for m in DURATION),
     ]
 
@@ -63,8 +58,7 @@ def _aligned(m: int, C: FloatArray) -> Claim:
         C >= ALIGNED,
         f"{m}-D as printed: C >= {ALIGNED:g} at the end ({np.median(C):.2f} in the median)",
         "aligned at the end",
-        witness={"C by seed": C.tolist()},
-    )
+    ).described(witness={"C by seed": C.tolist()})
 
 
 def _recommended(m: int) -> Claim:
@@ -75,8 +69,7 @@ def _recommended(m: int) -> Claim:
         (ends[:, 0] >= ALIGNED) & (ends[:, 1] == 1),
         f"{m}-D with the recommended settings: aligned and connected at the end",
         "one spacing for all and summed velocity differences: most starts align and stay together",
-        witness={"parameters": RECOMMENDED, "t": LONGER, "least distance at the end": float(ends[:, 2].min())},
-    )
+    ).described(witness={"parameters": RECOMMENDED, "t": LONGER, "least distance at the end": float(ends[:, 2].min())})
 
 
 THEOREM = erratum(

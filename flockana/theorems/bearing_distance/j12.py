@@ -6,9 +6,7 @@ from flockana.environment.zone_obstacles import Box, SimplePolygon
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_map, of_state
-from flockana.theorems.observed import observed
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, observed, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _RADII = ZoneRadii(1.5, c=3.0, a=5.0)
@@ -74,51 +72,32 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     error, stand_offs = _stand_offs()
     at_wall, (_, least_gap) = _at_wall(5.0, 5.0), _head_on(_separation_only(5.0, 5.0))
     force, c = 5.0 * _RADII.reach[1], _RADII.reach[1]  # w^oa c and c: the scales of force and length
-    printed, mended, clearance = (
-        max(outward, inward) / force,
-        min(mended_outward / force, mended_inward / force, -mended_beyond / c),
-        min(at_wall, least_gap) / c,
-    )
+    printed, clearance = max(outward, inward) / force, min(at_wall, least_gap) / c
+    mended = min(mended_outward / force, mended_inward / force, -mended_beyond / c)
     return [
-        of_state(
-            "printed",
-            printed,
-            _ROUNDING,
+        of_state("printed", printed, _ROUNDING, disproof="stand-off").described(
             computed={"outward force in an obstacle": outward, "inward force beyond a wall": inward},
             stated="(8) repels an agent from an obstacle and from a wall",
-            witness={
-                "in an obstacle": (10.5, 0.3),
-                "beyond the wall x = 50": (50.1, 25.0),
-                "beyond it after 3 s": beyond,
-            },
-            disproof="stand-off",
+            witness={"in an obstacle": (10.5, 0.3), "beyond the wall x = 50": (50.1, 25.0)}
+            | {"beyond it after 3 s": beyond},
             detail=f"inside, b - p_i points outwards and (8) pushes in: {outward:.3g} in an obstacle, {inward:.3g} "
             f"beyond a wall, and after 3 s the agent is {beyond:.3g} m beyond it",
         ),
-        of_map(
-            "corrected",
-            mended,
-            _ROUNDING,
+        of_map("corrected", mended, _ROUNDING).described(
             computed={"outward force in an obstacle": mended_outward, "inward force beyond a wall": mended_inward},
             stated="with d + c along b - p_i it is pushed out of obstacles and back behind walls",
             witness="the same agents",
             detail=f"an agent inside is pushed out by {mended_outward:.3g}, one beyond a wall back by "
             f"{mended_inward:.3g}: after 3 s it is {-mended_beyond:.3g} m inside the wall",
         ),
-        of_map(
-            "stand-off",
-            1e-6 - error / c,
-            _ROUNDING,
+        of_map("stand-off", 1e-6 - error / c, _ROUNDING).described(
             computed={case: pair[1] for case, pair in stand_offs.items()},
             stated={case: pair[0] for case, pair in stand_offs.items()},
             witness="head on, inputs unbounded, weights that damp the approach",
             detail="agents that run head on at a wall, or at each other, come to c - v^d w^ga/w in "
             f"{len(stand_offs)} cases (off by {error:.1g} m)",
         ),
-        of_map(
-            "contact",
-            clearance,
-            _ROUNDING,
+        of_map("contact", clearance, _ROUNDING).described(
             computed={"distance from the wall": at_wall, "least signed gap of two agents": least_gap},
             stated="w^oa = w^ls = 5 keep agents off walls and each other",
             witness={"w^ga": 5.0, "w": 5.0, "c": 3.0, "v^d": 3.0, "stand-off": 0.0},

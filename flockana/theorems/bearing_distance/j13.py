@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_map, of_state
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, erratum, of_map, of_state
 
 _ROUNDING = 1e-11  # relative: of a few hundred steps
 _R, _C, _A, _V_MAX, _SIDE = 1.5, 3.0, 5.0, 4.0, 50.0
@@ -49,10 +47,7 @@ def _head_on(law: ZoneFlocking) -> FloatArray:
 def _letter() -> Claim:
     between = 0.5 * (_C + _A)
     braking = _braking(_law("attraction", "literal"), between, _DESIRED)
-    return of_state(
-        "letter",
-        braking,
-        _ROUNDING,
+    return of_state("letter", braking, _ROUNDING).described(
         computed=braking,
         stated="with an altitude of a_i an agent is repelled by what comes within it",
         witness={"distance from the wall": between, "c": _C, "a": _A},
@@ -63,10 +58,7 @@ def _letter() -> Claim:
 def _clamped() -> Claim:
     long, short = (_head_on(_law(name)) for name in ("attraction", "conflict"))
     different = np.flatnonzero(np.abs(long - short) > _ROUNDING * _SIDE).size
-    return of_map(
-        "clamped",
-        different - 0.5,
-        0.0,
+    return of_map("clamped", different - 0.5, 0.0).described(
         computed={"steps in which the two runs differ": different},
         stated="more reaction space: with the altitude a_i an agent brakes earlier than with c_i",
         witness={"q(0)": _PLACE, "p(0)": _HEADING, "steps": long.size},
@@ -101,20 +93,13 @@ def _slow() -> Claim:
     """An agent at rest before a wall has the short zone: it stands off at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated = _R - _DESIRED * _DRIVE / _WEIGHT
-    return of_map(
-        "stand-off",
-        1e-6 - abs(measured - stated) / _C,
-        _ROUNDING,
+    return of_map("stand-off", 1e-6 - abs(measured - stated) / _C, _ROUNDING).described(
         computed=measured,
         stated=stated,
         witness={"w^ga": _DRIVE, "w^oa": _WEIGHT, "v^d": _DESIRED},
         detail=f"braked, the zone contracts to r: the agent stops {measured:.4f} m from the wall, at "
         "r - v^d w^ga/w^oa, nearer than at c - v^d w^ga/w^oa",
     )
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_letter(), _clamped(), _reaching(), _slow()]
 
 
 THEOREM = erratum(
@@ -126,7 +111,7 @@ THEOREM = erratum(
         "what the paper says."
     ),
     source="Jond, bearing-distance flocking, section 2.2, Fig. 4 and (8)",
-    check=_check,
+    check=lambda tolerances: [_letter(), _clamped(), _reaching(), _slow()],
     expected={"refuted": "letter clamped", "verified": "reaching stand-off"},
     corrected=("reaching", "stand-off"),
 )

@@ -2,15 +2,10 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.theorems.bearing_distance.random_starts import separated_start
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.observed import observed
-from flockana.theorems.shares import mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, mostly, observed, of_map
 
 _SAME, _ROUNDING = 1e-9, 1e-11  # relative: speeds that differ by less are the same; of a few hundred steps
 _RADII = ZoneRadii(1.5, c=3.0, a=5.0)
@@ -43,22 +38,14 @@ def _informed_or_not() -> list[Claim]:
     alone, _ = _pair(0, (1.0, 2.0))
     spread = float(np.abs(alone[-1] - 1.5).max()) / 1.5
     return [
-        of_map(
-            "one-informed",
-            _SAME - float(np.maximum(off, left)),
-            _ROUNDING,
+        of_map("one-informed", _SAME - float(np.maximum(off, left)), _ROUNDING).described(
             computed=informed[-1].tolist(),
             stated=_DESIRED,
             witness={"informed": "one of two", "p(0)": (1.0, 1.0)},
-            detail=(
-                f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
-                f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})"
-            ),
+            detail=f"of two agents at 1 m/s one is informed of v^d = {_DESIRED:g}: both reach it as x' = M x predicts, "
+            f"whose polynomial λ² + (2g + w) λ + g w is Hurwitz (off by {off:.1g})",
         ),
-        of_map(
-            "none-informed",
-            _SAME - spread,
-            _ROUNDING,
+        of_map("none-informed", _SAME - spread, _ROUNDING).described(
             computed=alone[-1].tolist(),
             stated=1.5,
             witness={"informed": "none", "p(0)": (1.0, 2.0)},
@@ -83,15 +70,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [abs(v / _DESIRED - 1.0) <= _NEAR for v in two],
             "with two informed agents of ten the mean speed is about v^d",
             "the flock adopts the speed of the informed agents",
-            witness={"mean speed by seed": two},
-        ),
+        ).described(witness={"mean speed by seed": two}),
         mostly(
             "none-of-ten",
             [abs(v / _DESIRED - 1.0) > _NEAR for v in none],
             f"with none informed the mean speed is not about v^d ({np.median(none):.2f} in the median)",
             "a flock without informed agents does not fly at the desired speed",
-            witness={"mean speed by seed": none},
-        ),
+        ).described(witness={"mean speed by seed": none}),
     ]
 
 

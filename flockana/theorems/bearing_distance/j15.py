@@ -2,14 +2,11 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import min_distance
 from flockana.theorems.bearing_distance.random_starts import runs_from_random_starts, separated_start
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.shares import always
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, always, erratum, of_map
 
 _SAME, _ROUNDING = 1e-6, 1e-11  # relative: distances that differ by less are the same; of a thousand steps
 _C = 3.0
@@ -17,11 +14,8 @@ _RADII = ZoneRadii(1.5, c=_C, a=5.0)
 _UNBOUNDED = 1e6  # an input bound that never acts
 _STEPS = 1000
 _CASES = ((5.0, 1.0), (5.0, 0.25), (20.0, 0.5), (2.0, 1.5))  # (w^ls, g_c), with g_c <= w^ls (c/r - 1)
-_STRONG, _FINE, _SLIDES = (
-    (5.0, 10.0),
-    0.005,
-    5e-3,
-)  # stronger cohesion; a time step; relative distance from r at which the pair slides
+_STRONG, _FINE = (5.0, 10.0), 0.005  # stronger cohesion; a time step
+_SLIDES = 5e-3  # relative distance from r at which the pair slides
 
 
 def _distances(separation: float, cohesion: float, start: float = 3.5, *, dt: float = 0.1) -> FloatArray:
@@ -42,10 +36,7 @@ def _sliding() -> Claim:
     """Claim that a strong cohesion, off at r and nearer, holds a pair at r, about which it chatters."""
     late, r = _distances(*_STRONG, dt=_FINE)[_STEPS // 2 :], float(np.max(_RADII.r))
     off = float(np.abs(late / r - 1.0).max())
-    return of_map(
-        "sliding",
-        _SLIDES - off,
-        _ROUNDING,
+    return of_map("sliding", _SLIDES - off, _ROUNDING).described(
         computed=[float(late.min()), float(late.max())],
         stated=f"beyond g_c = w^ls (c/r - 1) a pair slides at r = {r:g}",
         witness={"w^ls": _STRONG[0], "g_c": _STRONG[1], "dt": _FINE},
@@ -59,20 +50,14 @@ def _pair() -> list[Claim]:
     error = float(np.max([abs(stated - found) for stated, found in rows.values()]))
     printed, alone = next(iter(rows.values()))[1], _rest(5.0, 0.0, 2.0)
     return [
-        of_map(
-            "printed",
-            printed / _C - 1.0,
-            _ROUNDING,
+        of_map("printed", printed / _C - 1.0, _ROUNDING).described(
             computed=printed,
             stated=f"a separation of at least c = {_C:g} m is maintained",
             witness={"w^ls": 5.0, "w^lc": "any, as it cancels", "c": _C},
             detail=f"cohesion acts in the zone of conflict as well: a pair as printed rests {printed:.4g} "
             f"m apart, not {_C:g}",
         ),
-        of_map(
-            "rest",
-            _SAME - error / _C,
-            _ROUNDING,
+        of_map("rest", _SAME - error / _C, _ROUNDING).described(
             computed={case: pair[1] for case, pair in rows.items()},
             stated={case: pair[0] for case, pair in rows.items()},
             witness="two agents at rest, 3.5 m apart at first",
@@ -80,10 +65,7 @@ def _pair() -> list[Claim]:
             "m): below c for any cohesion",
         ),
         _sliding(),
-        of_map(
-            "alone",
-            _SAME - abs(alone / _C - 1.0),
-            _ROUNDING,
+        of_map("alone", _SAME - abs(alone / _C - 1.0), _ROUNDING).described(
             computed=alone,
             stated=_C,
             witness={"g_c": 0.0, "q(0)": "2 m apart"},
@@ -101,8 +83,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             [distance >= _C for distance in least],
             f"after 20 s ten agents are c apart ({np.median(least):.3g} m in the median)",
             f"a settled flock keeps its agents c = {_C:g} m apart",
-            witness={"least distance by seed": least},
-        ),
+        ).described(witness={"least distance by seed": least}),
     ]
 
 

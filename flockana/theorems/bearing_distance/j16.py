@@ -2,14 +2,11 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.environment.zone_obstacles import Box
 from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Certificate, Claim, FloatArray, erratum, limit_claim, of_map
 
 _ROUNDING = 1e-11  # relative: of a few thousand steps straight on
 _A, _C, _SIDE, _SPEED = 5.0, 3.0, 50.0, 3.0
@@ -64,9 +61,7 @@ def _circling() -> Claim:
         path = _positions(law, q, _SPEED * np.column_stack([np.cos(angle), np.sin(angle)]), _STEPS)
         nearest.append(float(np.linalg.norm(path[:, 1] - path[:, 0], axis=1).min()))
     met = sum(distance <= _A for distance in nearest)
-    return limit_claim(
-        "circling",
-        [],
+    return limit_claim("circling", []).described(
         computed={"meet": met, "of": _SEEDS},
         stated="lone agents in a box meet sooner or later, wherever they start",
         witness={"least distance by seed": nearest},
@@ -79,10 +74,8 @@ def _growing_radii() -> Claim:
     """Remark 2: two agents that fly apart in the open find each other once their radii of attraction grow."""
     q, p = np.array([[0.0, 0.0], [20.0, 3.0]]), np.array([[-_SPEED, 0.0], [_SPEED, 0.0]])
     gap = {growth: _last_gap(growth, q, p) for growth in (0.0, _SLOWER, _GROWTH)}
-    return of_map(
-        "growing",
-        float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A])),
-        _ROUNDING,
+    margin = float(np.min([gap[0.0] / _A - 1.0, gap[_SLOWER] / _A - 1.0, 1.0 - gap[_GROWTH] / _A]))
+    return of_map("growing", margin, _ROUNDING).described(
         computed={f"distance after two minutes, growth {growth:g} m/s": d for growth, d in gap.items()},
         stated="lone agents part, unless their radii of attraction grow faster than they do so",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
@@ -104,20 +97,13 @@ def _pairs() -> Claim:
     gap = _positions(law, q, p, 600)[-1]
     parted = float(gap[2, 0] - gap[0, 0])
     straight = 20.0 + 2.0 * _SPEED * 60.0
-    return of_map(
-        "fragments",
-        0.5 - parted / straight,
-        _ROUNDING,
+    return of_map("fragments", 0.5 - parted / straight, _ROUNDING).described(
         computed=parted,
         stated="growing radii of attraction keep the flock one",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail=f"two pairs that fly apart: each agent has its flockmate, no radius grows, and they are {parted:.4g} m "
         f"apart after a minute, as in straight flight ({straight:g})",
     )
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_at_walls(), _circling(), _growing_radii(), _pairs()]
 
 
 THEOREM = erratum(
@@ -129,6 +115,6 @@ THEOREM = erratum(
         "later times. Growing radii bring lone agents back, but leave fragments of two or more agents apart."
     ),
     source="Jond, bearing-distance flocking, Remark 2",
-    check=_check,
+    check=lambda tolerances: [_at_walls(), _circling(), _growing_radii(), _pairs()],
     expected={"refuted": "at-walls fragments", "inconclusive": "circling", "verified": "growing"},
 )

@@ -6,8 +6,7 @@ import numpy.typing as npt
 from flockana.environment.zone_world import Alien, ZoneWorld
 from flockana.interactions import ZoneRadii, ZoneWeights
 from flockana.laws.bearing_distance import ZoneFlocking
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_map
 
 _DETECTION, _PURSUIT, _SPEED, _AT = 9.0, 1.5, 3.0, 20.0
 _SHORT, _STEPS = 6.0, 200
@@ -37,29 +36,20 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     delay, none = heeded - hunted, at_once - hunted_too
     predicted, step = (_DETECTION - _SHORT) / (_SPEED + _PURSUIT), 0.1
     return [
-        of_map(
-            "delay",
-            1.75 * step - abs(delay - predicted),
-            _ROUNDING,
+        of_map("delay", 1.75 * step - abs(delay - predicted), _ROUNDING).described(
             computed=delay,
             stated=predicted,
             witness={"s": _SHORT, "detection": _DETECTION, "approach": _SPEED + _PURSUIT},
             detail=f"head on, an agent that sees {_SHORT:g} m reacts {delay:.2g} s after it was detected: "
             f"(9 - s)/(v + v_alien) = {predicted:.2g} s, to a step of {step:g} s",
         ),
-        of_map(
-            "none",
-            1.75 * step - abs(none),
-            _ROUNDING,
+        of_map("none", 1.75 * step - abs(none), _ROUNDING).described(
             computed=none,
             stated=0.0,
             witness={"s": _DETECTION, "detection": _DETECTION},
             detail=f"with s = {_DETECTION:g}, the alien's range, agents react within {abs(none):.2g} s: the next step",
         ),
-        of_map(
-            "nearer",
-            (far - near) / _DETECTION,
-            _ROUNDING,
+        of_map("nearer", (far - near) / _DETECTION, _ROUNDING).described(
             computed={"least distance, s = 6": near, "least distance, s = 9": far},
             stated="the delay costs distance",
             witness={"q(0)": (0.0, 0.0), "p(0)": (_SPEED, 0.0), "alien": (_AT, 0.0)},

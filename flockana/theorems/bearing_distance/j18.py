@@ -2,16 +2,12 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions import ZoneRadii
 from flockana.laws.bearing_distance import ZoneFlocking
 from flockana.measures.metrics import coordination, min_distance
 from flockana.measures.nets import components, links
 from flockana.theorems.bearing_distance.random_starts import crowd_start
-from flockana.theorems.claims import erratum, of_map
-from flockana.theorems.observed import observed
-from flockana.theorems.shares import mostly
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, mostly, observed, of_map
 
 _LAW = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0))
 _SEEDS = {10: 20, 100: 20, 500: 6}  # by number of agents; of 6 none may fail, so that half of all are sure to hold
@@ -39,8 +35,7 @@ def _flocks(n: int, ends: FloatArray) -> Claim:
         (ends[:, 0] >= _IN_ORDER) & (ends[:, 1] == 1) & (ends[:, 2] > _SAFE),
         f"{n} agents are one flock after {_DURATION:g} s, C >= {_IN_ORDER:g}, all more than r apart",
         "flocks of every size align, stay together and keep their distance",
-        witness={"least C": float(ends[:, 0].min()), "least distance": float(ends[:, 2].min())},
-    )
+    ).described(witness={"least C": float(ends[:, 0].min()), "least distance": float(ends[:, 2].min())})
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -49,10 +44,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     turned = _ends(_SIZES[-1], any_direction=True)
     return [
         *(_flocks(n, ends[n]) for n in _SIZES),
-        of_map(
-            "local",
-            _MORE - many / some,
-            _ROUNDING,
+        of_map("local", _MORE - many / some, _ROUNDING).described(
             computed={n: float(ends[n][:, 3].mean()) for n in _SIZES},
             stated="an agent interacts with no more agents in a flock five times as large",
             witness={"agents within a_i, mean over seeds": (some, many)},

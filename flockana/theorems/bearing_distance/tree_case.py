@@ -8,16 +8,11 @@ from math import sqrt
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import Edges, edge_vectors, incidence, is_connected, out_tree_root
 from flockana.stability import linearise
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
 from flockana.theorems.sampling import least_distance
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Hypothesis, Observed, condition, stacked
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,7 @@ import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase
 from flockana.theorems.claims import judged, undecided, vacuous
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.hypotheses import positive_room
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Observed, Tolerances, positive_room, stacked
 
 _PROOF = "bearing-distance"
 
@@ -43,14 +39,10 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
     room = _room(case, seen, start, edges, tolerances.energy)
     falls = (V[:-1] - V[1:] + tolerances.energy * start) / case.barrier[edges]
     rises = float((np.diff(V.mid, axis=0) / case.barrier[edges]).max(initial=0.0))
-    return judged(
-        "root-edge",
-        stacked([room.worst, falls.worst]),
-        needs,
+    return judged("root-edge", stacked([room.worst, falls.worst]), needs, proof=proof_of(case, seen.m)).described(
         computed={"least distance to the bound": float(room.worst.mid), "largest rise of V in a step": rises},
         stated="|x(t)| >= ρ - sqrt(2V(0)/μ) > 0 on edges from the root, with V never rising",
         witness={f"edge {case.links[e]}": {"V(0)": float(V.mid[0, k])} for k, e in enumerate(edges)},
-        proof=proof_of(case, seen.m),
         detail=f"{len(edges)} edges from the root start below μρ²/2; V rises by at most {rises:.1g} of this from "
         f"sample to sample, and the shortest of them is never below {case.shortest(seen).mid[edges].min():.4g}",
     )

@@ -16,18 +16,16 @@ are bounded, every |x_e| goes to ρ_e and every x_e' to 0 (Barbalat's lemma). Be
 """
 
 from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import End, Observed
-from flockana.theorems.rounding import EPS, frame_error
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.limits import Certificate, dies_out
+from flockana.theorems.observed import End
+from flockana.theorems.rounding import frame_error
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths
 
 _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
@@ -76,16 +74,8 @@ def settles(case: TreeCase, end: End) -> Certificate:
 def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, stated: str) -> Claim:
     """Return the claim that the velocities at both ends of every edge match in the limit."""
     speeds = lengths(edge_vectors(seen.run.p, case.links)).max(axis=1)
-    return limit_claim(
-        "velocities",
-        needs,
-        [settles(case, seen.end)],
-        computed=float(speeds[-1]),
-        stated=stated,
-        witness={"time": float(seen.t[-1]), "at the start": float(speeds[0])},
-        evidence=evidence(seen.t, speeds, "|x_e'|"),
-        detail=f"the largest |x_e'| goes from {speeds[0]:.3g} to {speeds[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    about: dict[str, Any] = {"series": speeds, "what": "the largest |x_e'|", "of": "|x_e'|", "start": "at the start"}
+    return dies_out(seen, "velocities", needs, [settles(case, seen.end)], stated=stated, **about)
 
 
 def kept(case: TreeCase, end: End) -> float:

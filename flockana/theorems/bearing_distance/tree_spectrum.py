@@ -6,9 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.theorems.bearing_distance.tree_case import TreeCase, characteristic_residual
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, FloatArray
 
 POLYNOMIAL = 1e-6  # largest relative difference of two characteristic polynomials that counts as none
 _CLEAR = 1e3  # times its rounding, from which on a number is not 0

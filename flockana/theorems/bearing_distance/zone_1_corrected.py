@@ -6,11 +6,8 @@ from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, 
 from flockana.theorems.bearing_distance.tree_energy import edge_claim, energy_claim, proof_of, root_claim
 from flockana.theorems.bearing_distance.tree_limits import settles, velocity_claim
 from flockana.theorems.bearing_distance.tree_spectrum import Spectrum, tree_spectrum
-from flockana.theorems.claims import spectral
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Observed, condition, evidence, limit_claim, spectral
 
 
 def _errors(case: TreeCase, seen: Observed) -> np.ndarray:
@@ -23,13 +20,11 @@ def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     """The claim that every edge takes its desired length in the limit."""
     errors = _errors(case, seen)
     return limit_claim(
-        "lengths",
-        needs,
-        [settles(case, seen.end)],
+        "lengths", needs, [settles(case, seen.end)], evidence=evidence(seen.t, errors, "the largest length error")
+    ).described(
         computed=float(errors[-1]),
         stated="||x_e| - ρ_e| -> 0",
         witness={"time": float(seen.t[-1]), "at the start": float(errors[0])},
-        evidence=evidence(seen.t, errors, "the largest length error"),
         detail=f"edges are off their desired lengths by up to {errors[0]:.3g} ρ at the start and "
         f"{errors[-1]:.2g} ρ at t = {seen.t[-1]:g}",
     )
@@ -41,11 +36,8 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if directed:
         factors = f"Π (s² + a s + μ_e)(s² + a s)^{m - 1}, off by {spectrum.residual:.1g}"
-    return spectral(
-        "spectrum",
-        spectrum.margin,
-        spectrum.error,
-        needs,
+    margin = spectrum.margin
+    return spectral("spectrum", margin, spectrum.error, needs, proof=proof_of(case, m) if directed else None).described(
         computed={
             "zero modes": spectrum.zeros,
             "slowest other": -spectrum.slowest,
@@ -53,11 +45,8 @@ def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hy
         },
         stated=f"a semisimple zero of multiplicity (n - 1)(m - 1) = {expected}, and {factors}",
         witness="the law linearised in edge coordinates, at the end's bearings and the desired lengths",
-        proof=proof_of(case, m) if directed else None,
-        detail=(
-            f"the eigenvalue 0 has multiplicity {spectrum.zeros}, the dimension of the manifold of equilibria; the "
-            f"other modes decay at {spectrum.slowest:.4g} or faster; {factors}"
-        ),
+        detail=f"the eigenvalue 0 has multiplicity {spectrum.zeros}, the dimension of the manifold of equilibria; the "
+        f"other modes decay at {spectrum.slowest:.4g} or faster; {factors}",
     )
 
 
@@ -98,7 +87,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [*claims, _exponential(case, seen, spectrum, needs), root_claim(case, seen, needs, tolerances)]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="zone-1-corrected",
     title="Bearing-distance Theorem 1 corrected: edges of a tree take their desired lengths",
     statement=(
@@ -110,7 +99,6 @@ THEOREM = Theorem(
         "every equilibrium without collision has |x_e| = ρ. Distances of pairs that are not edges are not controlled."
     ),
     source="Jond, bearing-distance flocking, Theorem 1; corrected by us",
-    kind="trajectory",
     law=minimal_law,
     check=_check,
     claims=("lengths", "velocities", "spectrum", "exponential", "root-edge", "energy", "no-collision"),

@@ -6,11 +6,8 @@ import numpy as np
 
 from flockana.theorems.bearing_distance.tree_case import TreeCase, minimal_law, tree_hypotheses
 from flockana.theorems.bearing_distance.tree_limits import kept, state, velocity_claim
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Enclosure, Observed, judged, limit_claim
 
 
 def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
@@ -18,15 +15,11 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     q = case.on_manifold(seen.run.q[-1])
     u = float(np.abs(case.law.flow(0.0, q, 0.0 * q)[0]).max())
     least = kept(case, state(q, 0.0 * q))
-    return judged(
-        "equilibrium",
-        Enclosure.of(-least),
-        needs,
-        about="all",
+    margin = Enclosure.of(-least)
+    return judged("equilibrium", margin, needs, about="all", disproof="bearing-distance-printed").described(
         computed=least * float(case.rho.min()),
         stated="x -> 0 from any initial condition",
         witness={"q": q.tolist(), "p": "0", "largest |u|": u},
-        disproof="bearing-distance-printed",
         detail=f"at rest with every edge at its desired length nothing moves (|u| <= {u:.1g}): every |x_e| "
         f"stays at its value of {case.rho.min():.4g} or more",
     )
@@ -36,10 +29,7 @@ def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Cl
     """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
     length, least = case.lengths(seen.run.q[-1]), kept(case, seen.end)
     text = f"one edge never falls below {least:.4g} of its desired length"
-    return limit_claim(
-        "edges",
-        needs,
-        escape=Certificate(least, text, 0.0),
+    return limit_claim("edges", needs, escape=Certificate(least, text, 0.0)).described(
         computed=[float(length.min()), float(length.max())],
         stated="|x_e| -> 0 on every edge",
         witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[-1])},
@@ -63,10 +53,7 @@ def _hurwitz(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
     sampled = (case.edges_of(seen.run.q, seen.shape_error) / case.rho - 1.0).worst
     k = int(np.argmin(at.min(axis=1)))
     abscissa = _abscissa(case, at[k] * case.rho)
-    return judged(
-        "hurwitz",
-        sampled if sampled.hi < 0.0 else case.shortest(seen) / case.rho - 1.0,
-        needs,
+    return judged("hurwitz", sampled if sampled.hi < 0.0 else case.shortest(seen) / case.rho - 1.0, needs).described(
         computed=abscissa,
         stated="all eigenvalues of A_cl have negative real parts",
         witness={"time": float(seen.t[k]), "|x_e|/ρ": at[k].tolist()},
@@ -89,7 +76,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="zone-1-printed",
     title="Bearing-distance Theorem 1 as printed: edges vanish on a spanning tree",
     statement=(
@@ -98,7 +85,6 @@ THEOREM = Theorem(
         "at its desired length nothing moves; A_cl is Hurwitz only where all edges are longer than that."
     ),
     source="Jond, bearing-distance flocking, Theorem 1",
-    kind="trajectory",
     law=minimal_law,
     check=_check,
     claims=("equilibrium", "edges", "velocities", "hurwitz"),

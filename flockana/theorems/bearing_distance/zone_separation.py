@@ -5,13 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.laws.minimal import MinimalFlocking
 from flockana.measures.perception import both_ways
-from flockana.theorems.claims import erratum, judged
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.observed import observed
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, observed, stacked
 
 _RHO, _MU, _STRETCH = 2.0, 3.0, 0.5
 _PERIODS, _PER_PERIOD = 20, 40  # how many, and samples of each
@@ -58,9 +54,7 @@ def _conserved(tolerances: Tolerances) -> Claim:
     """Five agents on a frozen path: H is conserved without alignment, so nothing ever settles; with it H is lost."""
     alone, aligned = map(_path_energy, (0.0, 1.0))
     drift, left = abs(alone / alone[0] - 1.0).max(), aligned[-1] / aligned[0]
-    return judged(
-        "energy",
-        tolerances.energy - stacked([drift, left]),
+    return judged("energy", tolerances.energy - stacked([drift, left])).described(
         computed={"drift of H without alignment": float(drift.mid), "H(T)/H(0) with it": float(left.mid)},
         stated=f"H keeps its value by separation alone, and with alignment {tolerances.energy:g} of it is left at most",
         witness={"agents": 5, "graph": "a frozen undirected path", "H(0)": float(alone.mid[0])},
@@ -96,19 +90,12 @@ def _close_encounter() -> Claim:
     q, p = np.array([[0.0], [1.0]]), np.array([[2.0], [-2.0]])
     seen = observed(law, q, p, (0.0, 2.0), **_TIGHT)
     gap = Enclosure.around(seen.run.q[:, 1, 0] - seen.run.q[:, 0, 0], seen.shape_error.sum(axis=1)).min()
-    return judged(
-        "close-encounters",
-        gap,
-        about="all",
+    return judged("close-encounters", gap, about="all").described(
         computed=float(gap.mid),
         stated="with alignment agents avoid close encounters (separation > 0)",
         witness={"q(0)": q.tolist(), "p(0)": p.tolist()},
         detail="two agents at the desired spacing, closing in by four of it per time unit, pass through each other",
     )
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_pair(tolerances), _conserved(tolerances), _resonance(tolerances), _close_encounter()]
 
 
 THEOREM = erratum(
@@ -120,7 +107,7 @@ THEOREM = erratum(
         "does not exclude collisions: two agents that are fast enough meet."
     ),
     source="Jond, bearing-distance flocking, section 4",
-    check=_check,
+    check=lambda tolerances: [_pair(tolerances), _conserved(tolerances), _resonance(tolerances), _close_encounter()],
     references=("jond-2025",),
     expected={"verified": "alone energy chain", "refuted": "close-encounters"},
     ours=("energy", "chain"),

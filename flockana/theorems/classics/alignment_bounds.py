@@ -12,12 +12,8 @@ import numpy as np
 
 from flockana.interactions.weights import RationalWeight
 from flockana.theorems.claims import judged, undecided
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import positive_room
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.sampling import spread_over
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import Claim, Enclosure, Hypothesis, Observed, limit_claim, positive_room
 
 QUADRATURE = 1e-11  # of an integral: what quadrature, the incomplete beta function and a root are off by, together
 _FARTHEST = 300.0  # w, beyond which a distance e^w has no meaning any more
@@ -135,14 +131,10 @@ class Guarantee:
         x, x_m = spread_over(self.seen).max(), self.bound
         known = x_m.mid > 0.0 and x_m.mid < inf
         k = int(self.seen.spread.mid.argmax())
-        return judged(
-            name,
-            1.0 - x / x_m if known else Enclosure.around(0.0, inf),
-            needs,
+        return judged(name, 1.0 - x / x_m if known else Enclosure.around(0.0, inf), needs, proof=proof).described(
             computed=float(x.mid),
             stated=f"‖x(t)‖ <= x_M = {x_m.mid:.6g}",
             witness={"time": float(self.seen.t[k])},
-            proof=proof,
             detail=f"‖x‖ is at most {x.mid:.6g} at the samples, {x.hi:.6g} between them, and x_M = {x_m.mid:.6g}",
         )
 
@@ -156,14 +148,10 @@ class Guarantee:
         fall = (v[0] / v[1:count]).log() / t
         margin = fall / rate - 1.0
         k = margin.worst_index
-        return judged(
-            name,
-            margin,
-            needs,
+        return judged(name, margin, needs, proof=proof).described(
             computed=float(fall.mid[k]),
             stated=f"‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t), φ(x_M) = {rate.mid:.6g}",
             witness={"time": float(t[k] + seen.t[0])},
-            proof=proof,
             detail=f"from the start to any sample ‖v‖ falls at a mean rate of {fall.mid[k]:.6g} at least, "
             f"{seen.until(count)}",
         )
@@ -171,12 +159,9 @@ class Guarantee:
     def _limit(self, name: str, needs: list[Hypothesis], proof: str) -> Claim:
         v, x_m = self.seen.velocity_spread.mid, float(self.bound.mid)
         text = f"‖x‖ never exceeds {x_m:.6g}, so ‖v‖ falls exponentially" if x_m < inf else "x_M cannot be computed"
-        return limit_claim(
-            name,
-            needs,
+        return limit_claim(name, needs, proof=proof).described(
             computed=float(v[-1]),
             stated="‖v(t)‖ -> 0, and every q_j - q_i has a limit",
             witness={"time": float(self.seen.t[-1])},
-            proof=proof,
             detail=f"‖v‖ goes from {v[0]:.4g} to {v[-1]:.4g} at t = {self.seen.t[-1]:g}; {text}",
         )

@@ -7,13 +7,9 @@ from math import inf
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.nets import LinkArray, components
-from flockana.theorems.limits import Certificate
-from flockana.theorems.rounding import EPS
-
-IndexArray = npt.NDArray[np.intp]
+from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 _DIRECTIONS = 360  # along which two groups may be seen to part
 _TERMS = 4.0  # roundings of a difference, a length and a quotient
@@ -77,7 +73,8 @@ def permanently_connected(law: HeadingAveraging, q: FloatArray, heading: FloatAr
         return Certificate(-1.0, "rounding hides how fast the net averages")
     off = half * (heading - final_heading(heading, weights))
     size = float(np.linalg.norm(off)) + (n + _TERMS) * EPS * float(np.linalg.norm(half * heading))
-    room, i, j = _rooms(law, q)
+    i, j = np.triu_indices(n, 1)
+    room = np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range)
     drift = law.speed * law.dt * np.sqrt(1.0 / weights[i] + 1.0 / weights[j]) * size / gap
     margin = float((room - drift).min(initial=inf)) / law.range
     error = _TERMS * EPS * (1.0 + float(np.abs(q).max()) / law.range)
@@ -97,12 +94,6 @@ def neighbourhood_sizes(n: int, pairs: LinkArray) -> FloatArray:
 def final_heading(heading: FloatArray, weights: FloatArray) -> float:
     """Return the weighted mean heading that a constant connected net preserves and tends to."""
     return float(weights @ heading / weights.sum())
-
-
-def _rooms(law: HeadingAveraging, q: FloatArray) -> tuple[FloatArray, IndexArray, IndexArray]:
-    """Return the distance of each pair to r, and the pairs (i, j)."""
-    i, j = np.triu_indices(len(q), 1)
-    return np.abs(np.linalg.norm(q[i] - q[j], axis=1) - law.range), i, j
 
 
 def permanently_separated(law: HeadingAveraging, q: FloatArray, heading: FloatArray) -> Certificate:

@@ -4,9 +4,7 @@ from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
 
 _CLAIMS = ("bounded", "rate", "velocities")
 
@@ -17,7 +15,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [] if unmet(needs) else Guarantee(seen, sqrt(2.0)).claims(_CLAIMS, needs, proof="cucker-smale")
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="cucker-smale",
     title="For β <= ½ every start becomes a flock, at an exponential rate",
     statement=(
@@ -28,7 +26,6 @@ THEOREM = Theorem(
         "checked as Ha and Liu say it (ha-liu)."
     ),
     source="Cucker and Smale 2007",
-    kind="trajectory",
     law=law_is("the Cucker-Smale law", CuckerSmale),
     check=_check,
     claims=_CLAIMS,

@@ -5,11 +5,8 @@ import numpy as np
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.claims import judged, vacuous
 from flockana.theorems.classics.alignment_bounds import QUADRATURE, AlignmentRate
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is, positive_room
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Enclosure, Observed, condition, law_is, limit_claim, positive_room
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
@@ -30,7 +27,15 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     detail = f"w(0) = {w.mid[0]:.6g}, the integral {rest.mid:.6g}"
     slow = positive_room("w(0) < ∫λψ from x(0) on", rest - w[0], detail)
     fast = positive_room("w(0) > ∫λψ from x(0) on", w[0] - rest, detail)
-    return needs, [_invariant(seen, psi, x, w, needs, tolerances), *_sides(psi, x, w, rest, needs, slow, fast)]
+    far, least, end = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid), float(w.mid[-1])
+    bounded = f"x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run"
+    parts = f"their relative speed is {end:.6g} at the end and never below {least:.6g}"
+    match = "the two match, and their distance tends to a known one"
+    return needs, [
+        _invariant(seen, psi, x, w, needs, tolerances),
+        _side("bounded", slow, needs, float(x.mid[-1]), match, bounded),
+        _side("parts", fast, needs, end, "the two never match and separate", parts),
+    ]
 
 
 def _invariant(
@@ -41,52 +46,23 @@ def _invariant(
     passed = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
     off = abs((w + passed) / w[0] - 1.0)
     k = int(off.mid.argmax())
-    return judged(
-        "invariant",
-        tolerances.energy - off,
-        needs,
+    return judged("invariant", tolerances.energy - off, needs, proof="cucker-smale").described(
         computed=float(off.mid[k]),
         stated=f"w + ∫λψ from x(0) to x is w(0), to {tolerances.energy:g} of it",
         witness={"time": float(seen.t[k])},
-        proof="cucker-smale",
         detail=f"the invariant is off by {off.mid[k]:.2g} of w(0) at most",
     )
 
 
-def _sides(
-    psi: AlignmentRate,
-    x: Enclosure,
-    w: Enclosure,
-    rest: Enclosure,
-    needs: list[Hypothesis],
-    slow: Hypothesis,
-    fast: Hypothesis,
-) -> list[Claim]:
-    """Return the claims for both sides of the threshold; the claim for the other side is vacuous."""
-    far, least = psi.reached(float(x.mid[0]), float(w.mid[0])), float((w[0] - rest).mid)
-    bounded = limit_claim(
-        "bounded",
-        [*needs, slow],
-        computed=float(x.mid[-1]),
-        stated="the two match, and their distance tends to a known one",
-        proof="cucker-smale",
-        detail=f"{slow.detail}: x along w tends to {far:.6g}, and is {x.mid[-1]:.6g} at the end of the run",
-    )
-    parts = limit_claim(
-        "parts",
-        [*needs, fast],
-        computed=float(w.mid[-1]),
-        stated="the two never match and separate",
-        proof="cucker-smale",
-        detail=f"{fast.detail}: their relative speed is {w.mid[-1]:.6g} at the end and never below {least:.6g}",
-    )
-    return [
-        vacuous("bounded", slow) if slow.status == "unmet" else bounded,
-        vacuous("parts", fast) if fast.status == "unmet" else parts,
-    ]
+def _side(name: str, need: Hypothesis, needs: Needs, computed: float, stated: str, text: str) -> Claim:
+    """Return the claim for one side of the threshold, vacuous on the other."""
+    if need.status == "unmet":
+        return vacuous(name, need)
+    claim = limit_claim(name, [*needs, need], computed=computed, stated=stated, proof="cucker-smale")
+    return claim.described(detail=f"{need.detail}: {text}")
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="cucker-smale-pair",
     title="Two agents on a line match velocities below a critical relative speed, and separate permanently above it",
     statement=(
@@ -97,7 +73,6 @@ THEOREM = Theorem(
         "integral: the condition of Ha and Liu cannot be left out."
     ),
     source="Ours, on Cucker and Smale 2007 and Ha and Liu 2009",
-    kind="trajectory",
     law=law_is("the Cucker-Smale law", CuckerSmale),
     check=_check,
     claims=("invariant", "bounded", "parts"),

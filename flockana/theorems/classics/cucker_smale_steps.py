@@ -7,10 +7,8 @@ from flockana.laws.explicit_euler import ExplicitEuler
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.laws.taylor_step import TaylorStep
 from flockana.theorems.classics.alignment_bounds import Guarantee
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, positive_room
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Enclosure, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 _CLAIMS = ("bounded", "rate", "velocities")
 _ROUNDING = 1e-14  # relative, of a product of three numbers
@@ -36,7 +34,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [] if unmet(needs) else guarantee.claims(_CLAIMS, needs, proof="cucker-smale")
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="cucker-smale-steps",
     title="The Cucker-Smale law in steps of time flocks as the continuous one, if steps are short",
     statement=(
@@ -46,7 +44,6 @@ THEOREM = Theorem(
         "the discrete-time theorem of Cucker and Smale, who bound the step too."
     ),
     source="Cucker and Smale 2007, discrete time; condition and bounds ours, after Ha and Liu 2009",
-    kind="trajectory",
     law=_law,
     check=_check,
     claims=_CLAIMS,

@@ -7,17 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions import Gains
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.nets import laplacian
 from flockana.stability.consensus import consensus_root, consensus_system
 from flockana.stability.delay import DelaySystem, delay_margin, delay_system, rightmost_roots, root_error
-from flockana.theorems.claims import erratum, of_state, spectral
 from flockana.theorems.from_tube import decided
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, erratum, of_state, spectral
 
 _PROOF = "delayed-consensus"
 _AROUND = Fraction(1, 100)  # of the margin: how far to either side roots are looked at
@@ -56,10 +53,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
         found = delay_margin(system)
         listed[name] = found.delay
         off = max(off, abs(found.delay * 2.0 * largest / pi - 1.0), abs(found.frequency / largest - 1.0))
-    return spectral(
-        "margin",
-        _SWEEP - off,
-        0.0,
+    return spectral("margin", _SWEEP - off, 0.0).described(
         computed=listed,
         stated="π/(2 λ_n), where the net swings at the frequency λ_n",
         detail=f"of {len(nets)} nets the delay margin that a sweep over frequency finds is π/(2 λ_n), to {off:.1g}",
@@ -80,16 +74,11 @@ def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> C
             margin, error = sign * root.real / largest, sharp / largest
     words, side = ("grows", "right") if sign > 0 else ("decays", "left")
     closed = f"; it is Lambert's W(-λ_n τ)/τ, to {off:.1g}" if sign > 0 else ""
-    return spectral(
-        name,
-        margin,
-        error,
+    return spectral(name, margin, error).described(
         computed=listed,
         stated=f"at {share:g} times π/(2 λ_n) the slowest motion off the consensus {words}",
-        detail=(
-            f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
-            f"the imaginary axis{closed}"
-        ),
+        detail=f"in {len(nets)} nets the rightmost root except the consensus's is at least {margin:.3g} λ_n {side} of "
+        f"the imaginary axis{closed}",
     )
 
 
@@ -109,13 +98,10 @@ def _exact(name: str, sign: int) -> Claim:
     """Return an enclosure of one mode's rightmost root, by the principal branch W₀."""
     share = 1 + sign * _AROUND
     root = root_enclosure(share)
-    return decided(
-        name,
-        sign * root.real,
+    return decided(name, sign * root.real, proof=_PROOF).described(
         computed=str(root.real),
         stated=f"Re s {'>' if sign > 0 else '<'} 0 at λτ = {share} π/2",
         witness=str(root),
-        proof=_PROOF,
         detail=f"s = W(-λτ)/τ: Re s/λ in {root.real.str(8)}, Im s/λ in {root.imag.str(8)}",
     )
 
@@ -124,13 +110,9 @@ def _average(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
     """Return the claim that the agreed value is the mean of the start, whatever the delay."""
     off = max(float(np.abs(system.late[1].sum(axis=0)).max()) / largest for system, largest in nets.values())
     size = max(len(system.late[1]) for system, _ in nets.values())
-    return of_state(
-        "average",
-        size * EPS - off,
-        0.0,
+    return of_state("average", size * EPS - off, 0.0, proof=_PROOF).described(
         computed=off,
         stated="the sum over the agents never changes, so that they agree on the average of the start",
-        proof=_PROOF,
         detail=f"the columns of L sum to 0, to within {off:.1g} λ_n",
     )
 

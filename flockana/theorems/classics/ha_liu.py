@@ -5,9 +5,7 @@ from math import sqrt
 
 from flockana.laws.cucker_smale import CuckerSmale
 from flockana.theorems.classics.alignment_bounds import Guarantee
-from flockana.theorems.hypotheses import law_is
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
 
 _NAMES = ("bounded", "rate", "flock")
 
@@ -19,7 +17,7 @@ def _check(seen: Observed, tolerances: Tolerances, *, stretch: float) -> Checked
 
 
 THEOREM = (
-    Theorem(
+    run_theorem(
         id="ha-liu",
         title="A velocity spread below an integral of the weight makes a flock",
         statement=(
@@ -28,13 +26,12 @@ THEOREM = (
             "then ‖x(t)‖ <= x_M, where ∫φ from ‖x(0)‖ to x_M is ‖v(0)‖, and ‖v(t)‖ <= ‖v(0)‖ exp(-φ(x_M) t)."
         ),
         source="Ha and Liu 2009",
-        kind="trajectory",
         law=law_is("the Cucker-Smale law", CuckerSmale),
         check=partial(_check, stretch=2.0),
         claims=_NAMES,
         references=("ha-liu-2009",),
     ),
-    Theorem(
+    run_theorem(
         id="ha-liu-sharp",
         title="The same below a larger integral, which is sharp for two agents on a line",
         statement=(
@@ -42,7 +39,6 @@ THEOREM = (
             "agents that part on a line the condition is necessary too, but for equality."
         ),
         source="Ours, on Ha and Liu 2009",
-        kind="trajectory",
         law=law_is("the Cucker-Smale law", CuckerSmale),
         check=partial(_check, stretch=sqrt(2.0)),
         claims=_NAMES,

@@ -5,23 +5,12 @@ from typing import Any
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.vicsek import HeadingAveraging
 from flockana.measures.windows import joint_windows
-from flockana.theorems.claims import by_count
-from flockana.theorems.classics.averaging import (
-    Block,
-    blocks,
-    final_heading,
-    neighbourhood_sizes,
-    permanently_connected,
-    permanently_separated,
-)
+from flockana.theorems.classics import averaging
 from flockana.theorems.headline import does_not_hold
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Observed, Trajectory, by_count, condition, law_is, limit_claim
 
 _PROOF = "headings"
 _EVERY = 1e-6  # of a step: samples that are one step apart
@@ -55,19 +44,15 @@ def _hull(headings: FloatArray, needs: list[Hypothesis]) -> Claim:
     """Return the claim that no heading leaves the span of the headings before, in which means stay to the last bit."""
     least, most = headings.min(axis=1), headings.max(axis=1)
     out = np.flatnonzero((np.diff(least) < 0.0) | (np.diff(most) > 0.0))
-    return by_count(
-        "hull",
-        out.size,
-        needs,
+    return by_count("hull", out.size, needs, proof=_PROOF).described(
         computed=float(most[-1] - least[-1]),
         stated="the greatest heading never rises, the least never falls",
         witness={"steps at which one does": int(out.size), "first": int(out[0]) if out.size else None},
-        proof=_PROOF,
         detail=f"the headings' span goes from {most[0] - least[0]:.4g} to {most[-1] - least[-1]:.4g} radians",
     )
 
 
-def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hypothesis]) -> Claim:
+def _contraction(headings: FloatArray, found: tuple[averaging.Block, ...], needs: list[Hypothesis]) -> Claim:
     """Return the claim that over each block of n − 1 windows the span shrinks by the guaranteed factor."""
     n = headings.shape[1]
     span = np.ptp(headings, axis=1)
@@ -76,17 +61,13 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
         f"n - 1 = {n - 1} jointly connected windows in a row", bool(found), detail=f"{len(found)} times in the run"
     )
     slowest = max((b.factor for b in found), default=float("nan"))
-    return by_count(
-        "contraction",
-        len(missed),
-        [*needs, enough],
+    return by_count("contraction", len(missed), [*needs, enough], proof=_PROOF).described(
         computed=slowest,
         stated="over n - 1 windows the span shrinks by a factor below 1 that the nets alone guarantee",
         witness={
             "blocks": len(found),
             "steps of the first missed": (missed[0].start, missed[0].stop) if missed else None,
         },
-        proof=_PROOF,
         detail=f"{len(found)} blocks; the weakest guarantees {slowest:.4g} times the span"
         if found
         else does_not_hold(enough.name),
@@ -94,38 +75,33 @@ def _contraction(headings: FloatArray, found: tuple[Block, ...], needs: list[Hyp
 
 
 def _limit(run: Trajectory, heading: FloatArray, needs: list[Hypothesis], connected: Certificate) -> Claim:
-    weights = neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
-    return limit_claim(
-        "agreement",
-        needs,
-        [connected],
+    weights = averaging.neighbourhood_sizes(run.n, run.law.links(run.q[-1]))
+    return limit_claim("agreement", needs, [connected], proof=_PROOF).described(
         computed=float(np.ptp(heading)),
         stated="all headings tend to a common one",
-        witness={"heading": final_heading(heading, weights)} if connected.certain else None,
-        proof=_PROOF,
+        witness={"heading": averaging.final_heading(heading, weights)} if connected.certain else None,
         detail=f"at the end the headings differ by {np.ptp(heading):.3g} radians",
     )
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     run = seen.run
-    needs = [_plain(run.law), _every_step(run)]
-    if unmet(needs):
+    if unmet(needs := [_plain(run.law), _every_step(run)]):
         return needs, []
     headings = run.extra["heading"]
     nets = [run.law.links(q) for q in run.q[:-1]]
     windows = joint_windows(run.n, nets)
     at_end = run.law, run.q[-1], headings[-1]
-    connected = permanently_connected(*at_end)
-    lasting = _at_all_later_times(windows, connected, permanently_separated(*at_end))
+    connected = averaging.permanently_connected(*at_end)
+    lasting = _at_all_later_times(windows, connected, averaging.permanently_separated(*at_end))
     return [*needs, lasting], [
         _hull(headings, needs),
-        _contraction(headings, blocks(nets, headings, windows), needs),
+        _contraction(headings, averaging.blocks(nets, headings, windows), needs),
         _limit(run, headings[-1], [*needs, lasting], connected),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="jlm-headings",
     title="Nearest-neighbour averaging: headings agree under joint connectivity",
     statement=(
@@ -136,7 +112,6 @@ THEOREM = Theorem(
         "guarantee."
     ),
     source="Jadbabaie, Lin and Morse, theorem on leaderless coordination, in our words; span and factor are ours",
-    kind="trajectory",
     check=_check,
     law=law_is("nearest-neighbour averaging of headings", HeadingAveraging),
     claims=("hull", "contraction", "agreement"),

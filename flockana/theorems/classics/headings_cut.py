@@ -2,8 +2,7 @@
 
 from fractions import Fraction
 
-from flockana.theorems.claims import erratum, exact
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, erratum, exact
 
 _AWAY = Fraction(1, 100)  # of a turn: how far two agents head to either side of the direction of angle 0
 _TURNS = tuple(Fraction(k, 24) for k in range(24))  # by which the flock is turned
@@ -20,9 +19,7 @@ def _turned() -> Claim:
     pair = (_AWAY, -_AWAY)
     differ = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
     turned_round = averaged(pair)
-    return exact(
-        "frame-bound",
-        bool(differ),
+    return exact("frame-bound", bool(differ)).described(
         computed=str(turned_round),
         stated="turning the whole flock need not turn the mean headings with it",
         witness={"headings, in turns": [str(_AWAY), str(1 - _AWAY)], "mean": str(turned_round)},
@@ -39,9 +36,7 @@ def _away_from_cut() -> Claim:
     heading = sp.IndexedBase("h", real=True)
     turned = sp.expand(sp.Sum(heading[k] + turn, (k, 1, n)) / n)
     mean = sp.Sum(heading[k], (k, 1, n)) / n
-    return exact(
-        "clear-of-cut",
-        sp.simplify(turned.expand(func=True).doit() - mean.doit() - turn) == 0,
+    return exact("clear-of-cut", sp.simplify(turned.expand(func=True).doit() - mean.doit() - turn) == 0).described(
         stated="as long as no heading passes the direction of angle 0, the mean turns with the flock",
         detail="a heading h that stays in [0, 2π) is counted as h + t after a turn by t, and Σ (h + t)/n = Σ h/n + t",
     )
@@ -54,16 +49,10 @@ def _vectors() -> Claim:
     a, b, turn = sp.symbols("a b t", real=True)
     mean = sp.exp(sp.I * a) + sp.exp(sp.I * b)
     moved = sp.exp(sp.I * (a + turn)) + sp.exp(sp.I * (b + turn))
-    return exact(
-        "vectors",
-        sp.simplify(sp.expand(moved - sp.exp(sp.I * turn) * mean)) == 0,
+    return exact("vectors", sp.simplify(sp.expand(moved - sp.exp(sp.I * turn) * mean)) == 0).described(
         stated="the mean unit vector turns with the flock",
         detail="Σ e^(i(θ + t)) = e^(it) Σ e^(iθ): Vicsek's rule knows no direction of angle 0",
     )
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_turned(), _away_from_cut(), _vectors()]
 
 
 THEOREM = erratum(
@@ -75,7 +64,7 @@ THEOREM = erratum(
         "long as no heading passes angle 0; Vicsek's mean of unit vectors always is."
     ),
     source="ours, on Jadbabaie, Lin and Morse's averages of headings in [0, 2π)",
-    check=_check,
+    check=lambda tolerances: [_turned(), _away_from_cut(), _vectors()],
     references=("jadbabaie-lin-morse-2003", "vicsek-1995"),
     expected={"verified": "frame-bound clear-of-cut vectors"},
     author="flockana",

@@ -7,19 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.dynamics.between import Between
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.feedforward import acceleration
 from flockana.measures.nets import components, links
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
+from flockana.theorems.limits import Certificate, dies_out
 from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import Claim, FloatArray, Hypothesis, Needs, Observed, Trajectory, condition, lengths
 
 WINDOWS = 4  # of equal length, of the last half of a run: in each of them an agent must be linked to the informed
 
@@ -106,7 +101,7 @@ def linked_to_informed(run: Trajectory) -> np.ndarray:
 def comes_to_rest(
     seen: Observed,
     who: np.ndarray,
-    needs: list[Hypothesis],
+    needs: Needs,
     name: str,
     certificates: Iterable[Certificate] = (),
     *,
@@ -114,15 +109,7 @@ def comes_to_rest(
 ) -> Claim:
     """Return the claim that the velocities of some agents, of a run in its leader's frame, die out."""
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
-    return limit_claim(
-        name,
-        needs,
-        certificates,
-        proof=proof,
-        computed=float(speeds[-1]),
-        stated="p_i - p_r -> 0",
-        witness={"time": float(seen.t[-1]), "agents": count},
-        evidence=evidence(seen.t, speeds, "the largest difference"),
-        detail=f"the largest of {count} differences from the leader's velocity goes from {speeds[0]:.3g} to "
-        f"{speeds[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    what = f"the largest of {count} differences from the leader's velocity"
+    about: dict[str, Any] = {"series": speeds, "what": what, "of": "the largest difference", "stated": "p_i - p_r -> 0"}
+    claim = dies_out(seen, name, needs, certificates, proof=proof, **about)
+    return claim.described(witness={"time": float(seen.t[-1]), "agents": count})

@@ -2,19 +2,14 @@
 
 import numpy as np
 
-from flockana.base.vectors import lengths
-from flockana.kernels.paths import control_points
 from flockana.laws.link_keeping import LinkKeeping
 from flockana.measures.nets import components
 from flockana.measures.path_bounds import ROUNDING
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance, never_rises
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances
+from flockana.theorems.sampling import polygons
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, condition, judged, law_is, lengths
 
 _PROOF = "links-kept"
 
@@ -34,11 +29,8 @@ def longest_link(seen: Observed) -> Enclosure:
     if not len(ends):
         return Enclosure.of(0.0)
     at_samples = seen.distances(ends[:, 0], ends[:, 1]).max()
-    t, *states, slack = seen.run.path
     bound = float(at_samples.hi)
-    for k in range(len(t) - 1):
-        points, _, allowance = control_points(t[k + 1] - t[k], *(x[s] for s in (k, k + 1) for x in states))
-        off = allowance if slack is None else allowance + slack[k]
+    for _, points, off in polygons(seen.run):
         apart = lengths(points[ends[:, 1]] - points[ends[:, 0]]).max(axis=1)
         bound = max(bound, float((apart + 2.0 * np.max(off)).max(initial=0.0)))
     error = 2.0 * float(seen.between_error.max(initial=0.0)) + ROUNDING * float(np.abs(seen.run.q).max())
@@ -48,13 +40,9 @@ def longest_link(seen: Observed) -> Enclosure:
 def _below(seen: Observed, name: str, most: Enclosure, stated: str, needs: list[Hypothesis]) -> Claim:
     """The claim that no link is longer than `most`: by a bound of the path, refuted by a sample alone."""
     reached = longest_link(seen)
-    return judged(
-        name,
-        (most - reached) / seen.law.r,
-        needs,
+    return judged(name, (most - reached) / seen.law.r, needs, proof=_PROOF).described(
         computed=float(reached.mid),
         stated=stated,
-        proof=_PROOF,
         detail=f"the longest link is {reached.mid:.4g} at a sample and at most {reached.hi:.4g} between; "
         f"r = {seen.law.r:g}",
     )
@@ -75,7 +63,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="links-kept",
     title="A tension without bound at the range keeps the links of the start, and velocities agree",
     statement=(
@@ -90,7 +78,6 @@ THEOREM = Theorem(
         "ours, after Zavlanos, Jadbabaie and Pappas 2007, with the tension of Ji and Egerstedt 2007; the net is that "
         "of the start, without the links that both add"
     ),
-    kind="trajectory",
     check=_check,
     law=law_is("link-keeping", LinkKeeping),
     claims=("rate", "balance", "links", "connected", "velocities"),

@@ -4,22 +4,12 @@ import numpy as np
 
 from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.classics.leader_frame import (
-    WINDOWS,
-    as_the_leader_sees,
-    comes_to_rest,
-    constant_velocity,
-    informed,
-    linked_to_informed,
-    some_informed,
-)
+from flockana.theorems.classics import leader_frame
 from flockana.theorems.composed.cohesion import stays_within
-from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import below_multiple, distinct_pairs, no_collision, pairs_at_one_instant
 from flockana.theorems.olfati_saber.energy import never_rises
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, law_is, positive, run_theorem, unmet
 
 PROOF = "informed-agents"
 CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "no-collision")
@@ -27,33 +17,37 @@ CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "n
 
 def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
     """Return the hypothesis that uninformed agents are linked to informed ones in all windows, and a mask of these."""
-    who = linked_to_informed(run) & ~informed(run)
-    count, of = int(who.sum()), int((~informed(run)).sum())
-    text = f"{count} of {of} uninformed agents, in each of {WINDOWS} windows of the last half of the run"
+    who = leader_frame.linked_to_informed(run) & ~leader_frame.informed(run)
+    count, of = int(who.sum()), int((~leader_frame.informed(run)).sum())
+    text = f"{count} of {of} uninformed agents, in each of {leader_frame.WINDOWS} windows of the last half of the run"
     name = "uninformed agents are joined to informed ones across each of contiguous, bounded windows, without end"
     return Hypothesis(name, "assumed" if count else "unmet", float(count), text), who
 
 
 def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     run = observed.run
-    needs = [some_informed(run), positive(observed, c1_alpha="c1α", c2_alpha="c2α"), constant_velocity(run)]
+    needs = [
+        leader_frame.some_informed(run),
+        positive(observed, c1_alpha="c1α", c2_alpha="c2α"),
+        leader_frame.constant_velocity(run),
+    ]
     if unmet(needs):
         return needs, []
-    seen = as_the_leader_sees(observed)
+    seen = leader_frame.as_the_leader_sees(observed)
     below = below_multiple(seen.energy[0], run.law.gains.c1_alpha * run.law.alpha.c_star)
     lasting, linked = _lasting(run)
     return [*needs, lasting, below], [
         never_rises(seen, needs, squares=True, name="energy", proof=PROOF),
         stays_within(seen, needs, name="distance", proof=PROOF),
-        comes_to_rest(seen, informed(run), needs, "informed", proof="matched-velocities"),
-        comes_to_rest(seen, linked, [*needs, lasting], "linked"),
+        leader_frame.comes_to_rest(seen, leader_frame.informed(run), needs, "informed", proof="matched-velocities"),
+        leader_frame.comes_to_rest(seen, linked, [*needs, lasting], "linked"),
         distinct_pairs(seen, needs, tolerances, name="pairs"),
         pairs_at_one_instant(seen, needs, tolerances, name="one-instant"),
         no_collision(seen, [*needs, below], tolerances, name="no-collision"),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="su-informed",
     title="Algorithm 2 with few informed agents: they follow, and so does who is linked to them",
     statement=(
@@ -67,7 +61,6 @@ THEOREM = Theorem(
         "and a run shows its own end only."
     ),
     source="Su, Wang and Lin 2009, on a minority of informed agents",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2),
     check=_check,
     claims=CLAIMS,

@@ -6,24 +6,19 @@ from math import sqrt
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.feedforward import TargetFeedforward
 from flockana.laws.terms.navigation import Navigation
 from flockana.laws.terms.pairs import PairTerm
-from flockana.theorems.claims import judged
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, constant_velocity
 from flockana.theorems.composed.cohesion import stays_within
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, law_is, positive
-from flockana.theorems.limits import Certificate
 from flockana.theorems.meeting import least_is_known, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import attraction
 from flockana.theorems.olfati_saber.collisions import below_multiple, no_collision
 from flockana.theorems.olfati_saber.energy import pairs_dissipate
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Enclosure, Observed, Trajectory, condition, judged, law_is, positive
 
 PROOF = "informed-agents"
 CLAIMS = ("centre", "velocities", "distance", "no-collision")
@@ -68,14 +63,10 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
     error = np.maximum(seen.centre_error, seen.drift_error * unit)[:, None]
     off = (Enclosure.around(np.abs((found - said) * units), error).max(axis=1) / size).clip(0.0)
     worst, rate = int(np.argmax(off.mid)), convergence_rate(gains)
-    return judged(
-        "centre",
-        _AGREES - off,
-        needs,
+    return judged("centre", _AGREES - off, needs, proof=PROOF).described(
         computed=float(off.mid[worst]),
         stated=f"q_c − q_r solves z'' = −c1 z − c2 z', and dies out as exp(−{rate:.4g} t)",
         witness={"time": float(run.t[worst])},
-        proof=PROOF,
         detail=f"q_c − q_r and p_c − p_r are off the solution of z'' = −c1 z − c2 z' by {off.mid[worst]:.2g} of its "
         f"size at most; the slower root has the rate {rate:.4g}",
     )
@@ -113,7 +104,7 @@ def _check(observed: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="su-varying",
     title="A virtual leader of varying velocity: the centre of mass converges if all agents know its acceleration",
     statement=(
@@ -124,7 +115,6 @@ THEOREM = Theorem(
         "without the acceleration, leaves a lag."
     ),
     source="Su, Wang and Lin 2009, on a virtual leader with varying velocity",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2, composed=True),
     check=_check,
     claims=CLAIMS,

@@ -6,18 +6,14 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import by_count, judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import evidence, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.limits import dies_out
 from flockana.theorems.sampling import least_distance
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
 
 MATCHED = "matched-velocities"
 
 
-def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: list[Hypothesis]) -> Claim:
+def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: Needs) -> Claim:
     """Return the claim that some pairs never come nearer than where V alone is the energy of the start."""
     if not len(i):
         return by_count("no-collision", 0, needs, detail="no pair is joined")
@@ -25,14 +21,10 @@ def no_collision(seen: Observed, i: Any, j: Any, proof: str, needs: list[Hypothe
     bound = energy.clip(0.0).falling(np.vectorize(seen.law.potential.nearest, otypes=[float]))
     bound = bound.widened(1e-12 * seen.scales.length)
     k = int(seen.distances(i, j).mid.min(axis=1).argmin())
-    return judged(
-        "no-collision",
-        (least - bound) / seen.scales.length,
-        needs,
+    return judged("no-collision", (least - bound) / seen.scales.length, needs, proof=proof).described(
         computed=float(least.mid),
         stated=f"no such pair comes nearer than {bound.mid:.6g}, where V = H(0)",
         witness={"time": float(seen.t[k])},
-        proof=proof,
         detail=f"the least distance at the samples is {least.mid:.6g}, and between them at least {least.lo:.6g}",
     )
 
@@ -45,23 +37,15 @@ def _energy_error(seen: Observed, i: Any, j: Any) -> float:
     return float(potential.strength * np.sum(np.abs(x - 1.0) * e + e * e))
 
 
-def comes_to_rest(
-    seen: Observed, needs: list[Hypothesis], names: tuple[str, str], *, forces: str | None = None
-) -> list[Claim]:
+def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, forces: str | None = None) -> list[Claim]:
     """Return the claims that relative velocities, and the forces of the potentials, tend to 0."""
     still = np.zeros_like(seen.run.p[0])
     force = np.array([float(np.abs(seen.law.flow(0.0, q, still)[0]).max()) for q in seen.run.q])
-    extremal = limit_claim(
-        names[1],
-        needs,
-        computed=float(force[-1]),
-        proof=forces,
-        stated="the largest force -> 0",
-        witness={"time": float(seen.t[-1])},
-        evidence=evidence(seen.t, force, "the largest force"),
-        detail=f"the largest force goes from {force[0]:.3g} to {force[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
-    return [velocities_match(seen, needs, name=names[0], proof=MATCHED), extremal]
+    what: dict[str, Any] = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
+    return [
+        velocities_match(seen, needs, name=names[0], proof=MATCHED),
+        dies_out(seen, names[1], needs, series=force, proof=forces, **what),
+    ]
 
 
 def out_of_range(seen: Observed) -> Enclosure:

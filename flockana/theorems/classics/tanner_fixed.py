@@ -5,17 +5,14 @@ import numpy as np
 from flockana.laws.tanner import FixedNetFlocking
 from flockana.measures.nets import components
 from flockana.theorems.classics.tanner_claims import MATCHED, comes_to_rest, no_collision
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, condition, law_is, run_theorem, unmet
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     edges = np.array(seen.law.edges, dtype=np.int32).reshape(-1, 2)
     parts = 1 + int(components(seen.n, edges).max())
-    needs = [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]
-    if unmet(needs):
+    if unmet(needs := [condition("the net is connected", parts == 1, 1.5 - parts, f"{parts} component(s)")]):
         return needs, []
     return needs, [
         balance(seen, needs, tolerances, name="energy", proof="tanner"),
@@ -24,7 +21,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="tanner-fixed",
     title="A fixed connected net with potentials flocks",
     statement=(
@@ -34,7 +31,6 @@ THEOREM = Theorem(
         "says that the potentials of all agents are minimised: erratum tanner-minimum.)"
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on fixed networks",
-    kind="trajectory",
     law=law_is("the law on a fixed net", FixedNetFlocking),
     check=_check,
     claims=("energy", "no-collision", "velocities", "critical"),

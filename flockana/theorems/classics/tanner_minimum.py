@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from flockana.theorems.claims import equal, erratum, exact
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, exact
 
 
 def _own_block() -> Any:
@@ -31,9 +30,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     middle = 2 * potential.subs(s, sp.sqrt(spacing**2 + y**2))
     hill = sp.simplify(sp.limit(sp.diff(middle, y, 2), y, 0))
     return [
-        exact(
-            "printed",
-            bool(hill >= 0),
+        exact("printed", bool(hill >= 0)).described(
             computed=str(hill),
             stated="the potentials of all agents are minimised",
             witness="three agents, all joined, at rest on a line, √3/2 d apart",
@@ -41,9 +38,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
             "falls there as well, so that all but a thin set of starts leave",
         ),
         equal("corrected", outer, stated="the total potential is extremal", detail="no force acts on any agent"),
-        equal(
-            "second-order",
-            _own_block(),
+        equal("second-order", _own_block()).described(
             stated="at a minimum of the total no second derivative of an agent's own potential is negative",
             detail="along one agent the total and its own potential have the same second derivatives, for every pair "
             "potential: where the total is least each agent's own is, to second order",

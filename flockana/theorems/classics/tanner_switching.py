@@ -6,10 +6,8 @@ from flockana.laws.tanner import ProximityFlocking
 from flockana.measures.nets import components, links
 from flockana.theorems.classics.tanner_claims import comes_to_rest, no_collision, out_of_range
 from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import EPS, Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
 def _connected(seen: Observed) -> Hypothesis:
@@ -28,8 +26,7 @@ def _connected(seen: Observed) -> Hypothesis:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [_connected(seen)]
-    if unmet(needs):
+    if unmet(needs := [_connected(seen)]):
         return needs, []
     return needs, [
         balance(seen, [], tolerances, name="energy", proof="tanner"),
@@ -38,7 +35,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="tanner-switching",
     title="A net of proximity that stays connected flocks, though its forces jump",
     statement=(
@@ -49,7 +46,6 @@ THEOREM = Theorem(
         "least n - 1 pairs are beyond R."
     ),
     source="Tanner, Jadbabaie and Pappas 2007, on switching networks; the sufficient condition is ours",
-    kind="trajectory",
     law=law_is("the law on a net of proximity", ProximityFlocking),
     check=_check,
     claims=("energy", "no-collision", "velocities", "critical"),

@@ -3,20 +3,14 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
-from flockana.kernels.paths import bernstein
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.navigation import Navigation
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.hypotheses import condition, law_is
 from flockana.theorems.meeting import least_is_known, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import nothing_adds_energy
-from flockana.theorems.sampling import radius_over
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.sampling import polygons, radius_over
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, judged, law_is, lengths, stacked
 
 
 def gains_of(run: Trajectory | Observed) -> FloatArray:
@@ -35,14 +29,12 @@ def farthest(seen: Observed, place: FloatArray) -> Enclosure:
     run = seen.run
     error = seen.shape_error + seen.centre_error[:, None]
     at_samples = Enclosure.around(lengths(run.q - place), error).max(axis=0)
-    most, path = at_samples.hi.copy(), run.path
+    most = at_samples.hi.copy()
     there = np.zeros(3)  # paths have three components in every dimension
     there[: run.m] = place
     off = float(error.max()) + (float(seen.between_error.max()) if len(seen.t) > 1 else 0.0)
-    for k, h in enumerate(np.diff(path.t).tolist()):
-        points, _, allowance = bernstein(h, *(x[k + side] for side in (0, 1) for x in (path.q, path.p, path.u)))
-        slack = allowance if path.slack is None else allowance + path.slack[k]
-        most = np.maximum(most, lengths(points - there).max(axis=1) + slack + off)
+    for _, points, allowance in polygons(run):
+        most = np.maximum(most, lengths(points - there).max(axis=1) + allowance + off)
     return Enclosure(at_samples.lo, at_samples.mid, most)
 
 
@@ -60,14 +52,10 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
     margin = allowed - reached
     worst, whose = margin.worst_index, "the centre of mass" if law.moving else "the γ-agent"
     agent = int(pulled[worst])
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=float(reached.mid[worst]),
         stated=f"agent {agent} stays within {allowed.mid[worst]:.5g} of {whose}",
         witness={"agent": agent},
-        proof=proof,
         detail=f"of {pulled.size} agents with c1γ > 0 the one nearest to its bound, agent {agent}, goes "
         f"{reached.mid[worst]:.4g} from {whose}, and H(0) allows {allowed.mid[worst]:.4g}",
     )
@@ -75,14 +63,13 @@ def stays_within(seen: Observed, needs: list[Hypothesis], *, name: str = "bound"
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     pulls = seen.law.target is not None and bool(np.max(gains_of(seen)) > 0.0)
-    needs = [condition("c1γ > 0 of an agent", pulls, detail="" if pulls else "the γ-agent pulls nobody")]
-    if unmet(needs):
+    if unmet(needs := [condition("c1γ > 0 of an agent", pulls, detail="" if pulls else "the γ-agent pulls nobody")]):
         return needs, []
     needs += nothing_adds_energy(seen) + ([] if seen.law.alpha is None else least_is_known(seen))
     return needs, [stays_within(seen, needs)]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="cohesion",
     title="Agents that a γ-agent pulls stay near it",
     statement=(
@@ -92,7 +79,6 @@ THEOREM = Theorem(
         "H(0)/c1γ_i + (H(0)/(c1γ_i ℓ))²)."
     ),
     source="ours, on Olfati-Saber 2006, Theorem 3(i)",
-    kind="trajectory",
     law=law_is("Algorithm 2 or 3", Algorithm2, Algorithm3, composed=True),
     check=_check,
     claims=("bound",),

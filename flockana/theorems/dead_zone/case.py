@@ -6,20 +6,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
-from flockana.theorems.claims import judged
 from flockana.theorems.dead_zone.parting import Components, components_of
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.limits import Certificate, evidence, limit_claim
-from flockana.theorems.observed import Observed
+from flockana.theorems.limits import Certificate, dies_out
 from flockana.theorems.olfati_saber.collisions import least_distance
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
 PROOF = "dead-zone"
 _BOUND = 1e-9  # relative rounding of the explicit bound: that of H̄(0)/2k_r in an exponent
@@ -66,20 +60,11 @@ def settling(end: Components) -> Certificate:
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
-def velocities_match(seen: Observed, end: Components, needs: list[Hypothesis], *, name: str) -> Claim:
+def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str) -> Claim:
     """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
-    series = seen.mismatch.mid
-    return limit_claim(
-        name,
-        needs,
-        [settling(end)] if end.count == 1 else [],
-        escape=end.separation,
-        computed=float(series[-1]),
-        stated="K̃ -> 0: all velocities match",
-        witness={"time": float(seen.t[-1]), "K̃ at the start": float(series[0])},
-        evidence=evidence(seen.t, series, "K̃"),
-        detail=f"K̃ goes from {series[0]:.3g} to {series[-1]:.3g} at t = {seen.t[-1]:g}",
-    )
+    what: dict[str, Any] = {"what": "K̃", "of": "K̃", "start": "K̃ at the start", "stated": "K̃ -> 0: all velocities match"}
+    certificates = [settling(end)] if end.count == 1 else []
+    return dies_out(seen, name, needs, certificates, series=seen.mismatch.mid, escape=end.separation, **what)
 
 
 def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
@@ -92,11 +77,10 @@ def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:
     return bound.widened(_BOUND * bound.hi).clip(0.0)
 
 
-def no_collision(
-    seen: Observed, bound: Enclosure, unit: float, needs: list[Hypothesis], *, name: str, proof: str | None
-) -> Claim:
+def no_collision(seen: Observed, law: DeadZoneFlocking, bound: Enclosure, needs: Needs, *, name: str) -> Claim:
     """Return the claim that no two agents come closer than a bound: between samples too, except for a map."""
-    # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over the unit where the bound is exactly 0.
+    # The margin is ln(ρ/bound), as a bound may be exponentially small; ρ over d₁ where the bound is exactly 0.
+    unit = law.scales.length
     if seen.is_map:
         series = seen.run.metric("min_distance")
         least, time = Enclosure.of(series.min()), float(seen.t[int(np.argmin(series))])
@@ -110,13 +94,9 @@ def no_collision(
         margin = (least / bound).log()
     else:
         margin = least / unit if least.lo > 0.0 else Enclosure(-inf, least.mid / unit, inf)
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=None if seen.is_map else PROOF).described(
         computed=float(least.lo),
         stated=f"every distance > {bound.mid:.4g}",
         witness={"time": time},
-        proof=proof,
         detail=f"no two agents come closer than {least.lo:.4g} {where}; the bound is {bound.mid:.3g}",
     )

@@ -15,28 +15,16 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import link_lengths, links
-from flockana.theorems.basin import (
-    ALONE,
-    WINDOWS,
-    Basin,
-    barrier,
-    connected_within,
-    curvatures,
-    excess,
-    gyration,
-    lipschitz_constant,
-)
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.rounding import EPS
+from flockana.theorems import basin as basins
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray
 
 _PIECES = 8  # into which the lengths that a pair may take are divided: each is enclosed by itself
 _CLEAR = 0.999  # of the way to the nearest kink: so wide the widest window is
-_UNKNOWN = Basin()
+_UNKNOWN = basins.Basin()
 
 
 def hold(
@@ -47,26 +35,28 @@ def hold(
     *,
     off: float = 0.0,
     p_off: float = 0.0,
-) -> Basin:
+) -> basins.Basin:
     """Return the basin of the minimum beside a flock that meets no other; of the map of steps dt if given."""
     if len(q) == 1:
-        return ALONE
+        return basins.ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:
         return _UNKNOWN
-    curvature, stiffest = curvatures(law.interaction.hessian(q).toarray(), rigid_motions(q))
+    curvature, stiffest = basins.curvatures(law.interaction.hessian(q).toarray(), rigid_motions(q))
     if not curvature > 0.0:
         return _UNKNOWN
     force = _force(law, q, stiffest)
     distance = 2.0 * force / curvature
     nearer = law.interaction.r - sqrt(2.0) * distance  # links shorter than this are links at the minimum too
-    if distance >= gyration(q) or not connected_within(q, nearer):
+    if distance >= basins.gyration(q) or not basins.connected_within(q, nearer):
         return _UNKNOWN
     room = _CLEAR * _nearest_kink(law, q) / sqrt(2.0)
-    windows = [*(w for w in law.interaction.d1 * WINDOWS if w < room), room]
-    leaving, lipschitz = barrier(curvature, distance, windows, lambda window: _lipschitz(law, q, window), off=off)
+    windows = [*(w for w in law.interaction.d1 * basins.WINDOWS if w < room), room]
+    leaving, lipschitz = basins.barrier(
+        curvature, distance, windows, lambda window: _lipschitz(law, q, window), off=off
+    )
     stability = 1.0 if dt is None else _stability(law, q, stiffest, dt)
-    height = excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
-    return Basin(height, leaving, distance + off, curvature, stability)
+    height = basins.excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
+    return basins.Basin(height, leaving, distance + off, curvature, stability)
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
@@ -95,7 +85,7 @@ def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
 def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
     """Return a Lipschitz constant of ∇²U within a distance of q."""
     pairs = links(q, law.interaction.r)
-    return lipschitz_constant(len(q), pairs, _third(law, link_lengths(q, pairs), sqrt(2.0) * window))
+    return basins.lipschitz_constant(len(q), pairs, _third(law, link_lengths(q, pairs), sqrt(2.0) * window))
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:

@@ -4,12 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, erratum, lengths, of_state
 
 _SAME = 1e-9  # relative: two forces that differ by less are the same
 _ROUNDING = 1e-12  # relative, of a force of three agents: some hundred roundings
@@ -41,21 +38,11 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
     printed_change, corrected_change = change_by_turning(printed), change_by_turning(corrected)
     return [
-        of_state(
-            "printed",
-            _SAME - printed_change,
-            _ROUNDING,
-            about="all",
-            disproof="turned-axes",
-            detail=f"as a product by components: turning the axes changes the force by {printed_change:.3g} of itself",
+        of_state("printed", _SAME - printed_change, _ROUNDING, about="all", disproof="turned-axes").described(
+            detail=f"as a product by components: turning the axes changes the force by {printed_change:.3g} of itself"
         ),
-        of_state(
-            "corrected",
-            _SAME - corrected_change,
-            _ROUNDING,
-            about="all",
-            proof="turned-axes",
-            detail=f"with f once and n once the force turns with the axes, to {corrected_change:.2g}",
+        of_state("corrected", _SAME - corrected_change, _ROUNDING, about="all", proof="turned-axes").described(
+            detail=f"with f once and n once the force turns with the axes, to {corrected_change:.2g}"
         ),
     ]
 
@@ -69,5 +56,4 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, (7) and (9)",
     check=_check,
-    expected={"refuted": "printed", "verified": "corrected"},
 )

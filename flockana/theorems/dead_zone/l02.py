@@ -3,9 +3,8 @@
 from math import sqrt
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.claims import erratum, of_state
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
 
 _ROUNDING = 1e-12  # relative, of a force of two agents
 
@@ -20,22 +19,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     # two agents at rest under −F: ½ρ'² = 2(ψ(ρ) − ψ(3)), and with ρ = 3(1 − x²) the integrand is smooth at the start
     fall = quad(lambda x: 3.0 * x / sqrt(pair.psi(start * (1.0 - x * x)) - level), 0.0, 1.0, limit=200)[0]
     return [
-        of_state(
-            "printed",
-            attraction,
-            _ROUNDING,
+        of_state("printed", attraction, _ROUNDING, about="all", disproof=PROOF).described(
             computed=fall,
             stated="repulsion below r_b - δ",
-            about="all",
-            disproof=PROOF,
             detail=f"with n = q_i - q_j two agents at rest {start:g} apart, nearer than d1, are drawn together and "
             f"meet after {fall:.4g}",
         ),
-        of_state(
-            "corrected",
-            -attraction,
-            _ROUNDING,
-            detail=f"with n = q_j - q_i the same agents' force is {attraction:.4g} of that of a contact: it repels",
+        of_state("corrected", -attraction, _ROUNDING).described(
+            detail=f"with n = q_j - q_i the same agents' force is {attraction:.4g} of that of a contact: it repels"
         ),
     ]
 
@@ -48,5 +39,4 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, (6)-(8)",
     check=_check,
-    expected={"refuted": "printed", "verified": "corrected"},
 )

@@ -1,8 +1,7 @@
 """Erratum L3: φ_z, called a bounded potential, is a force that is unbounded as 1/ρ² where agents meet."""
 
-from flockana.theorems.claims import erratum, exact
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -14,21 +13,15 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     growth = sp.limit(RHO**2 * repulsion(), RHO, 0, "+")
     potential = derive_potential()
     return [
-        exact(
-            "printed",
-            growth != 2 * K_R,
+        exact("printed", growth != 2 * K_R, disproof=PROOF).described(
             computed=str(growth),
             stated="φ_z is a bounded, positive definite potential",
             witness="limit of ρ² |f| at 0",
-            disproof=PROOF,
             detail="φ_z is a force, and ρ²|φ_z| tends to 2 k_r at 0: it is unbounded",
         ),
-        exact(
-            "corrected",
-            potential.holds,
+        exact("corrected", potential.holds, proof=PROOF).described(
             computed=[str(residual) for residual in potential.residuals],
             stated="dψ/dρ = F, and ψ/(-2k_r ln ρ) -> 1",
-            proof=PROOF,
             detail="the potential in closed form, for η > 0 and η = 0, grows only logarithmically at 0, as n ~ ρ",
         ),
     ]
@@ -42,5 +35,4 @@ THEOREM = erratum(
     ),
     source="Li, Yuan and Liu, section III",
     check=_check,
-    expected={"refuted": "printed", "verified": "corrected"},
 )

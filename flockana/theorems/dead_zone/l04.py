@@ -4,13 +4,10 @@ import numpy as np
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import connectivity, min_distance
-from flockana.theorems.claims import erratum, of_map
 from flockana.theorems.dead_zone.case import PROOF, final_components
 from flockana.theorems.dead_zone.motions import advance, parting_pair
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import observed
 from flockana.theorems.shares import INTERVAL_ERROR, interval
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, limit_claim, observed, of_map
 
 _SEEDS = 10  # of each box
 
@@ -34,20 +31,13 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     least, most = interval(narrow, _SEEDS)[0], interval(wide, _SEEDS)[1]
     radius = 0.5 * min_distance(seen.end.q)
     return [
-        limit_claim(
-            "printed",
-            [],
-            escape=end.separation,
+        limit_claim("printed", [], escape=end.separation, disproof=PROOF).described(
             computed=radius,
             stated="no agent farther than r from the leader",
-            disproof=PROOF,
             detail=f"two agents {q[1, 0]:g} apart that leave each other at {2.0 * p[1, 0]:g} separate: at t = 10 "
             f"they are {radius:.4g} from their centre",
         ),
-        of_map(
-            "wide-starts",
-            least - most,
-            INTERVAL_ERROR,
+        of_map("wide-starts", least - most, INTERVAL_ERROR).described(
             computed=[narrow, wide],
             stated="the share of connected flocks falls with the box",
             detail=f"of {_SEEDS} starts in a box of 40 m {narrow} end connected, of {_SEEDS} in one of 150 m {wide}: "

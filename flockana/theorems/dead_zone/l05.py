@@ -2,20 +2,11 @@
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, exact, judged
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.observed import observed
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.theorem import Claim, Tolerances
-
-
-def _energy_of_neighbours(run: Trajectory) -> list[float]:
-    """H summed over pairs in range, at each sample."""
-    energies: list[float] = [run.law.literal_energy(q, p) for q, p in zip(run.q, run.p, strict=True)]
-    return energies
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, judged, observed
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -24,24 +15,19 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
     law = DeadZoneFlocking(DeadZoneInteraction(ramp=0.0))  # so that the switch is located
     seen = observed(law, [[0.0, 0.0], [16.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], (0.0, 2.0))
-    energy, far = seen.series(_energy_of_neighbours, floor=seen.floors.work), law.interaction.far_potential
+    far = law.interaction.far_potential
+    energy = seen.series(lambda run: list(map(law.literal_energy, run.q, run.p)), floor=seen.floors.work)
     rise = float(np.diff(energy.mid).max())
     identities = [saturated_energy_identity(m) for m in (1, 2, 3)]
     return [
-        judged(
-            "printed",
-            (energy[:-1] - energy[1:]) / far,
+        judged("printed", (energy[:-1] - energy[1:]) / far, disproof=PROOF).described(
             computed=rise,
             stated="H never rises",
-            disproof=PROOF,
             detail=f"as two agents come into range, H of neighbours rises by {rise:.4g}, and ψ(r) = {far:.4g}",
         ),
-        exact(
-            "corrected",
-            all(derivation.holds for derivation in identities),
+        exact("corrected", all(derivation.holds for derivation in identities), proof=PROOF).described(
             stated="dH̄/dt = -k₂ pᵀL̂p",
             witness=[str(derivation.residuals) for derivation in identities],
-            proof=PROOF,
             detail="the identity holds for a generic pair, so for every n, in 1, 2 and 3 dimensions",
         ),
         balance(seen, [], tolerances, name="across-the-switch"),

@@ -6,12 +6,9 @@ import numpy as np
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.theorems.claims import erratum, judged
 from flockana.theorems.dead_zone.case import PROOF, distance_bound
-from flockana.theorems.enclosure import stacked
-from flockana.theorems.observed import observed
 from flockana.theorems.olfati_saber.collisions import least_distance
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, judged, observed, stacked
 
 _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 _ATTAINED = 1e-3  # relative: so near the bound is attained
@@ -30,22 +27,15 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     gap = abs(least / bound - 1.0)
     distances = ", ".join(f"{a:.3g}" for a in least.mid)
     return [
-        judged(
-            "printed",
-            least / law.scales.length,
-            about="all",
+        judged("printed", least / law.scales.length, about="all", proof=PROOF).described(
             computed=least.mid.tolist(),
             stated="no collision",
-            proof=PROOF,
             detail=f"head-on at {', '.join(f'{s:g}' for s in speeds)} each, two agents come as near as {distances} "
             "and never meet",
         ),
-        judged(
-            "bound",
-            _ATTAINED - gap,
+        judged("bound", _ATTAINED - gap, proof=PROOF).described(
             computed=bound.mid.tolist(),
             stated="ρ >= 1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁))))",
-            proof=PROOF,
             detail=f"without damping distances attain the explicit bound, to "
             f"{gap.mid.max():.1g}, and it falls exponentially with the energy",
         ),

@@ -2,17 +2,13 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import spreads
-from flockana.theorems.claims import by_count, erratum, of_map
 from flockana.theorems.dead_zone.case import final_components, settling
 from flockana.theorems.dead_zone.hold import hold
 from flockana.theorems.dead_zone.motions import advance, parting_pair
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import observed
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, limit_claim, observed, of_map
 
 _SPREAD = 0.2  # of a ratio of two means of a chattering scheme: over starts they differ by 7 %
 
@@ -40,34 +36,21 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     ramped = hold(law, q, p, 0.01).certificate
     held = observed(hard, [[0.0, 0.0], [5.0, 0.0]], np.zeros((2, 2)), (0.0, 200.0)).given
     return [
-        limit_claim(
-            "printed",
-            [],
-            escape=end.separation,
+        limit_claim("printed", [], escape=end.separation).described(
             stated="all velocities match",
             detail=f"two agents that separate keep the velocity mismatch {end.drift:.4g} permanently",
         ),
         limit_claim("components", [], [settling(end)], detail="each of the two components is one agent"),
-        of_map(
-            "chatter",
-            1.0 - fine / coarse,
-            _SPREAD,
+        of_map("chatter", 1.0 - fine / coarse, _SPREAD).described(
             computed=[coarse, fine],
             stated="the scheme chatters, the less the shorter its step",
             detail=f"with the printed jumps √K̃ stays at {coarse:.3g} with a step of 0.01 and at {fine:.3g} with 0.002",
         ),
-        by_count(
-            "sliding",
-            int("sliding" not in held.stats),
-            stated="a pair at d1 is held there in a sliding mode",
-            detail=f"with every switch located: {held.message}",
+        by_count("sliding", int("sliding" not in held.stats)).described(
+            stated="a pair at d1 is held there in a sliding mode", detail=f"with every switch located: {held.message}"
         ),
-        limit_claim(
-            "ramp",
-            [],
-            [ramped],
-            computed=float(np.sqrt(spreads(p[None])[0] / len(p))),
-            detail="with a ramp of 0.25 the mismatch vanishes",
+        limit_claim("ramp", [], [ramped]).described(
+            computed=float(np.sqrt(spreads(p[None])[0] / len(p))), detail="with a ramp of 0.25 the mismatch vanishes"
         ),
     ]
 

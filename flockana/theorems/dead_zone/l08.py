@@ -1,9 +1,8 @@
 """Erratum L8: not all pairs of a flock can be at one distance, and contacts sit at r_b - δ, not at r_b."""
 
 from flockana.interactions.dead_zone import DeadZoneInteraction
-from flockana.theorems.claims import erratum, exact, spectral
 from flockana.theorems.dead_zone.case import PROOF
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact, spectral
 
 _ROUNDING = 1e-11  # m: of the root of a force
 
@@ -18,27 +17,17 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     contact = float(brentq(pair.force, pair.d1 - pair.ramp, pair.d1))
     off_r_b, off_d1 = (abs(contact - at) / pair.ramp for at in (pair.r_b, pair.d1))
     return [
-        exact(
-            "printed",
-            rank <= 2,
+        exact("printed", rank <= 2, disproof=PROOF).described(
             computed=rank,
             stated="all pairs of a flock at distance d",
-            disproof=PROOF,
             detail=f"four points at equal distances have a Gram matrix of rank {rank}, but the plane has 2 dimensions",
         ),
-        spectral(
-            "balance-distance",
-            1.0 - off_r_b,
-            _ROUNDING / pair.ramp,
+        spectral("balance-distance", 1.0 - off_r_b, _ROUNDING / pair.ramp, disproof=PROOF).described(
             computed=contact,
             stated="r_b",
-            disproof=PROOF,
             detail=f"two agents rest {contact:.5g} apart, not at the balance distance r_b = {pair.r_b:g}",
         ),
-        spectral(
-            "contact",
-            1.0 - off_d1,
-            _ROUNDING / pair.ramp,
+        spectral("contact", 1.0 - off_d1, _ROUNDING / pair.ramp).described(
             computed=contact,
             stated="r_b - δ",
             detail=f"two agents rest {pair.d1 - contact:.2g} below r_b - δ = {pair.d1:g}, on the ramp of repulsion",

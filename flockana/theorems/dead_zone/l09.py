@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import CircleTarget, LinearTarget
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.lattice import hexagonal_patch
@@ -15,9 +13,7 @@ from flockana.laws.led_dead_zone import LedDeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.theorems.claims import by_count, equal, erratum, of_map
 from flockana.theorems.dead_zone.parting import components_of
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed, observed
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Observed, Tolerances, Trajectory, limit_claim, observed
 
 _CLOSE = 0.02  # of a leader's speed: within it an agent's velocity is its leader's
 _APART = 30.0  # between two groups
@@ -32,9 +28,8 @@ def led_run(
     q = np.concatenate([hexagonal_patch(1, pair.d1) + np.array(centre) for centre in centres])
     middle = [k for k, centre in enumerate(np.repeat(np.array(centres), 7, axis=0)) if np.allclose(q[k], centre)]
     group = np.arange(len(q)) // 7
-    law = LedDeadZoneFlocking(
-        pair, leaders=leaders, group=group, pinned=middle, c1=2.0, c2=3.0, feedforward=feedforward
-    )
+    tied: dict[str, Any] = {"leaders": leaders, "group": group, "pinned": middle, "feedforward": feedforward}
+    law = LedDeadZoneFlocking(pair, c1=2.0, c2=3.0, **tied)
     return observed(SemiImplicitEuler(law, 0.01), q, 0.0 * q, (0.0, 60.0), t_eval=[0.0, 54.0, 60.0])
 
 
@@ -52,10 +47,7 @@ def _printed() -> Claim:
     """Return the claim that (9), which has no leaders, bonds two agents that should follow different ones."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
-    return limit_claim(
-        "printed",
-        [],
-        escape=bond,
+    return limit_claim("printed", [], escape=bond).described(
         stated="under (9) agents with different leaders do not match",
         detail="(9) has no leader: two agents 8 m apart that should part at 0.4 m/s match in the limit",
     )
@@ -86,16 +78,11 @@ def _apart(seen: Observed) -> Claim:
     group = np.array(seen.law.continuous.group)
     first, second = (seen.end.p[group == leader].mean(axis=0) for leader in (0, 1))
     difference = float(np.linalg.norm(first - second))
-    return of_map(
-        "different-leaders",
-        difference / 2.0 - (1.0 - _CLOSE),
-        _ROUNDING,
+    return of_map("different-leaders", difference / 2.0 - (1.0 - _CLOSE), _ROUNDING).described(
         computed=difference,
         stated=f"at t = {seen.t[-1]:g} agents with different leaders do not match, under the law with leaders",
-        detail=(
-            f"two groups {_APART:g} m apart whose leaders separate at 2 m/s separate at {difference:.4g} m/s; in "
-            "groups that start mixed, some unpinned agents follow the wrong leader (scenario dead-zone-leaders)"
-        ),
+        detail=f"two groups {_APART:g} m apart whose leaders separate at 2 m/s separate at {difference:.4g} m/s; in "
+        "groups that start mixed, some unpinned agents follow the wrong leader (scenario dead-zone-leaders)",
     )
 
 
@@ -105,10 +92,7 @@ def _fraction() -> Claim:
     q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
     force = float(np.abs(law.flow(0.0, q, p)[0]).max())
     r = law.interaction.r
-    return by_count(
-        "fraction",
-        int(force == 0.0 and q[1, 0] >= r),
-        about="all",
+    return by_count("fraction", int(force == 0.0 and q[1, 0] >= r), about="all").described(
         stated="to pin a fraction of the agents makes all follow",
         witness={"force": force, "distance": float(q[1, 0])},
         detail=f"an agent at rest {q[1, 0]:g} m from the only pinned one, which leaves with its leader, never feels a "
@@ -121,34 +105,20 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic.led_dead_zone import led_energy_identity
 
     runs, residuals = _runs(), [row for m in (1, 2, 3) for row in led_energy_identity(m).residuals]
+    one, turning = "all follow one leader that one agent of seven is pinned to", "all follow a leader that turns"
     deaf, late = float(_slip(runs["unknown"].run).min()), runs["unknown"].t[1:]
     return [
         _printed(),
-        equal(
-            "energy",
-            residuals,
+        equal("energy", residuals).described(
             stated="dH/dt = -k₂ pᵀL̂p within groups - c₂ Σ h_i ‖p_i - p_l‖² - Σ f_i·p_l, in the frames of the leaders",
             detail="it holds in 1, 2 and 3 dimensions; with one leader Σ f_i = 0 and H never rises; neighbours with "
             "different leaders add or remove energy",
         ),
-        _follow(
-            "one-leader",
-            runs["one"],
-            "all follow one leader that one agent of seven is pinned to",
-            "with 1 of 7 pinned",
-        ),
+        _follow("one-leader", runs["one"], one, "with 1 of 7 pinned"),
         _apart(runs["two"]),
         _fraction(),
-        _follow(
-            "acceleration",
-            runs["known"],
-            "all follow a leader that turns, its acceleration known",
-            "with feedforward",
-        ),
-        of_map(
-            "acceleration-needed",
-            deaf - _CLOSE,
-            _ROUNDING,
+        _follow("acceleration", runs["known"], f"{turning}, its acceleration known", "with feedforward"),
+        of_map("acceleration-needed", deaf - _CLOSE, _ROUNDING).described(
             computed=deaf,
             stated="not all follow a leader that turns if its acceleration is not known",
             detail=f"without feedforward a velocity is off by {deaf:.2g} of the leader's speed at t = {late[0]:g} "

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import min_distance
@@ -10,10 +9,7 @@ from flockana.theorems.claims import erratum, exact, undecided
 from flockana.theorems.dead_zone.case import final_components
 from flockana.theorems.dead_zone.motions import parting_pair
 from flockana.theorems.dead_zone.parting import Component
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import EPS, Certificate, Claim, FloatArray, Tolerances, limit_claim, observed
 
 _TIMES = 2.0  # as much energy as can put the pair out of range
 
@@ -68,29 +64,20 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     left = kept.text.replace("its energy", "the energy left")
     calm = Component(law, x, 0.1 * v)
     return [
-        limit_claim(
-            "printed-sufficient",
-            [],
-            escape=away.separation,
+        limit_claim("printed-sufficient", [], escape=away.separation).described(
             stated="limited mismatch, inertia and energy H0 suffice for Theorem 1",
-            detail=(
-                f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
-                "neither stay together nor match velocities (L4, L7)"
-            ),
+            detail=f"two agents satisfy the conditions at H0 = {law.hamiltonian(0.0, q, p):.4g}, and separate: they "
+            "neither stay together nor match velocities (L4, L7)",
         ),
         _necessary(),
-        limit_claim(
-            "sufficient",
-            [],
-            [calm.bond],
+        limit_claim("sufficient", [], [calm.bond]).described(
             computed=energy_share(law, x, 0.1 * v),
             stated="a condition that suffices: a connected flock with H̄ < (n - 1) ψ̄(r) stays connected and matches",
             detail=f"two agents in contact that leave at {0.2 * v[1, 0]:.3g} m/s",
         ),
         limit_claim(
-            "not-necessary",
-            [],
-            [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)],
+            "not-necessary", [], [Certificate(min(share - 1.0, kept.margin), left, kept.error + 64.0 * EPS)]
+        ).described(
             computed=share,
             stated="the condition is not necessary: a flock with more energy may stay together",
             detail=f"two agents with H̄ = {share:.4g} ψ̄(r) leave at {2.0 * v[1, 0]:.3g} m/s, k₂ = 10; at t = 10 "

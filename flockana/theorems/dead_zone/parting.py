@@ -24,13 +24,11 @@ from math import floor, inf, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from flockana.base.checks import FloatArray
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.nets import components, links
 from flockana.theorems.basin import Basin
 from flockana.theorems.dead_zone.hold import hold
-from flockana.theorems.limits import Certificate
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Certificate, FloatArray
 
 _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole one
 

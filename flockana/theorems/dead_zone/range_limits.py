@@ -4,11 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.kernels.ranges import follow_pairs, follow_steps
 from flockana.laws.discrete import DiscreteLaw
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
+from flockana.theorems.toolkit import EPS, Observed, Trajectory
 
 _NEXT = 1.5  # steps: samples of a map that are farther apart have states between them that were not kept
 

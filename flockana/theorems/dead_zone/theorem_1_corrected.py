@@ -3,33 +3,19 @@
 import numpy as np
 
 from flockana.theorems.claims import by_count, vacuous
-from flockana.theorems.dead_zone.case import (
-    PROOF,
-    dead_zone_law,
-    distance_bound,
-    final_components,
-    hypotheses,
-    no_collision,
-    settling,
-)
+from flockana.theorems.dead_zone import case
 from flockana.theorems.dead_zone.parting import Components
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import balance
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, limit_claim, run_theorem, unmet
 
 
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
     """−k₂ pᵀL̂p is a sum of squares: no rounding can change its sign, and samples where it has another are counted."""
     worst, rising, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
-    return by_count(
-        "rate",
-        rising,
-        needs,
+    return by_count("rate", rising, needs, proof=None if seen.is_map else case.PROOF).described(
         computed=float(rate[worst]),
         stated="dH̄/dt = -k₂ pᵀL̂p <= 0, across all switches",
         witness={"time": float(seen.t[worst]), "samples at which it is positive": rising},
-        proof=None if seen.is_map else PROOF,
         detail=f"the saturated energy goes from {energy[0]:.6g} to {energy[-1]:.6g}",
     )
 
@@ -42,10 +28,7 @@ def _balance(seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) ->
 
 def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
     """Within each component velocities match in the end; a finite run cannot refute the limit."""
-    return limit_claim(
-        "components",
-        needs,
-        [settling(end)],
+    return limit_claim("components", needs, [case.settling(end)]).described(
         computed=end.mismatch,
         stated="velocities match within each component: K̃ of each -> 0",
         witness={"components": end.count},
@@ -54,21 +37,20 @@ def _components(seen: Observed, end: Components, needs: list[Hypothesis]) -> Cla
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, law = hypotheses(seen), dead_zone_law(seen.run)
+    needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    run, proof = seen.run, None if seen.is_map else PROOF
+    run = seen.run
     rate = np.array([law.flow(float(t), q, p)[1] for t, q, p in zip(run.t, run.q, run.p, strict=True)])
-    bound = distance_bound(seen, law)
     return needs, [
         _rate(seen, rate, needs),
         _balance(seen, needs, tolerances),
-        _components(seen, final_components(seen, law), needs),
-        no_collision(seen, bound, law.scales.length, needs, name="distance", proof=proof),
+        _components(seen, case.final_components(seen, law), needs),
+        case.no_collision(seen, law, case.distance_bound(seen, law), needs, name="distance"),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="dead-zone-1-corrected",
     title="Dead-zone flocking corrected: saturated energy, matching within components, explicit distances",
     statement=(
@@ -78,7 +60,6 @@ THEOREM = Theorem(
         "1/(√η sinh(H̄(0)/2k_r + asinh(1/(√η d₁)))), which is positive but exponentially small."
     ),
     source="ours; repairs Li, Yuan and Liu, Theorem 1",
-    kind="trajectory",
     check=_check,
     claims=("rate", "balance", "components", "distance"),
     references=("li-dead-zone",),

@@ -2,22 +2,12 @@
 
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.measures.metrics import cohesion_radius
-from flockana.theorems.claims import counted
-from flockana.theorems.dead_zone.case import (
-    PROOF,
-    dead_zone_law,
-    final_components,
-    hypotheses,
-    no_collision,
-    velocities_match,
-)
+from flockana.theorems.dead_zone import case
 from flockana.theorems.dead_zone.parting import Components
 from flockana.theorems.dead_zone.range_limits import first_entry
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS, frame_error
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.rounding import frame_error
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import EPS, Certificate, Enclosure, Observed, counted, limit_claim
 
 
 def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:
@@ -42,10 +32,8 @@ def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim
     room, known = _certain_radius(seen, end, radius)
     within, beyond = (-1.0, -1.0) if room is None else (float(room.lo), float(-room.hi))
     return limit_claim(
-        "cohesion",
-        needs,
-        [Certificate(within, "", 0.0)],
-        escape=Certificate(beyond, "", 0.0),
+        "cohesion", needs, [Certificate(within, "", 0.0)], escape=Certificate(beyond, "", 0.0)
+    ).described(
         computed=radius,
         stated=f"in the end no agent is farther than r = {end.r:g} from the leader (read: the centre of mass)",
         witness={"components": end.count, "time": float(seen.t[-1])},
@@ -66,12 +54,7 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
         detail = "the potential of a pair is 0 at r: nothing jumps"
     elif entry.unsure:
         detail = "between the samples, or within the run's error, a pair may come into range"
-    return counted(
-        "energy",
-        0,
-        int(enters),
-        possible,
-        needs,
+    return counted("energy", 0, int(enters), possible, needs).described(
         computed=jump if enters else 0.0,
         stated="H, summed over neighbours, never rises",
         witness={"agents": entry.pair, "time": entry.time},
@@ -80,21 +63,19 @@ def _energy(seen: Observed, law: DeadZoneFlocking, needs: list[Hypothesis]) -> C
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, law = hypotheses(seen), dead_zone_law(seen.run)
+    needs, law = case.hypotheses(seen), case.dead_zone_law(seen.run)
     if law is None or unmet(needs):
         return needs, []
-    end = final_components(seen, law)
+    end = case.final_components(seen, law)
     return needs, [
         _cohesion(seen, end, needs),
         _energy(seen, law, needs),
-        velocities_match(seen, end, needs, name="velocity"),
-        no_collision(
-            seen, Enclosure.of(0.0), law.scales.length, needs, name="collision", proof=None if seen.is_map else PROOF
-        ),
+        case.velocities_match(seen, end, needs, name="velocity"),
+        case.no_collision(seen, law, Enclosure.of(0.0), needs, name="collision"),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="dead-zone-1-printed",
     title="Dead-zone flocking as printed: cohesion, falling energy, one velocity, no collision",
     statement=(
@@ -104,7 +85,6 @@ THEOREM = Theorem(
         "of neighbours jumps (L5), velocities match within components only (L7); the last claim is true (L6)."
     ),
     source="Li, Yuan and Liu, Theorem 1 (its proof is omitted there)",
-    kind="trajectory",
     check=_check,
     claims=("cohesion", "energy", "velocity", "collision"),
     references=("li-dead-zone",),

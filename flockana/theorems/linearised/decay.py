@@ -5,7 +5,6 @@ from dataclasses import replace
 from math import sqrt
 from typing import Any
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError, FlockanaError
 from flockana.environment.obstacles import Wall
 from flockana.environment.targets import StaticTarget
@@ -18,10 +17,8 @@ from flockana.stability.decay import Decay, LinearRange, decay, decay_table, lin
 from flockana.stability.linearisation import Linearisation
 from flockana.stability.linearise import linearise
 from flockana.theorems.claims import erratum, spectral, undecided
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.observed import Observed
 from flockana.theorems.slides.e05 import fcc_star
-from flockana.theorems.theorem import Checked, Claim, Theorem, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, FloatArray, Observed, Tolerances, condition, run_theorem
 
 RANGES = ("hexagon 19, Algorithm 1", "hexagon 19, Algorithm 2")
 _MOST = 200  # agents: the spectrum is dense
@@ -65,20 +62,14 @@ def _agreement(decays: Sequence[Decay], tolerances: Tolerances) -> list[Claim]:
     other = max(decays, key=lambda each: each.random_difference)
     error = max(each.error / each.predicted for each in decays)
     return [
-        spectral(
-            "decay",
-            tolerances.agreement - worst.difference,
-            error,
+        spectral("decay", tolerances.agreement - worst.difference, error).described(
             computed={each.name: row(each) for each in decays},
             stated="K̃ falls at twice the decay rate of the slowest mode, along which the flock was displaced",
             witness=worst.name,
             detail=f"measured rates differ from the predicted ones by {worst.difference:.2g} at most ({worst.name}: "
             f"measured {worst.measured:.6g}, predicted {worst.predicted:.6g})",
         ),
-        spectral(
-            "random",
-            tolerances.agreement - other.random_difference,
-            error,
+        spectral("random", tolerances.agreement - other.random_difference, error).described(
             computed=other.random_measured,
             stated=other.random_linear,
             witness=other.name,
@@ -98,10 +89,7 @@ def _range(ranges: Mapping[str, LinearRange], alpha: AlphaInteraction) -> Claim:
     limits = "; ".join(
         f"{name}: 1 % at {each.limit(0.01):.2g} d, 10 % at {each.limit(0.1):.2g} d" for name, each in ranges.items()
     )
-    return spectral(
-        "range",
-        margin,
-        error,
+    return spectral("range", margin, error).described(
         computed={
             name: {key.replace("_", " "): getattr(each, key) for key in _RANGE_FIELDS} for name, each in ranges.items()
         },
@@ -165,12 +153,11 @@ THEOREM = (
         expected={"verified": "decay random range"},
         author="flockana",
     ),
-    Theorem(
+    run_theorem(
         id="linearised-decay-terminal",
         title="The linearisation is accurate where a run ends",
         statement=_STATEMENT + ". Checked at the equilibrium that the run's last state is near to.",
         source="ours; the statement is textbook knowledge",
-        kind="trajectory",
         check=_check_terminal,
         claims=_NAMES,
         reason="no stable equilibrium to return to",

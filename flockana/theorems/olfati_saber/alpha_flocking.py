@@ -1,27 +1,18 @@
 """Definition 5 of Olfati-Saber (2006), α-flocking, plain and strict, as two checkable statements."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import floor
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.theorems.claims import counted, judged
-from flockana.theorems.enclosure import Enclosure, Real
+from flockana.theorems import sampling
+from flockana.theorems.enclosure import Real
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, has_lattice
+from flockana.theorems.hypotheses import has_lattice
 from flockana.theorems.leads import bridge
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.sampling import (
-    fastest_between,
-    mismatch_over,
-    nets_at,
-    nets_between,
-    radius_over,
-    stretch_between,
-)
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, condition, counted, judged
 
 _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, may be off by
 
@@ -54,9 +45,7 @@ def _always(name: str, part: _Window, value: Enclosure, over: Enclosure, bound: 
     seen = value[part.first :]
     largest = Enclosure(seen.lo.max(), seen.mid.max(), max(seen.hi.max(), over.hi.max()))
     worst = int(np.argmax(seen.mid))
-    return judged(
-        name,
-        bound - largest,
+    return judged(name, bound - largest).described(
         computed=float(seen.mid[worst]),
         stated=f"{symbol} <= {float(Enclosure.of(bound).mid):.4g}",
         witness={"time": float(t[worst])},
@@ -79,11 +68,7 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
     possible = max(float(largest.max()), between)
     open_ = least[worst] <= most < possible
     near = "whether there are ever more is open: a pair comes as near to r as this run can tell"
-    return counted(
-        name,
-        most,
-        int(least[worst]),
-        int(possible),
+    return counted(name, most, int(least[worst]), int(possible)).described(
         computed=int(least[worst]),
         stated=f"at most {most}",
         witness={"time": float(t[worst])},
@@ -94,7 +79,7 @@ def _at_most(name: str, part: _Window, counts: tuple[FloatArray, FloatArray, flo
 
 def _connected(part: _Window) -> Claim:
     """Return the claim that the net is connected throughout, by links that are certain."""
-    between, at = nets_between(part.seen), nets_at(part.seen)
+    between, at = sampling.nets_between(part.seen), sampling.nets_at(part.seen)
     counts = at.components_least, at.components, float(between.components.max(initial=0.0))
     return _at_most("flock", part, counts, 1, "components")
 
@@ -102,7 +87,7 @@ def _connected(part: _Window) -> Claim:
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that a component keeps more than a share of the agents, by links that are certain."""
     n = part.seen.n
-    between, at = nets_between(part.seen), nets_at(part.seen)
+    between, at = sampling.nets_between(part.seen), sampling.nets_at(part.seen)
     fewest = floor(tolerances.giant * n + _SHARE) + 1  # agents that are more than the share
     counts = n - at.giant_most, n - at.giant, float(n - between.giant.min(initial=n))
     return _at_most("giant", part, counts, n - fewest, "agents outside the giant component")
@@ -114,16 +99,16 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
     off = 2.0 * seen.shape_error.max(axis=1) / d + rounding  # √Ẽ is a norm of the links' deviations over d
-    one_link, at, during = 2.0 * (r / d - 1.0) ** 2, nets_at(seen), nets_between(seen)
+    one_link, at, during = 2.0 * (r / d - 1.0) ** 2, sampling.nets_at(seen), sampling.nets_between(seen)
     root = Enclosure.around(np.sqrt(seen.run.metric("normalised_deviation_energy")), off).clip(0.0)
     deviation = root.square().widened(one_link * at.open_links / (2.0 * at.links + 1.0)).clip(0.0)
     # of links that stay: √Ẽ grows by no more than the largest of their deviations does
     jumps = one_link * during.open_links / (2.0 * during.links + 1.0)
-    between = (np.maximum(root.hi[:-1], root.hi[1:]) + stretch_between(seen) / d) ** 2 + jumps
+    between = (np.maximum(root.hi[:-1], root.hi[1:]) + sampling.stretch_between(seen) / d) ** 2 + jumps
     over = Enclosure(0.0, np.minimum(between, 1e300), between)
     return [
         _always("deviation", part, deviation, over, tolerances.deviation),
-        _always("mismatch", part, seen.mismatch / units, mismatch_over(seen) / units, tolerances.mismatch),
+        _always("mismatch", part, seen.mismatch / units, sampling.mismatch_over(seen) / units, tolerances.mismatch),
     ]
 
 
@@ -131,30 +116,21 @@ def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
     """Return the claim that R never exceeds a multiple of its value at the start of the window."""
     seen = part.seen
     after = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
-    grown = float(fastest_between(seen)[0]) * after if part.first else 0.0
+    grown = float(sampling.fastest_between(seen)[0]) * after if part.first else 0.0
     bound = tolerances.cohesion * seen.radius[part.first].widened(grown)
-    return _always("cohesive", part, seen.radius, radius_over(seen), bound)
+    return _always("cohesive", part, seen.radius, sampling.radius_over(seen), bound)
 
 
-def _given(seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], _Window]:
+def _check(seen: Observed, tolerances: Tolerances, *, strict: bool = False) -> Checked:
     window, part = _window(seen, tolerances)
-    return [has_lattice(seen), window], part
-
-
-def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, part = _given(seen, tolerances)
-    if unmet(needs):
+    if unmet(needs := [has_lattice(seen), window]):
         return needs, []
-    return needs, [_giant(part, tolerances), _cohesive(part, tolerances), *_common(part, tolerances)]
-
-
-def _check_strict(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs, part = _given(seen, tolerances)
-    return needs, [] if unmet(needs) else [_connected(part), *_common(part, tolerances)]
+    own = [_connected(part)] if strict else [_giant(part, tolerances), _cohesive(part, tolerances)]
+    return needs, [*own, *_common(part, tolerances)]
 
 
 THEOREM = (
-    Theorem(
+    run_theorem(
         id="alpha-flocking",
         title="The run is α-flocking (Definition 5)",
         statement=(
@@ -163,19 +139,17 @@ THEOREM = (
             "sample is no window."
         ),
         source="Olfati-Saber 2006, Definition 5",
-        kind="trajectory",
         check=_check,
         enclosed=enclosed_by("alpha_flocking", "flocking_enclosed"),
         claims=("giant", "cohesive", "deviation", "mismatch"),
         leads={"giant": bridge},
     ),
-    Theorem(
+    run_theorem(
         id="alpha-flocking-strict",
         title="The run is strictly α-flocking (Definition 5)",
         statement="Over [t0, tf] the net is connected, Ẽ <= ε₁ and K̃ <= ε₂.",
         source="Olfati-Saber 2006, Definition 5, strict form",
-        kind="trajectory",
-        check=_check_strict,
+        check=partial(_check, strict=True),
         enclosed=enclosed_by("alpha_flocking_strict", "flocking_enclosed"),
         claims=("flock", "deviation", "mismatch"),
         leads={"flock": bridge},

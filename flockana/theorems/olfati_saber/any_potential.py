@@ -14,28 +14,13 @@ from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import judged, vacuous
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import (
-    condition,
-    hypothesis_from_fact,
-    law_is,
-    positive,
-    smooth_pair,
-    weight_nonnegative,
-)
-from flockana.theorems.limits import limit_claim
+from flockana.theorems.hypotheses import hypothesis_from_fact, smooth_pair, weight_nonnegative
+from flockana.theorems.limits import dies_out
 from flockana.theorems.meeting import above_least, least_is_known, meeting
-from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.collisions import (
-    below_multiple,
-    energy_at_end,
-    energy_at_start,
-    no_collision,
-    pairs_at_one_instant,
-)
+from flockana.theorems.olfati_saber import collisions
 from flockana.theorems.sampling import nets_at, radius_over
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Enclosure, Observed, condition, judged, law_is, positive, vacuous
 
 PROOF, LIMITS = "any-potential", "any-potential-limits"
 _ROUNDING = 1e-12  # of a potential
@@ -85,8 +70,8 @@ def continuous_force(seen: Observed, apart: Hypothesis) -> list[Hypothesis]:
 
 def never_meets(seen: Observed) -> Hypothesis:
     """Return the hypothesis that the energy at the start keeps all pairs apart, E(0) < c*."""
-    energy = seen.energy[0] if isinstance(seen.law, Algorithm2) else energy_at_start(seen)
-    return below_multiple(above_least(seen, energy), meeting(seen).c_star)
+    energy = seen.energy[0] if isinstance(seen.law, Algorithm2) else collisions.energy_at_start(seen)
+    return collisions.below_multiple(above_least(seen, energy), meeting(seen).c_star)
 
 
 def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
@@ -118,13 +103,13 @@ def stays_together(seen: Observed) -> Hypothesis:
     if parts[worst] > 1:
         detail = f"this run is no flock at t = {seen.t[worst]:.4g}, where it has {int(parts[worst])} components"
         return Hypothesis(name, "unmet", 1.0 - float(parts[worst]), detail)
-    energy, apart = energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
+    energy, apart = collisions.energy_at_start(seen), disconnected_energy(seen.law, seen.n, seen.m)
     if energy.lo >= apart:
         detail = f"Ω_c holds a disconnected state at rest: its energy is {apart:.5g}, and c >= H(0) = {energy.mid:.5g}"
         return Hypothesis(name, "unmet", apart - float(energy.mid), detail)
     parted, of = parting_energy(seen), "ψ_α(r_α)" if is_paper(seen) else "(ψ(r) - L)"
     what = "H" if is_paper(seen) else "E"
-    for t, height in ((seen.t[0], energy), (seen.t[-1], energy_at_end(seen))):
+    for t, height in ((seen.t[0], energy), (seen.t[-1], collisions.energy_at_end(seen))):
         if (height := above_least(seen, height)).hi < parted:  # limits are those of the start at that time
             detail = f"at t = {t:.4g} {what} = {height.mid:.5g}: a disconnected state has (n-1) c1α {of} = {parted:.5g}"
             return Hypothesis(name, "met", parted - float(height.mid), detail, float(height.half_width))
@@ -142,30 +127,19 @@ def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str =
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
     """Claim that R stays below a bound."""
     worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
-    return judged(
-        name,
-        bound - radius_over(seen).max(),
-        needs,
+    return judged(name, bound - radius_over(seen).max(), needs, proof=proof).described(
         computed=largest,
         stated=f"R <= {text} = {bound.mid:.5g}",
         witness={"time": float(seen.t[worst])},
-        proof=proof,
         detail=f"cohesion radius R <= {largest:.4g}, and {text} allows {bound.mid:.4g}",
     )
 
 
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
     """Claim that forces tend to 0: the flock tends to the critical points of its potential."""
-    first, last = (float(np.linalg.norm(structural_force(seen.law, q), axis=1).max()) for q in seen.run.q[[0, -1]])
-    return limit_claim(
-        name,
-        needs,
-        computed=last,
-        stated="the largest force on an agent at rest -> 0",
-        witness={"time": float(seen.t[-1])},
-        proof=LIMITS,
-        detail=f"the largest force goes from {first:.3g} to {last:.3g} at t = {seen.t[-1]:g}",
-    )
+    forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
+    stated = "the largest force on an agent at rest -> 0"
+    return dies_out(seen, name, needs, series=forces, what="the largest force", stated=stated, proof=LIMITS)
 
 
 def _needs(seen: Observed) -> list[Hypothesis]:
@@ -178,8 +152,7 @@ def _needs(seen: Observed) -> list[Hypothesis]:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = _needs(seen)
-    if unmet(needs):
+    if unmet(needs := _needs(seen)):
         return needs, []
     apart, repels = never_meets(seen), positive(seen, c1_alpha="c1α")
     bounded, steady = bounded_at_contact(seen, apart), continuous_force(seen, apart)
@@ -191,18 +164,18 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     one_instant = (
         vacuous("one-instant", repels)
         if repels.status == "unmet"  # then c* = 0
-        else pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF)
+        else collisions.pairs_at_one_instant(seen, [*needs, repels], tolerances, name="one-instant", proof=PROOF)
     )
     return [*needs, *bounded, *steady, apart], [
         cohesion,
         velocities_match(seen, [*needs, *bounded], name="velocities", proof=LIMITS),
         critical(seen, [*needs, *bounded, *steady], name="critical"),
         one_instant,
-        no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
+        collisions.no_collision(seen, [*needs, repels, apart], tolerances, name="no-collision", proof=PROOF),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="any-potential",
     title="Algorithms 1 and 2 with any pair potential: cohesion, matched velocities, rest, few collisions",
     statement=(
@@ -213,7 +186,6 @@ THEOREM = Theorem(
         "c1α (ψ(0) - L), and none ever do if E(0) < c*, or if ψ is unbounded at contact."
     ),
     source="ours, on Olfati-Saber 2006, Theorems 1 and 3",
-    kind="trajectory",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, formulas=True, one_gain=True),
     check=_check,
     claims=("cohesion", "velocities", "critical", "one-instant", "no-collision"),

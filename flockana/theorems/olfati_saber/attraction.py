@@ -7,59 +7,47 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.equilibria.gradient_flow import structural_force
 from flockana.equilibria.terminal import DENSE_LIMIT, rigid_motions
 from flockana.interactions import AlphaInteraction
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.measures.nets import link_lengths, links
-from flockana.theorems.basin import (
-    ALONE,
-    WINDOWS,
-    Basin,
-    barrier,
-    connected_within,
-    curvatures,
-    excess,
-    gyration,
-    lipschitz_constant,
-)
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS, pair_force_error
+from flockana.theorems import basin as basins
+from flockana.theorems.rounding import pair_force_error
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed
 
 _PIECES = 16  # into which the lengths that a link may take are divided: each is enclosed by itself
 
 
 def attraction(
     law: Algorithm1 | Algorithm2, q: FloatArray, p: FloatArray, *, off: float = 0.0, p_off: float = 0.0
-) -> Basin:
+) -> basins.Basin:
     """Return the basin of the minimum beside a state that is known to some distance."""
     # Its barrier is 0 where nothing is known: at a saddle, in a flexible net, of a pair law that is not the paper's,
     # and of a flock with more coordinates than a dense Hessian is made for.
     if q.shape[0] == 1:
-        return ALONE
+        return basins.ALONE
     if q.size > DENSE_LIMIT or not isinstance(law.alpha, AlphaInteraction):
-        return Basin()
+        return basins.Basin()
     everywhere = isinstance(law, Algorithm2) and law.gains.c2_gamma > 0.0
     if not (everywhere or law.gains.c2_alpha > 0.0):
-        return Basin()
+        return basins.Basin()
     force, stiffness = _force(law, q), law.stiffness(q)
-    curvature, stiffest = curvatures(stiffness, rigid_motions(q))
+    curvature, stiffest = basins.curvatures(stiffness, rigid_motions(q))
     distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
-    if distance >= gyration(q):  # there is no turning to speak of: all agents are at one place
-        curvature, stiffest = curvatures(stiffness, _translations(q))
+    if distance >= basins.gyration(q):  # there is no turning to speak of: all agents are at one place
+        curvature, stiffest = basins.curvatures(stiffness, _translations(q))
         distance = float(2.0 * force / curvature) if curvature > 0.0 else inf
-    connected = everywhere or connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
+    connected = everywhere or basins.connected_within(q, paper_pair(law).r - sqrt(2.0) * distance)
     if distance + off == inf or not connected:
-        return Basin(inf, 0.0, distance, curvature)
-    windows = law.alpha.length * WINDOWS
-    leaving, lipschitz = barrier(curvature, distance, windows, lambda w: lipschitz_within(law, q, w), off=off)
-    height = excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
-    return Basin(height, leaving, distance + off, curvature)
+        return basins.Basin(inf, 0.0, distance, curvature)
+    windows = law.alpha.length * basins.WINDOWS
+    leaving, lipschitz = basins.barrier(curvature, distance, windows, lambda w: lipschitz_within(law, q, w), off=off)
+    height = basins.excess(p, p_off, force, curvature, off, stiffest, lipschitz) if leaving > 0.0 else inf
+    return basins.Basin(height, leaving, distance + off, curvature)
 
 
-def final_basin(seen: Observed) -> Basin:
+def final_basin(seen: Observed) -> basins.Basin:
     """Return the basin beside the last state of a run, as far as that is known; kept with the run."""
     q, p, q_error, p_error = seen.end
     off, p_off = float(np.linalg.norm(q_error)), float(np.linalg.norm(p_error))
@@ -85,7 +73,7 @@ def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float)
     """Return a Lipschitz constant L of ∇²U within a distance of q."""
     alpha, slack = paper_pair(law), sqrt(2.0) * window
     pairs = links(q, alpha.r + slack)
-    return lipschitz_constant(len(q), pairs, law.gains.c1_alpha * _third(alpha, link_lengths(q, pairs), slack))
+    return basins.lipschitz_constant(len(q), pairs, law.gains.c1_alpha * _third(alpha, link_lengths(q, pairs), slack))
 
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:

@@ -6,10 +6,9 @@ from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import alpha_gain, condition, law_is, positive
 from flockana.theorems.meeting import least_is_known, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import below_multiple, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import nothing_adds_energy
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 _MULTIPLES = {"below": 1, "twice": 2}  # of c*, by claim
 
@@ -25,8 +24,7 @@ def _needs(run: Observed) -> list[Hypothesis]:
 
 
 def _check(run: Observed, tolerances: Tolerances) -> Checked:
-    needs = _needs(run)
-    if unmet(needs):
+    if unmet(needs := _needs(run)):
         return needs, []
     pairs = meeting(run)
     above = energy_at_start(run) - pairs.floor
@@ -36,7 +34,7 @@ def _check(run: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="collision-energy",
     title="No collision below c*; above it there are some",
     statement=(
@@ -47,7 +45,6 @@ THEOREM = Theorem(
         "coincident pair over a pair's least energy."
     ),
     source="Olfati-Saber 2006, Theorems 1(iii) and 3(iv); that the bound is sharp is ours",
-    kind="trajectory",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2, composed=True),
     check=_check,
     enclosed=enclosed_by("collision_energy"),

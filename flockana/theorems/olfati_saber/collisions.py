@@ -5,27 +5,22 @@ that stays positive excludes it; two agents that stand to each other's left and 
 ever leaves, certainly met; in between it is open. In the plane a numerical run never shows a contact, only nearness.
 """
 
-from collections.abc import Iterable
 from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.interactions import AlphaInteraction
 from flockana.kernels.neighbours import pair_blocks
 from flockana.kernels.paths import control_points, touching_pairs
 from flockana.measures.metrics import pairs_at_one_place
 from flockana.measures.path_bounds import ROUNDING, Contact, contacts
-from flockana.theorems.claims import counted, judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.hypotheses import condition, positive_room
 from flockana.theorems.meeting import above_least, meeting
-from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
 from flockana.theorems.second_runs import DOUBT
-from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Tolerances
+from flockana.theorems.theorem import Claim, Hypothesis, HypothesisStatus, Needs, Tolerances
+from flockana.theorems.toolkit import Enclosure, Observed, Trajectory, condition, counted, judged, positive_room
 
 Pair = tuple[int, int]
 IndexArray = npt.NDArray[np.intp]
@@ -148,9 +143,7 @@ def below_multiple(energy: Enclosure, c_star: float, times: int = 1) -> Hypothes
     return positive_room(f"H(0) < {text}", times * c_star - energy, detail)
 
 
-def no_collision(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
-) -> Claim:
+def no_collision(seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None) -> Claim:
     """Return the claim that no two agents ever coincide: a lower bound of all distances is positive at all times."""
     closest, least = seen.run.closest_approach(), least_distance(seen)
     pair, margin = closest.pair, least - _noise(seen, tolerances)
@@ -163,20 +156,16 @@ def no_collision(
             margin = Enclosure.of(-certain[pair])
             by = f"passing each other by at least {certain[pair]:.4g}"
             text = f"collision: agents {pair[0]} and {pair[1]} change places on a line, {by}"
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=float(least.mid),
         stated="no two agents ever meet",
         witness={"pair": pair, "time": closest.time},
-        proof=proof,
         detail=f"{text} (closest: agents {pair[0]} and {pair[1]} at t = {closest.time:.4g})",
     )
 
 
 def distinct_pairs(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, disproof: str | None = None
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, disproof: str | None = None
 ) -> Claim:
     """Return the claim as printed that with H(0) < (k+1)c* at most k distinct pairs collide over the run (see E13)."""
     c_star, energy, pairs = meeting(seen).c_star, above_least(seen, seen.energy[0]), seen.n * (seen.n - 1) // 2
@@ -202,7 +191,7 @@ def distinct_pairs(
 
 
 def pairs_at_one_instant(
-    seen: Observed, needs: Iterable[Hypothesis], tolerances: Tolerances, *, name: str, proof: str | None = None
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str, proof: str | None = None
 ) -> Claim:
     """Return the corrected claim that at any instant at most ⌊H/c*⌋ pairs coincide."""
     # Pairs that may meet between the same two samples count as if they met at once; those that were never apart by more
@@ -217,14 +206,10 @@ def pairs_at_one_instant(
     low = float(spare.min(initial=-np.inf if len(seen.t) == 1 else np.inf)) + 0.5
     refuted = high < 0.0 and not seen.doubt
     margin = Enclosure.of(high) if refuted else Enclosure(min(low, high), min(low, high), max(low, high))
-    return judged(
-        name,
-        margin,
-        needs,
+    return judged(name, margin, needs, proof=proof).described(
         computed=int(together.max(initial=0)),
         stated="at most floor(H(t)/c*) pairs coincide at the same time t",
         witness={"time": float(seen.t[broken if refuted else worst]), "allowed": float(allowed[worst])},
-        proof=proof,
         detail=_instant_text(int(together.max(initial=0)), float(allowed.min())),
     )
 

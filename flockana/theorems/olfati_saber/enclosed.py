@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
@@ -11,21 +11,10 @@ from flockana.certified.levels import coincident_floor, coincident_state, discon
 from flockana.certified.series import PairNumbers
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Tube, down, up
+from flockana.theorems import from_tube
 from flockana.theorems.claims import undecided, vacuous
-from flockana.theorems.from_tube import (
-    TubeAndBasin,
-    below,
-    certain_links,
-    converges,
-    decided,
-    groups,
-    in_the_limit,
-    no_collision,
-    rest_strain,
-)
-from flockana.theorems.hypotheses import condition, positive
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition, positive, unmet
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
@@ -42,7 +31,7 @@ def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
     """Return the hypothesis H(0) < k c*."""
     with ctx.workprec(BITS):
         name = "H(0) < c*" if times == 1 else f"H(0) < {times} c*"
-        return below(name, tube.energy(0), times * _coincident_energy(tube))
+        return from_tube.below(name, tube.energy(0), times * _coincident_energy(tube))
 
 
 def _below_barrier(tube: Tube) -> Hypothesis:
@@ -67,8 +56,8 @@ def _stays_together(tube: Tube) -> Hypothesis:
     name = "every solution from Ω_c is a cohesive dynamic flock"
     reach = arb(exact(tube.law.alpha.r))
     for k, t in enumerate(tube.t[:-1]):
-        possible = certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
-        if len(groups(tube.n, possible)) > 1:
+        possible = from_tube.certain_links(dict(zip(tube.pairs, tube.distances_during(k), strict=True)), reach)[1]
+        if len(from_tube.groups(tube.n, possible)) > 1:
             return condition(name, False, -1.0, f"the net is certainly not connected about t = {t:.4g}")
     with ctx.workprec(BITS):
         apart = disconnected_state(tube.law.alpha, tube.n, tube.m)
@@ -83,72 +72,53 @@ def _stays_together(tube: Tube) -> Hypothesis:
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 1 for the starts of a tube."""
-    needs = [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]
-    if unmet(needs):
+    if unmet(needs := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
         return needs, []
-    case, needs = TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
-    low, barrier, matched = _below_c_star(tube), _below_barrier(tube), "velocities match in the moving frame"
-    whole = tube.status == "complete"
-    matching: dict[str, Any] = {"name": "ii", "stated": "K̃ -> 0", "detail": matched}
+    case, needs = from_tube.TubeAndBasin.of(tube, basin), [*needs, _stays_together(tube)]
+    low, barrier, matching = (
+        _below_c_star(tube),
+        _below_barrier(tube),
+        ("ii", "K̃ -> 0", "velocities match in the moving frame"),
+    )
+    proof = "any-potential-limits" if tube.status == "complete" else None
     return [*needs, low, barrier], [
         without_assumed(needs, lambda given: _lattice(case, given, tolerances)),
-        converges(case, needs, proof="any-potential-limits" if whole else None, **matching)
+        from_tube.converges(case, needs, *matching, proof)
         if needs[-1].status == "met"
-        else without_assumed(needs, lambda given: converges(case, given, **matching)),
-        no_collision(case, [*needs, low], name="iii"),
-        no_collision(case, [*needs, barrier], name="iii-barrier"),
+        else without_assumed(needs, lambda given: from_tube.converges(case, given, *matching)),
+        from_tube.no_collision(case, [*needs, low], name="iii"),
+        from_tube.no_collision(case, [*needs, barrier], name="iii-barrier"),
     ]
 
 
-def _lattice(case: TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
+def _lattice(case: from_tube.TubeAndBasin, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
     """Claim (i): the limit is an equilibrium whose links are d long, within the tolerance."""
     alpha, stated = case.tube.law.alpha, f"|link - d|/d <= {tolerances.lattice:g} in the limit"
     if case.basin is None:
-        return in_the_limit(case, needs, name="i", stated=stated)
+        return from_tube.in_the_limit(case, needs, name="i", stated=stated)
     with ctx.workprec(BITS):
-        strain = rest_strain(case.basin, alpha)
+        strain = from_tube.rest_strain(case.basin, alpha)
         margin, largest = arb(tolerances.lattice) - strain, up(strain.upper())
     detail = f"every start converges to the basin's equilibrium, whose links are off d by up to {largest:.2g} d"
-    return in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated, detail=detail)
+    return from_tube.in_the_limit(case, needs, margin, name="i", computed=largest, stated=stated, detail=detail)
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 3 for the starts of a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     needs, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
-    case, whole = TubeAndBasin.of(tube, basin), tube.status == "complete"
+    case, whole = from_tube.TubeAndBasin.of(tube, basin), tube.status == "complete"
+    limit, matching = ("convergence", "any-potential-limits") if whole else (None, None)
+    strict = "every start of the tube converges to a strict local minimum of U_λ (modulo rotations)"
+    rest = "every start converges to one equilibrium, ∇U_λ(x) = 0"
+    semidefinite = "almost every start tends to an equilibrium with ∇²U_λ >= 0"
+    others = from_tube.TubeAndBasin(tube, None, "")  # a basin says nothing of other starts
     claims = [
         _cohesive(case, needs),
-        converges(
-            case,
-            needs,
-            name="ii",
-            stated="every start of the tube converges to a strict local minimum of U_λ (modulo rotations)",
-            detail="the limit is a local minimum",
-        ),
-        converges(
-            case,
-            needs,
-            name="ii-converges",
-            stated="every start converges to one equilibrium, ∇U_λ(x) = 0",
-            detail="one limit",
-            proof="convergence" if whole else None,
-        ),
-        in_the_limit(
-            TubeAndBasin(tube, None, ""),  # a basin says nothing of other starts
-            needs,
-            name="ii-semidefinite",
-            stated="almost every start tends to an equilibrium with ∇²U_λ >= 0",
-            proof="convergence" if whole else None,
-        ),
-        converges(
-            case,
-            needs,
-            name="iii",
-            stated="K̃ -> 0",
-            detail="velocities match in the moving frame",
-            proof="any-potential-limits" if whole else None,
-        ),
+        from_tube.converges(case, needs, "ii", strict, "the limit is a local minimum"),
+        from_tube.converges(case, needs, "ii-converges", rest, "one limit", limit),
+        from_tube.in_the_limit(others, needs, name="ii-semidefinite", stated=semidefinite, proof=limit),
+        from_tube.converges(case, needs, "iii", "K̃ -> 0", "velocities match in the moving frame", matching),
     ]
     names = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
     if unmet([repels]):
@@ -157,13 +127,13 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
     return [*needs, repels, none, barrier], [
         *claims,
         _few_pairs(case, repels),
-        no_collision(case, [repels], name="iv-instant"),
-        no_collision(case, [repels, none], name="iv-none"),
-        no_collision(case, [repels, barrier], name="iv-barrier"),
+        from_tube.no_collision(case, [repels], name="iv-instant"),
+        from_tube.no_collision(case, [repels, none], name="iv-none"),
+        from_tube.no_collision(case, [repels, barrier], name="iv-barrier"),
     ]
 
 
-def _cohesive(case: TubeAndBasin, needs: list[Hypothesis]) -> Claim:
+def _cohesive(case: from_tube.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
     """Claim (i): R stays below the bound that the energy at the start allows, √(2 H(0)/c1γ)."""
     tube = case.tube
     if not tube.taken:
@@ -173,13 +143,9 @@ def _cohesive(case: TubeAndBasin, needs: list[Hypothesis]) -> Claim:
         largest = float(tube.cohesion_radius().max())
         bound = (2 * tube.energy(0) / gain).nonnegative_part().sqrt() if gain > 0 else arb(1e300)
         margin = arb(bound.lower()) - largest
-    return decided(
-        "i",
-        margin,
-        needs,
+    return from_tube.decided("i", margin, needs, proof="cohesion").described(
         computed=largest,
         stated=f"R <= sqrt(2 H_λ(0)/c1γ) = {float(bound):.5g}",
-        proof="cohesion",
         detail=f"cohesion radius R <= {largest:.5g} {case.until}"
         if case.basin is None
         else f"cohesion radius R <= {largest:.5g} "
@@ -187,13 +153,13 @@ def _cohesive(case: TubeAndBasin, needs: list[Hypothesis]) -> Claim:
     )
 
 
-def _few_pairs(case: TubeAndBasin, repels: Hypothesis) -> Claim:
+def _few_pairs(case: from_tube.TubeAndBasin, repels: Hypothesis) -> Claim:
     """Claim (iv) as printed, that with H(0) < (k+1) c* at most k pairs collide: certain where none does."""
     tube = case.tube
     with ctx.workprec(BITS):
         least = int(up((tube.energy(0) / _coincident_energy(tube)).lower()))
     bites = condition("k < n(n-1)/2", least < len(tube.pairs), float(len(tube.pairs) - least - 1))
-    apart = no_collision(case, [repels, bites], name="iv-printed")
+    apart = from_tube.no_collision(case, [repels, bites], name="iv-printed")
     if apart.status in ("verified", "vacuous"):
         return apart
     return undecided("iv-printed", f"{apart.detail}; whether more pairs meet is open", [repels, bites])
@@ -201,9 +167,9 @@ def _few_pairs(case: TubeAndBasin, repels: Hypothesis) -> Claim:
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check the energy of a collision for the starts of a tube."""
-    needs, case = [positive(tube, c1_alpha="c1α")], TubeAndBasin.of(tube, basin)
+    needs, case = [positive(tube, c1_alpha="c1α")], from_tube.TubeAndBasin.of(tube, basin)
     if unmet(needs):
         return needs, []
     bounds = {name: _below_c_star(tube, times) for name, times in _MULTIPLES.items()}
-    claims = [no_collision(case, [*needs, bound], name=name) for name, bound in bounds.items()]
+    claims = [from_tube.no_collision(case, [*needs, bound], name=name) for name, bound in bounds.items()]
     return [*needs, *bounds.values()], claims

@@ -1,42 +1,31 @@
 """The energy identities of Algorithms 1 to 3, on which the theorems rest, checked along a run."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.capsule import Capsule
 from flockana.environment.obstacles import Sphere, Wall
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.composition import Composition
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.sum_of_terms import SumOfTerms
-from flockana.theorems.claims import judged, undecided
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.hypotheses import condition, law_is, smooth_pair, weight_nonnegative
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, HypothesisStatus, Needs, Tolerances, run_theorem
+from flockana.theorems.toolkit import EPS, Enclosure, FloatArray, Observed, Trajectory, judged, lengths, undecided
 
 
-def proved(run: Observed, proof: str = "energy-identities") -> str | None:
+def proved(run: Any, proof: str = "energy-identities") -> str | None:
     """Return the id of the proof of this law's energy identity, for walls, spheres and common gains; else None."""
     known = all(type(obstacle) in (Sphere, Wall) for obstacle in run.law.obstacles)
     return proof if known and not run.law.gains.per_agent and type(run.law) is not Composition else None
 
 
 def balance(
-    seen: Observed,
-    needs: Iterable[Hypothesis],
-    tolerances: Tolerances,
-    *,
-    name: str = "balance",
-    proof: str | None = None,
+    seen: Observed, needs: Needs, tolerances: Tolerances, *, name: str = "balance", proof: str | None = None
 ) -> Claim:
     """Return the claim that H(t) − H(0) agrees with the integral of the closed-form rate."""
     energy, largest = seen.energy.mid, float(np.abs(seen.energy.mid).max())
@@ -44,14 +33,10 @@ def balance(
     worst = int(np.argmax(off.mid))
     residual, unit = float(seen.residual.mid[worst]), largest or 1.0
     course = "falls" if energy[-1] <= energy[0] else "rises"
-    return judged(
-        name,
-        tolerances.energy - off / unit,
-        needs,
+    return judged(name, tolerances.energy - off / unit, needs, proof=proof).described(
         computed=abs(residual) / unit,
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
         witness={"time": float(seen.t[worst]), "residual": residual},
-        proof=proof,
         detail=f"H {course} from {energy[0]:.6g} to {energy[-1]:.6g}; the balance is off by "
         f"{abs(residual) / unit:.2g} of the largest |H| at most",
     )
@@ -109,7 +94,7 @@ def falling_share(
 
 def never_rises(
     seen: Observed,
-    needs: Iterable[Hypothesis],
+    needs: Needs,
     *,
     since: int = 0,
     rate: Callable[[Trajectory], FloatArray] = Trajectory.energy_rate,
@@ -133,18 +118,12 @@ def never_rises(
         return undecided(name, "the motion is not known well enough to determine the sign of dH/dt", needs, proof=proof)
     share = share[since:stop]
     worst, highest = share.worst_index, float(rate(seen.run)[since:stop].max())
-    return judged(
-        name,
-        share,
-        needs,
+    return judged(name, share, needs, proof=proof).described(
         computed=highest,
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {seen.t[since]:.6g}",
         witness={"time": float(seen.t[since + worst])},
-        proof=proof,
-        detail=(
-            f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
-            f"{share.mid.min():.2g} times the sum of its terms' sizes{until}"
-        ),
+        detail=f"the closed-form rate is at most {highest:.3g} from t = {seen.t[since]:.4g} on; its size is at least "
+        f"{share.mid.min():.2g} times the sum of its terms' sizes{until}",
     )
 
 
@@ -237,7 +216,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="energy",
     title="Energy identities of Algorithms 1, 2 and 3",
     statement=(
@@ -249,7 +228,6 @@ THEOREM = Theorem(
         "your own terms, the rates that they return are compared with the energy of the run."
     ),
     source="Olfati-Saber 2006, proofs of Theorems 1, 3 and 6",
-    kind="trajectory",
     law=_law,
     check=_check,
     claims=("rate", "balance"),

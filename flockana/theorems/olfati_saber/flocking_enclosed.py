@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
 from math import floor
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,7 @@ from flockana.certified.balls import exact, square
 from flockana.certified.structural_energy import BITS
 from flockana.certified.tube import Pair, Tube, norm
 from flockana.theorems.from_tube import certain_links, decided, groups
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Tolerances, condition
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
@@ -58,7 +58,7 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
     return decided(name, most + arb("0.5") - number, computed=float(number.mid()), stated=stated, detail=text)
 
 
-def _deviation(tube: Tube, window: range, bound: float) -> Claim:
+def _deviation(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     """Return the claim Ẽ <= ε₁ at all times of the window."""
     d, reach = arb(exact(tube.law.alpha.d)), arb(exact(tube.law.alpha.r))
 
@@ -69,10 +69,10 @@ def _deviation(tube: Tube, window: range, bound: float) -> Claim:
         return (sums[0] / (2 * len(possible) + 1)).union(sums[1] / (2 * len(certain) + 1))
 
     highest, when = _highest(tube, window, value)
-    return _below("deviation", "Ẽ", highest, bound, when)
+    return _below("deviation", "Ẽ", highest, tolerances.deviation, when)
 
 
-def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
+def _mismatch(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     """Return the claim K̃ <= ε₂ at all times of the window."""
     units, n, m = arb(tube.law.scales.energy), tube.n, tube.m
 
@@ -82,7 +82,7 @@ def _mismatch(tube: Tube, window: range, bound: float) -> Claim:
         return sum((square(x - means[i % m]) for i, x in enumerate(p)), arb(0)) / (2 * n * units)
 
     highest, when = _highest(tube, window, value)
-    return _below("mismatch", "K̃", highest, bound, when)
+    return _below("mismatch", "K̃", highest, tolerances.mismatch, when)
 
 
 def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> Claim:
@@ -99,34 +99,29 @@ def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
     bound = arb(tolerances.cohesion) * each[0]
     highest = _highest(tube, range(len(each)), lambda k: each[k])[0]
     detail = f"R is at most {float(highest.upper()):.5g}, and {float(each[0].mid()):.5g} when the window begins"
-    return decided(
-        "cohesive", bound - highest, computed=float(highest.upper()), stated="R stays bounded", detail=detail
-    )
+    top, stated = float(highest.upper()), "R stays bounded"
+    return decided("cohesive", bound - highest, computed=top, stated=stated, detail=detail)
 
 
-def alpha_flocking(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check α-flocking for the starts of a tube."""
-    known, window = _window(tube, tolerances)
-    if known.status == "unmet":
-        return [known], []
+def _connected(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
+    """Return the claim that the net is connected throughout."""
+    return _components(tube, window, "flock", 1, lambda pairs: len(groups(tube.n, pairs)))
+
+
+def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
+    """Return the claim that a component keeps more than a share of the agents."""
     outside = tube.n - floor(tolerances.giant * tube.n + _SHARE) - 1
-    with ctx.workprec(BITS):
-        return [known], [
-            _components(tube, window, "giant", outside, lambda pairs: tube.n - groups(tube.n, pairs)[0]),
-            _cohesive(tube, window, tolerances),
-            _deviation(tube, window, tolerances.deviation),
-            _mismatch(tube, window, tolerances.mismatch),
-        ]
+    return _components(tube, window, "giant", outside, lambda pairs: tube.n - groups(tube.n, pairs)[0])
 
 
-def alpha_flocking_strict(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check α-flocking with a connected net for the starts of a tube."""
+def _check(
+    claims: Iterable[Callable[..., Claim]], tube: Tube, basin: BasinLike | None, tolerances: Tolerances
+) -> Checked:
+    """Return claims for the starts of a tube."""
     known, window = _window(tube, tolerances)
-    if known.status == "unmet":
-        return [known], []
     with ctx.workprec(BITS):
-        return [known], [
-            _components(tube, window, "flock", 1, lambda pairs: len(groups(tube.n, pairs))),
-            _deviation(tube, window, tolerances.deviation),
-            _mismatch(tube, window, tolerances.mismatch),
-        ]
+        return [known], [] if known.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]
+
+
+alpha_flocking = partial(_check, (_giant, _cohesive, _deviation, _mismatch))
+alpha_flocking_strict = partial(_check, (_connected, _deviation, _mismatch))

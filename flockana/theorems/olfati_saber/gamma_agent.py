@@ -12,12 +12,10 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.target import Target
 from flockana.environment.targets import CircleTarget, LinearTarget, RescaledVelocity, SineTarget, StaticTarget
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Hypothesis, HypothesisStatus
+from flockana.theorems.theorem import HypothesisStatus
+from flockana.theorems.toolkit import EPS, FloatArray, Hypothesis, Trajectory
 
 _CLOSED_FORMS = (StaticTarget, LinearTarget, SineTarget, CircleTarget)
 _NODES = np.array([-sqrt(0.6), 0.0, sqrt(0.6)])  # Gauss-Legendre, exact up to degree five

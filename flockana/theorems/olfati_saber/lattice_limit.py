@@ -2,10 +2,9 @@
 
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.asymptotics import lattice_limit
-from flockana.theorems.hypotheses import alpha_gain, law_is
+from flockana.theorems.hypotheses import alpha_gain
 from flockana.theorems.leads import strained
-from flockana.theorems.observed import Observed
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, law_is, run_theorem, unmet
 
 
 def _check(run: Observed, tolerances: Tolerances) -> Checked:
@@ -13,7 +12,7 @@ def _check(run: Observed, tolerances: Tolerances) -> Checked:
     return needs, [] if unmet(needs) else [lattice_limit(run, needs, tolerances, name="lattice")]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="lattice-limit-printed",
     title="The flock converges to an α-lattice, as the summaries print it",
     statement=(
@@ -22,7 +21,6 @@ THEOREM = Theorem(
         "it has come to rest at such a minimum."
     ),
     source="slides, Theorems 1(i) and 3(ii) and their summaries",
-    kind="trajectory",
     law=law_is("Algorithm 1 or 2", Algorithm1, Algorithm2),
     check=_check,
     claims=("lattice",),

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
-from flockana.base.checks import FloatArray
 from flockana.certified.flow import Flow
 from flockana.certified.laws import flow_of
 from flockana.certified.series import Piece
 from flockana.certified.structural_energy import BITS
 from flockana.certified.total_energy import powers_during, total_energy, work
 from flockana.certified.tube import Tube, up
-from flockana.theorems.claims import undecided
 from flockana.theorems.from_tube import decided
-from flockana.theorems.hypotheses import common_gains, condition
+from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances
+from flockana.theorems.toolkit import Checked, Claim, FloatArray, Hypothesis, Tolerances, condition, undecided
 
 if TYPE_CHECKING:
     from flockana.certified.tube import BasinLike
@@ -84,14 +82,10 @@ def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) ->
         if not squares:
             share = -total / size if size > 0 else arb(0, 1)
             margin = share if share.lower() < margin.lower() else margin
-    return decided(
-        "rate",
-        margin,
-        needs,
+    return decided("rate", margin, needs, proof=proved(tube, "theorem6")).described(
         computed=up(highest),
         stated="dH/dt <= 0" if since == 0 else f"dH/dt <= 0 for t >= {tube.t[since]:.6g}",
         witness={"time": when},
-        proof=proved(_law_of(tube), "theorem6"),
         detail=f"dH/dt is at most {up(highest):.3g} at all times from t = {tube.t[since]:g} to {tube.t[-1]:g}",
     )
 
@@ -101,31 +95,21 @@ def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Cla
     first, last = total_energy(tube.law, *tube.state(0)), total_energy(tube.law, *tube.state(-1))
     largest = abs(first).max(abs(last))
     share = abs(last - first - work(tube)) / largest if largest > 0 else arb(0)
-    return decided(
-        "balance",
-        arb(tolerances.energy) - share,
-        needs,
+    return decided("balance", arb(tolerances.energy) - share, needs, proof=proved(tube, "theorem6")).described(
         computed=up(share.upper()),
         stated=f"H(t) - H(0) = integral of dH/dt, to {tolerances.energy:g} of the largest |H|",
-        proof=proved(_law_of(tube), "theorem6"),
         detail=f"H goes from {float(first):.6g} to {float(last):.6g}; the balance is off by {up(share.upper()):.2g} of "
         "the largest |H| at most",
     )
 
 
-def _law_of(tube: Tube) -> Any:
-    """Return an object with the tube's law."""
-    return tube
-
-
 def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
     """Check Theorem 6 for the starts of a tube, over its time."""
-    law = _law_of(tube)
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)
         slow, since = _slow_enough(tube, flow)
         rests = _rests(tube)
-        needs = [common_gains(law), rests, slow, _stays_outside(tube)]
+        needs = [common_gains(tube), rests, slow, _stays_outside(tube)]
         if tube.status != "complete":
             reason, stated = f"the tube ends early: {tube.message}", "over the whole time span"
             return needs, [undecided(name, reason, needs, stated=stated) for name in ("rate", "balance")]

@@ -7,22 +7,11 @@ from flockana.theorems.from_tube import enclosed_by
 from flockana.theorems.hypotheses import law_is, positive
 from flockana.theorems.leads import strained
 from flockana.theorems.limits import without_assumed
-from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.any_potential import (
-    LIMITS,
-    PROOF,
-    attribute_claims,
-    bounded_at_contact,
-    is_paper,
-    never_meets,
-    potential_needs,
-    stays_together,
-    weight_inside,
-)
+from flockana.theorems.olfati_saber import any_potential
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.olfati_saber.collisions import below_the_barrier, energy_at_start, no_collision
 from flockana.theorems.olfati_saber.energy import proved
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Claim, Hypothesis, Observed, Tolerances, run_theorem, unmet
 
 
 def _barrier_proof(seen: Observed) -> str | None:
@@ -36,30 +25,26 @@ def _velocities(seen: Observed, needs: list[Hypothesis], bounded: list[Hypothesi
     caught = [final_basin(seen).certificate]
     if needs[-1].status == "assumed" and caught[0].certain:
         return velocities_match(seen, needs[:-1], name="ii", caught=caught)
-    return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=LIMITS)
+    return velocities_match(seen, [*needs, *bounded], name="ii", caught=caught, proof=any_potential.LIMITS)
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]
-    needs = [*gains, *weight_inside(seen), *potential_needs(seen)]
-    if unmet(needs):
+    if unmet(needs := [*gains, *any_potential.weight_inside(seen), *any_potential.potential_needs(seen)]):
         return needs, []
-    needs, low, barrier = (
-        [*needs, stays_together(seen)],
-        never_meets(seen),
-        below_the_barrier(seen, energy_at_start(seen)),
-    )
-    bounded, excluded = bounded_at_contact(seen, low), proved(seen, "collisions") if is_paper(seen) else PROOF
+    low, barrier = any_potential.never_meets(seen), below_the_barrier(seen, energy_at_start(seen))
+    needs, bounded = [*needs, any_potential.stays_together(seen)], any_potential.bounded_at_contact(seen, low)
+    excluded = proved(seen, "collisions") if any_potential.is_paper(seen) else any_potential.PROOF
     claims = [
         without_assumed(needs, lambda given: lattice_limit(seen, given, tolerances, name="i")),
         _velocities(seen, needs, bounded),
         no_collision(seen, [*needs, low], tolerances, name="iii", proof=excluded),
         no_collision(seen, [*needs, barrier], tolerances, name="iii-barrier", proof=_barrier_proof(seen)),
     ]
-    return [*needs, *bounded, low, barrier], attribute_claims(seen, claims)
+    return [*needs, *bounded, low, barrier], any_potential.attribute_claims(seen, claims)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="os-1",
     title="Algorithm 1: lattice, matched velocities, no collision",
     statement=(
@@ -70,7 +55,6 @@ THEOREM = Theorem(
         "(iii) hold for every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 1",
-    kind="trajectory",
     law=law_is("Algorithm 1", Algorithm1, formulas=True),
     check=_check,
     enclosed=enclosed_by("os_1"),

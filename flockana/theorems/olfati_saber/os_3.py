@@ -4,33 +4,16 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.claims import vacuous
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import condition, law_is, positive
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.limits import limit_claim
-from flockana.theorems.observed import Observed
-from flockana.theorems.olfati_saber.any_potential import (
-    LIMITS,
-    PROOF,
-    attribute_claims,
-    bounded_at_contact,
-    cohesive,
-    is_paper,
-    never_meets,
-    potential_needs,
-)
+from flockana.theorems.olfati_saber import any_potential, collisions
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.olfati_saber.collisions import (
-    below_the_barrier,
-    distinct_pairs,
-    no_collision,
-    pairs_at_one_instant,
-)
 from flockana.theorems.olfati_saber.gamma_agent import consistent
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Observed, condition, law_is, limit_claim, positive, vacuous
 
 _LIMIT = "convergence"  # the proof of what is known of (ii)
+_PROOFS = ("cohesion", "collisions")  # of (i) and of (iv), for the paper's own pair law
 _COLLISIONS = ("iv-printed", "iv-instant", "iv-none", "iv-barrier")
 
 
@@ -38,10 +21,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
     """Claim (ii), that the limit is a local minimum of U_λ, strict but for rotations; a run cannot refute it."""
     kind = classify(end.strain, lattice=tolerances.lattice, quasi=tolerances.quasi).replace("neither", "no lattice")
     links = f"links off d by up to {100.0 * end.strain:.3g} %" if end.links else "no links"
-    return limit_claim(
-        "ii",
-        needs,
-        [final_basin(seen).certificate],
+    return limit_claim("ii", needs, [final_basin(seen).certificate]).described(
         computed=end.curvature,
         stated="the flock tends to a strict local minimum of U_λ (modulo rotations)",
         witness={"force": end.force, "K̃": end.mismatch, "strain": end.strain, "coincident pairs": end.coincident},
@@ -52,7 +32,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
 def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list[Claim]:
     """Return the proved parts of claim (ii), for every start and for almost every start."""
     pieces = Hypothesis("ψ is C², analytic in finitely many pieces", "assumed", detail="proved of the paper's law")
-    needs = needs if is_paper(seen) else [*needs, pieces]
+    needs = needs if any_potential.is_paper(seen) else [*needs, pieces]
     rests = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"
     semidefinite = "almost every start tends to an equilibrium with ∇²U_λ >= 0"
     force, bend = f"residual force {end.force:.2g} at the end", f"least curvature {end.curvature:.2g} at the end"
@@ -63,33 +43,34 @@ def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    gains, potential = positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), potential_needs(seen)
+    gains, potential = positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), any_potential.potential_needs(seen)
     finite = condition("K(v(0)) and J(x(0)) are finite", True, detail="every state here is finite")
-    needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), never_meets(seen)
-    end, bounded = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), bounded_at_contact(seen, none)
-    paper = is_paper(seen)
+    needs, repels, none = [gains, finite, *potential], positive(seen, c1_alpha="c1α"), any_potential.never_meets(seen)
+    end, caught = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact), final_basin(seen).certificate
+    bounded = any_potential.bounded_at_contact(seen, none)
+    stays, apart = _PROOFS if any_potential.is_paper(seen) else (any_potential.PROOF, any_potential.PROOF)
     claims = [
-        cohesive(seen, needs, name="i", proof="cohesion" if paper else PROOF),
+        any_potential.cohesive(seen, needs, name="i", proof=stays),
         _minimum(seen, needs, end, tolerances),
         *_limits(seen, [*needs, *bounded], end),
-        velocities_match(seen, [*needs, *bounded], name="iii", caught=[final_basin(seen).certificate], proof=LIMITS),
+        velocities_match(seen, [*needs, *bounded], name="iii", caught=[caught], proof=any_potential.LIMITS),
     ]
     # nothing below needs dq_r/dt = p_r: it is about the moving frame
     given = [*needs, *bounded, consistent(seen.run), repels]
     if unmet([repels]):
-        return given, attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
-    barrier = below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
+        return given, any_potential.attribute_claims(seen, [*claims, *(vacuous(name, repels) for name in _COLLISIONS)])
+    barrier = collisions.below_the_barrier(seen, seen.energy[0])  # U_λ >= c1α V: a bound of V will do
     few = [repels, *potential]
     claims += [  # (iv) needs gains >= 0 only, which every run has
-        distinct_pairs(seen, few, tolerances, name="iv-printed"),
-        pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof="collisions" if paper else PROOF),
-        no_collision(seen, [*few, none], tolerances, name="iv-none", proof="collisions" if paper else PROOF),
-        no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
+        collisions.distinct_pairs(seen, few, tolerances, name="iv-printed"),
+        collisions.pairs_at_one_instant(seen, few, tolerances, name="iv-instant", proof=apart),
+        collisions.no_collision(seen, [*few, none], tolerances, name="iv-none", proof=apart),
+        collisions.no_collision(seen, [*few, barrier], tolerances, name="iv-barrier"),
     ]
-    return [*given, none, barrier], attribute_claims(seen, claims)
+    return [*given, none, barrier], any_potential.attribute_claims(seen, claims)
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="os-3",
     title="Algorithm 2: cohesion, local minimum, matched velocities, few collisions",
     statement=(
@@ -101,7 +82,6 @@ THEOREM = Theorem(
         "every pair potential that `any-potential` admits."
     ),
     source="Olfati-Saber 2006, Theorem 3",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2, formulas=True, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_3"),

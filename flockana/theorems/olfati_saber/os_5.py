@@ -11,29 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.lattice import classify, crossings, harborth, is_planar, kuratowski, links, planar_bound, separation
 from flockana.lattice.measure import GUARD
 from flockana.measures.metrics import min_distance
 from flockana.measures.nets import LinkArray, link_lengths
-from flockana.theorems.claims import by_count, counted, of_state, vacuous
-from flockana.theorems.hypotheses import condition, has_lattice
-from flockana.theorems.observed import Observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.hypotheses import has_lattice
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Theorem, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import EPS, FloatArray, Observed, by_count, condition, counted, of_state, vacuous
 
-CLAIMS = (
-    "i",
-    "i-graph",
-    "ii",
-    "ii-sharp",
-    "iii",
-    "extension",
-    "extension-lengths",
-    "extension-links",
-    "extension-quantitative",
-)
-_OURS = tuple(name for name in CLAIMS if name == "ii-sharp" or name.startswith("extension"))
+_OURS = ("ii-sharp", "extension", "extension-lengths", "extension-links", "extension-quantitative")
+CLAIMS = ("i", "i-graph", "ii", "ii-sharp", "iii", *_OURS[1:])
 LISTED = 100_000  # crossings that are listed at most; beyond, every count of them says "at least"
 _SHOWN = 10  # and shown as witness
 _WITNESS_LIMIT = 20_000  # links of which a Kuratowski subgraph is still found in about a minute
@@ -103,7 +90,7 @@ def _far_apart(net: Net, length: float, name: str) -> Hypothesis:
     return condition(f"all pairs are farther apart than {name}", margin > net.rounding, margin, text)
 
 
-def uncrossed(net: Net, needs: list[Hypothesis], name: str) -> Claim:
+def uncrossed(net: Net, needs: Needs, name: str) -> Claim:
     """The claim that no two links cross: exact for positions as stored; in space a clearance must exceed rounding."""
     count = net.crossing_count
     if (missed := unmet(needs)) is not None:
@@ -115,70 +102,44 @@ def uncrossed(net: Net, needs: list[Hypothesis], name: str) -> Claim:
         margin, error = gap.distance / net.d, 2.0 * net.rounding / net.d
         which = None if gap.links is None else net.agents(gap.links)
         near = f"; links without a common agent stay {'at least ' if which is None else ''}{gap.distance:.4g} apart"
-    return of_state(
-        name,
-        margin,
-        error,
-        needs,
+    return of_state(name, margin, error, needs, proof=_CROSSINGS).described(
         computed=count,
         stated="no two links cross",
         witness={"crossing": [net.agents(p) for p in net.crossings[:_SHOWN]]} if count else {"nearest": which},
-        proof=_CROSSINGS,
         detail=f"{net.crossing_text}{near}",
     )
 
 
-def _graph(net: Net, needs: list[Hypothesis]) -> Claim:
+def _graph(net: Net, needs: Needs) -> Claim:
     """The claim as printed that the graph is planar: so it is where the net itself is a drawing without crossings."""
     drawn = net.m < 3 and len(net.crossings) == 0 and net.closest > 0.0
     planar = drawn or is_planar(net.n, net.links)
-    witness = None
-    if not planar and len(net.links) <= _WITNESS_LIMIT:
-        witness = kuratowski(net.n, net.links)
-    bound = planar_bound(net.n)
-    subgraph = (
-        "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
-    )
-    return by_count(
-        "i-graph",
-        0 if planar else 1,
-        needs,
+    witness = kuratowski(net.n, net.links) if not planar and len(net.links) <= _WITNESS_LIMIT else None
+    found = "" if witness is None else f"; it contains a subdivision of {witness.kind} with {len(witness.links)} links"
+    return by_count("i-graph", 0 if planar else 1, needs).described(
         computed="planar" if planar else "not planar",
         stated="the graph of the net is planar (as printed)",
         witness=None if witness is None else vars(witness),
-        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{subgraph}; "
-        f"a planar one has at most {bound}",
+        detail=f"the graph of {len(net.links)} links on {net.n} agents is {'' if planar else 'not '}planar{found}; "
+        f"a planar one has at most {planar_bound(net.n)}",
     )
 
 
-def _bound(
-    net: Net, needs: list[Hypothesis], name: str, bound: int, text: str, *, proof: str | None = _COUNTS
-) -> Claim:
+def _bound(net: Net, needs: Needs, name: str, bound: int, text: str, *, proof: str | None = _COUNTS) -> Claim:
     count = len(net.links)
-    return counted(
-        name,
-        bound,
-        count,
-        count,
-        needs,
+    return counted(name, bound, count, count, needs, proof=proof).described(
         computed=count,
         stated=f"at most {bound} links",
-        witness=None,
-        proof=proof,
         detail=f"{count} links, {text} = {bound} (Harborth's number is {harborth(net.n)})",
     )
 
 
-def _incomplete(net: Net, needs: list[Hypothesis]) -> Claim:
+def _incomplete(net: Net, needs: Needs) -> Claim:
     missing = net.n * (net.n - 1) // 2 - len(net.links)
-    return by_count(
-        "iii",
-        0 if missing else 1,
-        needs,
+    return by_count("iii", 0 if missing else 1, needs, proof=_COUNTS).described(
         computed=missing,
         stated="at least one pair is not linked",
         witness=_unlinked(net) if missing else None,
-        proof=_COUNTS,
         detail=f"{missing} of {net.n * (net.n - 1) // 2} pairs of agents are not linked",
     )
 
@@ -293,12 +254,11 @@ THEOREM = (
         references=_REFERENCES,
         ours=_OURS,
     ),
-    Theorem(
+    run_theorem(
         id="os-5-terminal",
         title="Theorem 5 on the last state of a run",
         statement=f"Checked on the last state of a run. {_STATEMENT}",
         source="Olfati-Saber 2006, Theorem 5; Harborth's number and the extension are added here",
-        kind="trajectory",
         check=_check_terminal,
         claims=CLAIMS,
         references=_REFERENCES,

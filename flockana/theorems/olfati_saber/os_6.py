@@ -2,17 +2,13 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.theorems.from_tube import enclosed_by
-from flockana.theorems.hypotheses import common_gains, law_is
-from flockana.theorems.observed import Observed
+from flockana.theorems.hypotheses import common_gains
 from flockana.theorems.olfati_saber.energy import balance, never_rises, proved, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import declared_rate_is_true, target_rests
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Checked, Hypothesis, Theorem, Tolerances
+from flockana.theorems.theorem import Checked, Hypothesis, Tolerances, run_theorem
+from flockana.theorems.toolkit import EPS, FloatArray, Observed, Trajectory, law_is, lengths
 
 
 def condition_76(run: Trajectory) -> FloatArray:
@@ -62,7 +58,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="os-6",
     title="Algorithm 3: the energy never rises once the flock's mean velocity allows",
     statement=(
@@ -73,7 +69,6 @@ THEOREM = Theorem(
         "the run only."
     ),
     source="Olfati-Saber 2006, Theorem 6",
-    kind="trajectory",
     law=law_is("Algorithm 3", Algorithm3, one_gain=True),
     check=_check,
     enclosed=enclosed_by("os_6", "obstacles_enclosed"),

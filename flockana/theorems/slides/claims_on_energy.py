@@ -1,17 +1,12 @@
 """Claims about an energy that a source prints wrongly (E1, E2): by algebra, at an exact state, along a run."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
-from flockana.theorems.claims import exact, judged
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.rounding import energy_error
-from flockana.theorems.theorem import Claim, Hypothesis
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Needs, Observed, Trajectory, exact, judged
 
 PROOF = "energy-identities"
 
@@ -19,15 +14,10 @@ PROOF = "energy-identities"
 def state_claim(state: Any) -> Claim:
     """Return the claim that the printed energy does not rise, at a rational state where its exact rate is known."""
     rate, true_rate = float(state.rate), float(state.true_rate)
-    return exact(
-        "printed-state",
-        not state.rate.is_positive,
+    return exact("printed-state", not state.rate.is_positive, margin=-rate, error=0.0, disproof=PROOF).described(
         computed=rate,
         stated="dH/dt <= 0 for the printed H",
-        margin=-rate,
-        error=0.0,
         witness={"q": [str(x) for x in state.q], "p": [str(x) for x in state.p]},
-        disproof=PROOF,
         detail=f"at an exact state of two agents the printed H has rate {rate:.4g}, the true one {true_rate:g}",
     )
 
@@ -47,20 +37,14 @@ def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -
     return seen.series(lambda run: run.energy() + excess(run), floor=floor)
 
 
-def run_claim(
-    seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Iterable[Hypothesis] = ()
-) -> Claim:
+def run_claim(seen: Observed, excess: Callable[[Trajectory], FloatArray], where: str, needs: Needs = ()) -> Claim:
     """Return the claim that the printed energy, the true one and an excess, never rises; `where` names the run."""
     # A rise from a sample to a later one refutes it; samples at which it does not rise verify nothing.
     above = rises(printed_energy(seen, excess))
     peak, true = int(np.argmax(above.lo)), seen.energy
     rise = float(above.mid[peak])
     course = f"rises by {rise:.4g} until t = {seen.t[peak]:.3g}" if above.lo[peak] > 0.0 else "is not seen to rise"
-    return judged(
-        "printed-run",
-        -above,
-        needs,
-        about="all",
+    return judged("printed-run", -above, needs, about="all").described(
         computed=rise,
         stated="the printed H never rises",
         witness={"q(0)": seen.run.q[0].tolist(), "p(0)": seen.run.p[0].tolist(), "time": float(seen.t[peak])},

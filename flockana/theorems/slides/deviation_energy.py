@@ -6,8 +6,7 @@ import numpy as np
 
 from flockana.interactions import AlphaInteraction
 from flockana.measures.metrics import deviation_energy
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, of_state
 
 _NEAR = 2.0**-20  # of r: how close to the range from within, and of d to coincidence
 _ROUNDING = 1e-13  # relative, of an energy of two agents
@@ -37,14 +36,10 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
     """Return the jump of an energy at the range."""
     within, at = energy(r * (1.0 - _NEAR)), energy(r)
     scale = max(within, at)
-    return of_state(
-        name,
-        32.0 * _NEAR * scale - abs(within - at - stated),
-        _ROUNDING * scale,
+    return of_state(name, 32.0 * _NEAR * scale - abs(within - at - stated), _ROUNDING * scale, proof=PROOF).described(
         computed=within - at,
         stated=f"{symbol}(r⁻) − {symbol}(r) = {stated:.6g}",
         witness={"distance": [r * (1.0 - _NEAR), r], symbol: [within, at]},
-        proof=PROOF,
         detail=f"{symbol} of a pair is {within:.6g} just within r and {at:.6g} at r"
         + (": it jumps" if stated else ": it does not jump"),
     )

@@ -2,26 +2,18 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import LinearTarget
 from flockana.laws.algorithm3 import Algorithm3
 from flockana.laws.directed import DirectedNet
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.theorems.claims import erratum, judged, of_state
-from flockana.theorems.enclosure import stacked
-from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides.claims_on_energy import rises
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Observed, Trajectory, observed, stacked
 
 _ROUNDING = 1e-12  # of the largest input; sums in another order differ by a few eps
 _NUMERICAL = 1e-6  # of the energies that are compared: far more than the runs are off
 _ENDS = 1e-3  # relative: as near as the end of the run is to the limit
-
-
-def _check(tolerances: Tolerances) -> list[Claim]:
-    return [_undirected(), _momentum(), *_following()]
 
 
 def _undirected() -> Claim:
@@ -34,10 +26,7 @@ def _undirected() -> Claim:
         u, again = law.acceleration(0.0, q, p), DirectedNet(law, ranges=[law.alpha.range] * 40).acceleration(0.0, q, p)
         each.append(float(np.abs(u - again).max() / np.abs(u).max()))
     off = float(np.max(each))
-    return of_state(
-        "undirected",
-        _ROUNDING - off,
-        0.0,
+    return of_state("undirected", _ROUNDING - off, 0.0).described(
         computed=off,
         stated=f"the same input to {_ROUNDING:g} of the largest",
         witness={"agents": 40},
@@ -54,16 +43,12 @@ def _momentum() -> Claim:
     law = _pair()
     u = law.acceleration(0.0, [[0.0], [7.5]], [[0.0], [0.0]])
     total = abs(float(u.sum())) / (law.law.gains.c1_alpha * law.alpha.strength)
-    return of_state(
-        "momentum-lost",
-        total,
-        _ROUNDING,
+    return of_state("momentum-lost", total, _ROUNDING).described(
         computed=total,
         stated="momentum is not conserved: Σ u_i ≠ 0 of a pair of which one sees the other",
         witness={"q": [0.0, 7.5], "u": u.ravel().tolist()},
-        detail=(
-            f"one of two agents 7.5 apart is attracted by the other, which does not react: Σ u_i = {float(u.sum()):.4g}"
-        ),
+        detail=f"one of two agents 7.5 apart is attracted by the other, which does not react: "
+        f"Σ u_i = {float(u.sum()):.4g}",
     )
 
 
@@ -92,26 +77,20 @@ def _claims_on(seen: Observed, speed: float) -> list[Claim]:
     slip = seen.series(lambda run: np.abs(run.p[:, 0, 0] - run.p[:, 1, 0]), floor=2.0 * seen.floors.speed)[-1]
     length = seen.distances([0], [1])[-1, 0] / law.alpha.d
     return [
-        judged(
-            "energy-rises",
-            rise,
+        judged("energy-rises", rise).described(
             computed=float(rise.mid),
             stated="H = V + ½Σ‖p_i‖² can rise",
             witness={"H": [float(energy.mid[0]), float(energy.mid[-1])]},
             detail=f"agent 1 moves away at {speed:g}, agent 0 takes on its velocity: from start to end H changes by "
             f"{rise.mid:.6g}; ½v² = {0.5 * speed**2:g}",
         ),
-        judged(
-            "follower",
-            _NUMERICAL * size - climbed,
+        judged("follower", _NUMERICAL * size - climbed).described(
             computed=float(climbed.mid.max()),
             stated="c1α ψ_α + ½‖p_0 − p_1‖² of an agent and the one that it alone sees, which is not accelerated, "
             "falls by c2α a ‖p_0 − p_1‖²",
             witness={"from": size, "to": float(own.mid[-1])},
-            detail=(
-                f"the energy of the follower, relative to its leader, goes from {size:.4g} to "
-                f"{float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way"
-            ),
+            detail=f"the energy of the follower, relative to its leader, goes from {size:.4g} to "
+            f"{float(own.mid[-1]):.2g}, and rises by {climbed.mid.max():.2g} at most on the way",
         ),
         judged(
             "leader",
@@ -135,7 +114,7 @@ THEOREM = erratum(
         "p_j‖², and follows it."
     ),
     source="ours; the slides allow for directed nets, of agents with different ranges or a conic neighbourhood",
-    check=_check,
+    check=lambda tolerances: [_undirected(), _momentum(), *_following()],
     expected={"verified": "undirected momentum-lost energy-rises follower leader"},
     author="flockana",
 )

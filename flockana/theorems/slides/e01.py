@@ -3,10 +3,8 @@
 import numpy as np
 
 from flockana.laws.olfati_saber import Algorithm1
-from flockana.theorems.claims import equal, erratum
-from flockana.theorems.observed import observed
 from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_claim
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
 def _rising_run() -> Claim:
@@ -19,21 +17,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     from flockana.symbolic import algorithm1_identity, e1_counterexample, e1_identity
 
     return [
-        equal(
-            "printed",
-            e1_identity(m=2).residual,
+        equal("printed", e1_identity(m=2).residual, disproof=PROOF).described(
             stated="d/dt (V + Σ‖p_i‖²) = -c2α pᵀL̂p",
-            disproof=PROOF,
             detail="with the printed H a term -dV/dt remains, which has no definite sign",
         ),
         state_claim(e1_counterexample()),
         _rising_run(),
-        equal(
-            "corrected",
-            algorithm1_identity(m=2).residual,
-            stated="d/dt (V + ½ Σ‖p_i‖²) = -c2α pᵀL̂p",
-            proof=PROOF,
-            detail="with ½ the identity is exact, for every n",
+        equal("corrected", algorithm1_identity(m=2).residual, proof=PROOF).described(
+            stated="d/dt (V + ½ Σ‖p_i‖²) = -c2α pᵀL̂p", detail="with ½ the identity is exact, for every n"
         ),
     ]
 

@@ -3,11 +3,9 @@
 from flockana.environment.obstacles import Sphere
 from flockana.environment.targets import StaticTarget
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.claims import equal, erratum
-from flockana.theorems.observed import observed
 from flockana.theorems.slides.claims_on_energy import PROOF, run_claim, state_claim
 from flockana.theorems.slides.energy_printed import pair_energy
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, equal, erratum, observed
 
 
 def _rising_run() -> Claim:
@@ -22,20 +20,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
     stated = "dH/dt = -c2α pᵀL̂p + c2β ΣΣ b ⟨p, p̂ - p⟩ - c2γ Σ⟨p, p - p_r⟩"
     return [
-        equal(
-            "printed",
-            e2_identity(m=2).residual,
+        equal("printed", e2_identity(m=2).residual, disproof=PROOF).described(
             stated=f"{stated} for V_α = Σ_i Σ_(j≠i) ψ_α",
-            disproof=PROOF,
             detail="the printed V_α has twice the gradient that u^α uses: dV_α/dt remains, which has no definite sign",
         ),
         state_claim(e2_counterexample()),
         _rising_run(),
-        equal(
-            "corrected",
-            theorem6_identity(m=2).residual,
+        equal("corrected", theorem6_identity(m=2).residual, proof=PROOF).described(
             stated=f"{stated} for V_α = ½ Σ_i Σ_(j≠i) ψ_α",
-            proof=PROOF,
             detail="with every pair once the identity is exact, for every n and any walls and spheres",
         ),
     ]

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.progress import show_part
 from flockana.environment.targets import StaticTarget
 from flockana.equilibria.coincidence import least_with_coincidence
@@ -17,11 +16,9 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import hexagonal_patch
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.measures.nets import components, links
-from flockana.theorems.claims import erratum, judged, of_state
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.olfati_saber.attraction import attraction
-from flockana.theorems.shares import CONFIDENCE, always
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.shares import CONFIDENCE
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, always, erratum, judged, of_state
 
 _SIZES, _STARTS = (10, 20, 40), 20
 _STRAINED = (40, 14)  # (n, seed) of a start whose limit is strained and holds no coincident agents
@@ -92,15 +89,10 @@ def _double_agent(law: Algorithm1) -> Claim:
     """The smallest known strict minimum that is no lattice: a coincident pair, kept by its three common neighbours."""
     q = rhombus_with_double_agent(law.alpha.length)
     end, caught = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
-    return of_state(
-        "double-agent",
-        -caught.margin,
-        caught.error,
-        about="all",
+    return of_state("double-agent", -caught.margin, caught.error, about="all", disproof="double-agent").described(
         computed=end.curvature,
         stated="every strict local minimum of V is an α-lattice of distinct agents",
         witness=q,
-        disproof="double-agent",
         detail=f"n = 5: two agents on one corner of a rhombus are a strict minimum of V (least curvature "
         f"{end.curvature:.3g} of the largest, off rigid motions), with an open basin and a coincident pair",
     )
@@ -109,11 +101,9 @@ def _double_agent(law: Algorithm1) -> Claim:
 def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
     """Return a random start's limit of distinct agents whose links differ from d, in a strict minimum of V."""
     q, end = max(limit.parts, key=lambda part: part[1].strain)
-    strain = _certain_strain(law, q)
-    return judged(
-        "strained",
-        tolerances.lattice - strain if end.coincident == 0 else Enclosure.around(0.0, inf),
-        about="all",
+    certain = end.coincident == 0
+    margin = tolerances.lattice - _certain_strain(law, q) if certain else Enclosure.around(0.0, inf)
+    return judged("strained", margin, about="all").described(
         computed=end.strain,
         stated="|link - d|/d = 0 in the limit of every solution but a null set",
         witness={"start": f"random_disc{_STRAINED}", "agents": len(q), "links": end.links},
@@ -126,14 +116,11 @@ def _smallest(tolerances: Tolerances) -> Claim:
     """The smallest known strained minimum of distinct agents, verified anew from its file."""
     known = smallest_strained()
     end = terminal_state(known.law, known.q, 0.0 * known.q)
-    return judged(
-        "smallest",
-        tolerances.lattice - _certain_strain(known.law, known.q),
-        about="all",
+    margin = tolerances.lattice - _certain_strain(known.law, known.q)
+    return judged("smallest", margin, about="all", disproof="strained-thirteen").described(
         computed={"strain": end.strain, "curvature": known.curvature, "agents": len(known.q)},
         stated="every strict local minimum of V with distinct agents is an α-lattice",
         witness=known.q,
-        disproof="strained-thirteen",
         detail=f"{len(known.q)} distinct agents in a connected strict minimum with {len(known.links)} links, off d by "
         f"up to {100.0 * end.strain:.2g} %; least curvature {known.curvature:.3g} of the largest. With coincident "
         f"agents at least {least_with_coincidence(known.law.alpha)} are needed",
@@ -145,14 +132,11 @@ def _compressed(tolerances: Tolerances) -> Claim:
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)
-    return judged(
-        "algorithm-2",
-        tolerances.lattice - _certain_strain(law, limit.q),
-        about="all",
+    margin = tolerances.lattice - _certain_strain(law, limit.q)
+    return judged("algorithm-2", margin, about="all", disproof="compressed-patches").described(
         computed=end.strain,
         stated="Algorithm 2 converges to an α-lattice (slides' summary of Theorem 3)",
         witness={"links": [end.shortest, end.longest]},
-        disproof="compressed-patches",
         detail=f"a hexagon of 7 under Algorithm 2 rests with links of {end.shortest:.5g} to {end.longest:.5g}, not 7",
     )
 

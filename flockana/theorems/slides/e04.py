@@ -14,9 +14,7 @@ from flockana.equilibria.barrier import (
 )
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import harborth, hexagonal_spiral
-from flockana.theorems.claims import erratum, of_state
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, of_state
 
 _SIZES = (3, 7, 10)  # of the barrier that is searched here; the larger ones take longer and change nothing
 _STARTS = 8
@@ -52,15 +50,10 @@ def _implication(alpha: AlphaInteraction) -> Claim:
     off = (z - alpha.d_alpha) ** 2
     ratio, error = alpha.psi_alpha(z) / off, 1e-13 * alpha.c_star / float(off.min())
     least = float(min(ratio.min(), 0.5 * alpha.phi_alpha_slope(alpha.d_alpha)))
-    return of_state(
-        "printed",
-        least,
-        error,
-        about="all",
+    return of_state("printed", least, error, about="all", proof="collisions").described(
         computed=least,
         stated="ψ_α >= 0, so that V >= c* where two agents coincide, and c < c* excludes it",
         witness="ψ_α/(z - d_α)² at 2001 lengths; the sign of ψ_α follows from that of φ_α",
-        proof="collisions",
         detail=f"the implication holds: ψ_α is at least {least:.2g} (z - d_α)², and V does not rise",
     )
 
@@ -70,15 +63,10 @@ def _reached(alpha: AlphaInteraction) -> Claim:
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
     margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)
-    return of_state(
-        "found",
-        margin,
-        error,
-        about="all",
+    return of_state("found", margin, error, about="all", proof="n-max").described(
         computed=n,
         stated="the best α-lattices have V < c* for n <= 14 only",
         witness={"V(n)": energies[0], "V(n + 1)": energies[1], "c*": alpha.c_star},
-        proof="n-max",
         detail=f"with the most links possible ({harborth(n)} at n = {n}), V = {energies[0]:.4g} < c* = "
         f"{alpha.c_star:.4g}; at n = {n + 1}, {energies[1]:.4g}",
     )
@@ -134,10 +122,7 @@ def _barrier(alpha: AlphaInteraction) -> Claim:
     barriers = {n: collision_barrier(alpha, n, starts=_STARTS) for n in _SIZES}
     least = min(collision_bounds(alpha, n)[0] - alpha.c_star for n in _SIZES if n > _TRIANGLE)
     heights = ", ".join(f"{barrier.height:.3f} at n = {n}" for n, barrier in barriers.items())
-    return of_state(
-        "barrier",
-        least,
-        _error(alpha, max(_SIZES)),
+    return of_state("barrier", least, _error(alpha, max(_SIZES))).described(
         computed={n: {"together": barrier.together, "ground": barrier.lowest} for n, barrier in barriers.items()},
         stated="min{V : two agents coincide} > c*: a sharper certificate, and one that grows with min V",
         witness="minimised from many starts, an upper bound; the margin is that of a lower bound, which counts pairs",

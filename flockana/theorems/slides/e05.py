@@ -6,11 +6,9 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.lattice import is_planar, kuratowski, planar_bound
-from flockana.theorems.claims import by_count, erratum, of_state
 from flockana.theorems.olfati_saber.os_5 import check
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, FloatArray, Tolerances, by_count, erratum, of_state
 
 _D, _R = 7.0, 8.4
 Site = tuple[int, int, int]
@@ -85,26 +83,19 @@ def _counterexample(name: str, q: FloatArray, sites: tuple[Site, ...], tolerance
     witness, planar = kuratowski(len(sites), edges), is_planar(len(sites), edges)
     bound, kind = planar_bound(len(sites)), "planar" if planar else "not planar"
     return [
-        by_count(
-            f"printed-{name}",
-            0 if planar else 1,
-            about="all",
+        by_count(f"printed-{name}", 0 if planar else 1, about="all", disproof=_PROOF).described(
             computed={"links": len(edges), "bound": bound, "graph": kind},
             stated="the graph is planar",
             witness={"q": q} | (vars(witness) if witness else {}),
-            disproof=_PROOF,
             detail=f"{len(sites)} face-centred cubic sites: the graph of {len(edges)} links is {kind}; a planar one "
             f"has at most {bound}",
         ),
         of_state(
-            f"uncrossed-{name}",
-            uncrossed.margin or 0.0,
-            uncrossed.error or 0.0,
-            uncrossed.needs,
+            f"uncrossed-{name}", uncrossed.margin or 0.0, uncrossed.error or 0.0, uncrossed.needs, proof=_PROOF
+        ).described(
             computed=uncrossed.computed,
             stated=uncrossed.stated,
             witness=uncrossed.witness,
-            proof=_PROOF,
             detail=f"in space its edges do not cross: {uncrossed.detail}",
         ),
     ]
@@ -115,14 +106,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         *_counterexample("13", fcc_star(_D), STAR, tolerances),
         *_counterexample("8", fcc_eight(_D), EIGHT, tolerances),
-        by_count(
-            "six",
-            bad,
-            about="all",
+        by_count("six", bad, about="all", proof=_PROOF).described(
             computed={"fragments": total, "not planar": bad},
             stated="every fragment of six sites is planar",
             witness="every connected fragment, up to translation",
-            proof=_PROOF,
             detail=f"all {total} connected fragments of {_FRAGMENT} sites were tested: {bad} are not planar",
         ),
     ]

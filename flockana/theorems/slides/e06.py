@@ -1,8 +1,7 @@
 """Erratum E6: 3n − 6 bounds the links of three agents or more only, and is not sharp."""
 
 from flockana.lattice import harborth, hexagonal_spiral, links
-from flockana.theorems.claims import by_count, counted, erratum
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, by_count, counted, erratum
 
 _MOST = 60
 _D, _R = 7.0, 8.4
@@ -21,35 +20,22 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     count, printed, _ = min((table[n] for n in range(3, _MOST + 1)), key=lambda row: row[1] - row[0])
     off = [n for n, (count, _, sharp) in table.items() if count != sharp]
     return [
-        by_count(
-            "printed",
-            len(exceeding),
-            about="all",
+        by_count("printed", len(exceeding), about="all", disproof=_PROOF).described(
             computed=table[2][0],
             stated=table[2][1],
             witness={"n": exceeding},
-            disproof=_PROOF,
             detail="two agents at distance d have 1 link; 3n - 6 is 0",
         ),
-        counted(
-            "corrected",
-            printed,
-            count,
-            count,
-            about="all",
+        counted("corrected", printed, count, count, about="all", proof=_PROOF).described(
             computed={n: (count, printed) for n, (count, printed, _) in table.items() if n >= 3},
             stated="at most 3n - 6 links for n >= 3",
             witness={"n with 3n - 6 links": [n for n in range(3, _MOST + 1) if table[n][0] == table[n][1]]},
-            proof=_PROOF,
             detail=f"hexagonal spirals of 3 to {_MOST} agents have at most 3n - 6 links, and that many only if n = 3",
         ),
-        by_count(
-            "sharp",
-            len(off),
+        by_count("sharp", len(off), proof=_PROOF).described(
             computed={n: (count, sharp) for n, (count, _, sharp) in table.items()},
             stated="floor(3n - sqrt(12n - 3)) links",
             witness={"n": off},
-            proof=_PROOF,
             detail=f"hexagonal spirals of 1 to {_MOST} agents have Harborth's number of links, every one",
         ),
     ]

@@ -4,8 +4,7 @@ from typing import Any
 
 from flockana.measures.metrics import connectivity
 from flockana.measures.nets import links, printed_rank_connectivity
-from flockana.theorems.claims import by_count, erratum
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, by_count, erratum
 
 _PROOF = "net-measures"
 
@@ -22,14 +21,8 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
 def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Claim:
     """Return the claim that a connected net has the measure 1: by the rank that it comes from, a whole number."""
-    return by_count(
-        name,
-        full - round(full * share),
-        computed=share,
-        stated=1.0,
-        witness="a path of three agents",
-        detail=detail,
-        **proof,
+    return by_count(name, full - round(full * share), **proof).described(
+        computed=share, stated=1.0, witness="a path of three agents", detail=detail
     )
 
 
@@ -42,5 +35,4 @@ THEOREM = erratum(
     source="MSN project, data collection",
     check=_check,
     references=("isola-2024", "olfati-saber-2006"),
-    expected={"refuted": "printed", "verified": "corrected"},
 )

@@ -8,9 +8,7 @@ from flockana.environment.targets import StaticTarget
 from flockana.interactions import Gains
 from flockana.laws.msn import CONSTANT_ACCELERATION, PRINTED, MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.theorems.claims import erratum, exact, of_map
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import EPS, Claim, Tolerances, erratum, exact, of_map
 
 _Q, _P, _Q_R, _DT = 3.0, -2.0, 11.0, 0.125  # binary fractions: the step below is exact in floating point
 _PROOF = "constant-acceleration"
@@ -42,10 +40,7 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     return [
         _by_algebra("printed", "end", PRINTED, disproof=_PROOF),
         _by_algebra("corrected", "start", CONSTANT_ACCELERATION, proof=_PROOF),
-        of_map(
-            "excess",
-            tolerances.agreement * abs(swept) - abs(measured - swept),
-            8.0 * EPS * _Q_R,
+        of_map("excess", tolerances.agreement * abs(swept) - abs(measured - swept), 8.0 * EPS * _Q_R).described(
             computed=measured,
             stated=swept,
             witness=f"one agent, u = {swept / _DT**2:g}, dt = {_DT:g}",
@@ -58,14 +53,11 @@ def _by_algebra(name: str, v: str, factor: float, **proof: Any) -> Claim:
     """The claim that a step goes as far as a constant u does, with the velocity of its start or of its end."""
     text, zero = _symbolic_excess(v)
     measured, swept = _step(factor)
-    return exact(
-        name,
-        zero,
+    return exact(name, zero, **proof).described(
         computed=text,
         stated="0",
         witness={"u dt²": swept, "excess of one step of the map": measured},
         detail=f"with the velocity at the {v} of the step, the displacement exceeds p dt + ½ u dt² by {text}",
-        **proof,
     )
 
 

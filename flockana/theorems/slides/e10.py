@@ -1,7 +1,6 @@
 """Erratum E10: at h = 1 the bump function is an indicator, and no longer continuous."""
 
-from flockana.theorems.claims import erratum, exact
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Tolerances, erratum, exact
 
 
 def _check(tolerances: Tolerances) -> list[Claim]:
@@ -18,22 +17,16 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     falling = taper(z, h=h)
     ends = [sp.simplify(f.subs(z, end)) for end in (h, 1) for f in (falling, falling.diff(z))]
     return [
-        exact(
-            "printed",
-            jump == 0,
+        exact("printed", jump == 0, disproof="smoothness").described(
             computed=f"ρ₁(1⁻) - ρ₁(1⁺) = {jump}",
             stated="differentiable at h = 1",
             witness="z = 1",
-            disproof="smoothness",
             detail=f"at h = 1 the function jumps by {jump} at z = 1",
         ),
-        exact(
-            "corrected",
-            ends == [1, 0, 0, 0],
+        exact("corrected", ends == [1, 0, 0, 0], proof="smoothness").described(
             computed="ρ_h(h) = {}, ρ_h'(h) = {}, ρ_h(1) = {}, ρ_h'(1) = {}".format(*ends),
             stated="C¹ for every 0 < h < 1",
             witness="both ends of the taper",
-            proof="smoothness",
             detail="for 0 < h < 1 value and slope match at both ends of the taper",
         ),
     ]
@@ -45,5 +38,4 @@ THEOREM = erratum(
     source="slides, bump functions",
     check=_check,
     references=("geschwender-2016", "olfati-saber-2006"),
-    expected={"refuted": "printed", "verified": "corrected"},
 )

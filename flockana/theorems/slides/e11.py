@@ -16,13 +16,10 @@ from flockana.laws.olfati_saber import Algorithm2, paper_pair
 from flockana.measures.metrics import coincident_pairs
 from flockana.theorems.asymptotics import limit_strain
 from flockana.theorems.claims import judged, undecided
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import printed
-from flockana.theorems.hypotheses import condition, law_is
-from flockana.theorems.limits import Certificate, limit_claim
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.attraction import final_basin
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import Certificate, Enclosure, Observed, condition, law_is, limit_claim
 
 _RINGS = (1, 2, 3)  # hexagons of 7, 19 and 37 agents
 _SAFE, _FACTOR = 1.2, 1.3  # where the search for one ring starts, of `natural_ratio`, and its steps
@@ -53,8 +50,7 @@ def _gains(run: Observed) -> Hypothesis:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = [_gains(seen)]
-    if unmet(needs):
+    if unmet(needs := [_gains(seen)]):
         return needs, []
     end = terminal_state(seen.law, *seen.end[:2], contact=tolerances.contact)
     return needs, [_printed(seen, end, needs, tolerances), _minimum(seen, end, needs), _thresholds(seen.law)]
@@ -80,10 +76,7 @@ def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolera
 
 
 def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Claim:
-    return limit_claim(
-        "minimum",
-        needs,
-        [final_basin(seen).certificate],
+    return limit_claim("minimum", needs, [final_basin(seen).certificate]).described(
         computed=end.curvature,
         stated="the limit is a strict local minimum of U_λ off the rotations, so that it attracts an open set",
         witness={"force": end.force, "K̃": end.mismatch},
@@ -112,16 +105,13 @@ def _thresholds(law: Algorithm2) -> Claim:
         return undecided("threshold", f"no threshold was found: {brackets}", **about)
     at = Enclosure.between(*np.log(list(brackets.values())).T)
     table = ", ".join(f"n = {n}: {low:.3g} to {high:.3g}" for n, (low, high) in brackets.items())
-    return judged(
-        "threshold",
-        at[:-1] - at[1:],
+    return judged("threshold", at[:-1] - at[1:], **about).described(
         computed={n: list(pair) for n, pair in brackets.items()},
         detail=f"ratio c1γ/c1α from which on a hexagonal patch collapses: {table}",
-        **about,
     )
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="E11",
     title=printed("E11"),
     statement=(
@@ -129,7 +119,6 @@ THEOREM = Theorem(
         "that falls with n, agents coincide permanently, in a strict local minimum of U_λ."
     ),
     source="slides, summary of Theorem 3; both student projects",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2),
     check=_check,
     claims=("printed", "minimum", "threshold"),

@@ -2,21 +2,27 @@
 
 from dataclasses import replace
 from math import pi
+from typing import Any
 
-from flockana.dynamics.trajectory import Trajectory
+import numpy as np
+
 from flockana.environment.targets import CircleTarget, SineTarget
 from flockana.laws.olfati_saber import Algorithm2
-from flockana.stability.centre_path import path_and_factor
-from flockana.stability.tracking import whole_period
+from flockana.stability.centre_path import motion, path_and_factor
+from flockana.stability.tracking import response_ratio, whole_period
 from flockana.stability.translational import predicted_gain
-from flockana.theorems.claims import judged
-from flockana.theorems.enclosure import Enclosure
 from flockana.theorems.errata import printed
-from flockana.theorems.hypotheses import condition
-from flockana.theorems.observed import Observed, observed
-from flockana.theorems.rounding import EPS
-from flockana.theorems.slides.measured_ratio import measured_ratio
-from flockana.theorems.theorem import Checked, Claim, Hypothesis, Theorem, Tolerances, unmet
+from flockana.theorems.second_runs import DOUBT
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
+from flockana.theorems.toolkit import EPS, Enclosure, Observed, Trajectory, condition, judged, observed
+
+
+def measured_ratio(seen: Observed) -> Enclosure:
+    """Return the ratio that a run shows; its error is the fit's residual and the difference of two runs."""
+    (ratio, left), (other, _) = response_ratio(seen.run), response_ratio(seen.other)
+    target: Any = seen.law.target
+    floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))
+    return Enclosure.around(ratio, np.inf if seen.doubt else left + DOUBT * abs(ratio - other) + floor)
 
 
 def _hypotheses(run: Trajectory) -> list[Hypothesis]:
@@ -34,14 +40,9 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     ]
 
 
-def _agrees(
-    name: str, ratio: Enclosure, gain: float, needs: list[Hypothesis], tolerances: Tolerances, detail: str
-) -> Claim:
+def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: Tolerances, detail: str) -> Claim:
     """Return the claim that a measured ratio agrees with a predicted gain, relative to that unless it is 0."""
-    return judged(
-        name,
-        tolerances.agreement - abs(ratio - gain) / (gain or 1.0),
-        needs,
+    return judged(name, tolerances.agreement - abs(ratio - gain) / (gain or 1.0), needs).described(
         computed=float(ratio.mid),
         stated=gain,
         detail=f"{detail}: the ratio of amplitudes is {ratio.mid:.4f} in the run, {gain:.4f} by the transfer function",
@@ -49,8 +50,7 @@ def _agrees(
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = _hypotheses(seen.run)
-    if unmet(needs):
+    if unmet(needs := _hypotheses(seen.run)):
         return needs, []
     run, law = seen.run, seen.law
     path, factor = path_and_factor(law.target)
@@ -63,21 +63,17 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [
         _agrees("predicted", handed, predicted_gain(gains, omega, factor=factor), needs, tolerances, detail),
         _agrees("consistent", true, predicted_gain(gains, omega), needs, tolerances, "with p_r = dq_r/dt"),
-        judged(
-            "printed",
-            1.0 - true,
-            needs,
+        judged("printed", 1.0 - true, needs, disproof="tracking-gain" if slow else None).described(
             computed=float(true.mid),
             stated="the ratio is below 1 because the γ-agent turns",
             witness={"handed p_r": float(handed.mid), "true p_r": float(true.mid)},
-            disproof="tracking-gain" if slow else None,
             detail=f"the same turning γ-agent with its true p_r is followed at {true.mid:.4f} of its size; with the "
             f"p_r that was handed over, at {handed.mid:.4f}",
         ),
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="E12",
     title=printed("E12"),
     statement=(
@@ -88,7 +84,6 @@ THEOREM = Theorem(
         "project's own program, which moves one agent after another in place, gives 0.825 with 19 agents (E15)."
     ),
     source="MSN project, conclusion, cases 3 and 4",
-    kind="trajectory",
     check=_check,
     claims=("predicted", "consistent", "printed"),
     reason="no γ-agent with a wrong p_r to follow",

@@ -4,16 +4,14 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.dynamics.trajectory import Trajectory
 from flockana.environment.targets import StaticTarget
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.theorems.errata import printed
-from flockana.theorems.hypotheses import alpha_gain, law_is
+from flockana.theorems.hypotheses import alpha_gain
 from flockana.theorems.leads import pairs_apart
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import distinct_pairs, pairs_at_one_instant
-from flockana.theorems.theorem import Checked, Theorem, Tolerances, unmet
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, run_theorem, unmet
 
 _UNTIL = 0.03  # by then both pairs have coincided
 
@@ -28,8 +26,7 @@ def _enclosed(run: Trajectory) -> str | None:
 
 
 def _check(seen: Observed, tolerances: Tolerances) -> Checked:
-    needs = alpha_gain(seen)
-    if unmet(needs):
+    if unmet(needs := alpha_gain(seen)):
         return needs, []
     return needs, [
         distinct_pairs(seen, needs, tolerances, name="printed", disproof=_enclosed(seen.run)),
@@ -37,7 +34,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     ]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="E13",
     title=printed("E13"),
     statement=(
@@ -45,7 +42,6 @@ THEOREM = Theorem(
         "pairs that coincide at the same instant; one agent can run through several others, one after the other."
     ),
     source="slides, Theorem 3(iv)",
-    kind="trajectory",
     law=law_is("Algorithm 2", Algorithm2),
     check=_check,
     claims=("printed", "corrected"),

@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.measures.reynolds import reynolds
-from flockana.theorems.claims import equal, erratum, of_state
-from flockana.theorems.rounding import EPS
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import EPS, Claim, FloatArray, Tolerances, equal, erratum, of_state
 
 _SHIFT = 10.0  # of d
 
@@ -18,16 +15,12 @@ def _check(tolerances: Tolerances) -> list[Claim]:
 
     printed, true = reynolds_form(printed=True), reynolds_form()
     return [
-        equal(
-            "printed",
-            list(printed.residuals),
+        equal("printed", list(printed.residuals)).described(
             stated="u_i^g = S_i⁺⟨q⟩⁺ + S_i⁻⟨q⟩⁻",
             detail="the residual is −S_i q_i, S_i = S_i⁺ + S_i⁻; moved by w, the printed force grows by S_i w",
         ),
         _example(),
-        equal(
-            "corrected",
-            list(true.residuals),
+        equal("corrected", list(true.residuals)).described(
             stated="u_i^g = S_i⁺(⟨q⟩⁺ − q_i) + S_i⁻(⟨q⟩⁻ − q_i), the same wherever the origin is",
             detail="for any numbers of positive and negative friends, by sympy",
         ),
@@ -54,11 +47,7 @@ def _example() -> Claim:
     alpha, q = _three()
     here, there = (float(_forces(alpha, q + w, printed=True)[1, 0]) for w in (0.0, _SHIFT * alpha.d))
     size = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
-    return of_state(
-        "translation",
-        -abs(there - here),
-        16.0 * EPS * size,
-        about="all",
+    return of_state("translation", -abs(there - here), 16.0 * EPS * size, about="all").described(
         computed={"here": here, "there": there},
         stated="the force does not depend on where the origin is",
         witness={"q": q.tolist(), "moved by": _SHIFT * alpha.d},
@@ -77,10 +66,7 @@ def _state() -> Claim:
     bound = 64.0 * EPS * (1.0 + _SHIFT) * alpha.strength * 2.0
     moved = [q + w for w in (0.0, _SHIFT * alpha.d)]
     worst = float(np.max([np.abs(_forces(alpha, x, printed=False) - _law(alpha, x)).max() for x in moved]))
-    return of_state(
-        "state",
-        bound - worst,
-        0.0,
+    return of_state("state", bound - worst, 0.0).described(
         computed=worst,
         stated=f"the law's own force, to rounding ({bound:.2g})",
         witness={"q": q.tolist()},

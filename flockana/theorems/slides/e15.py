@@ -13,11 +13,8 @@ from flockana.lattice import hexagonal_patch
 from flockana.laws.msn import MSNDiscretisation
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.translational import CentreOfMass, predicted_gain
-from flockana.theorems.claims import equal, erratum, judged
-from flockana.theorems.enclosure import Enclosure, stacked
-from flockana.theorems.observed import observed
-from flockana.theorems.slides.measured_ratio import measured_ratio
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.slides.e12 import measured_ratio
+from flockana.theorems.toolkit import Claim, Enclosure, Tolerances, equal, erratum, judged, observed, stacked
 
 _DT, _RADIUS, _CENTRE = 0.009, 100.0, (50.0, 50.0)  # the project's
 _FREQUENCY = 0.025 / 5.0 / _DT
@@ -70,13 +67,10 @@ def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: 
 def _first_grows(ratios: list[Enclosure]) -> Claim:
     """Return the claim that not each ratio is below the one before."""
     listed = ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
-    return judged(
-        "first-grows",
-        stacked([b - a for a, b in pairwise(ratios)]).max(),
+    return judged("first-grows", stacked([b - a for a, b in pairwise(ratios)]).max(), proof=_PROOF).described(
         computed=_values(ratios),
         stated="with the true p_r the circle first grows with the speed",
         detail=f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed and its true p_r the ratio is {listed}",
-        proof=_PROOF,
     )
 
 
@@ -86,15 +80,11 @@ def _values(ratios: list[Enclosure]) -> list[float]:
 
 def _agree(ratios: list[Enclosure], gains: list[float], tolerances: Tolerances) -> Claim:
     off = stacked([abs(ratio / gain - 1.0) for ratio, gain in zip(ratios, gains, strict=True)])
-    return judged(
-        "predicted",
-        tolerances.agreement - off,
+    return judged("predicted", tolerances.agreement - off).described(
         computed=_values(ratios),
         stated="|G(jω)| of the centre of mass, whatever the start and the speed",
-        detail=(
-            "the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
-            f"{off.mid.max():.1g} at most"
-        ),
+        detail="the ratio, inside or outside, at each speed, with either p_r, is off the predicted one by "
+        f"{off.mid.max():.1g} at most",
     )
 
 
@@ -102,24 +92,16 @@ def _printed(inside: Enclosure, outside: Enclosure, others: list[Enclosure]) -> 
     """Return the project's claim that a start outside the circle, or another speed, makes the circle not smaller."""
     largest = stacked(others).max()
     return [
-        judged(
-            "printed-start",
-            outside - 1.0,
-            about="all",
+        judged("printed-start", outside - 1.0, about="all", disproof=_PROOF).described(
             computed=float(outside.mid),
             stated="from outside the circle the flock's is not smaller",
             witness={"inside": float(inside.mid), "outside": float(outside.mid)},
-            disproof=_PROOF,
             detail=f"the flock describes {outside.mid:.4f} of the γ-agent's circle from {_AWAY:g} radii away, "
             f"{inside.mid:.4f} from its centre: smaller from both starts",
         ),
-        judged(
-            "printed-speed",
-            largest - 1.0,
-            about="all",
+        judged("printed-speed", largest - 1.0, about="all", disproof=_PROOF).described(
             computed=_values(others),
             stated="at some other speed the flock's circle is not smaller",
-            disproof=_PROOF,
             detail=f"with the project's p_r at ¼, ½, 2 and 4 times the speed the circle is "
             f"{largest.mid:.4f} of the γ-agent's at most: smaller at each speed",
         ),
@@ -146,15 +128,10 @@ def _check(tolerances: Tolerances) -> list[Claim]:
         _falls("faster", ran, faster, "and its p_r per iteration", proof=_PROOF),
         _falls("faster-as-run", mapped, "the same for the project's own map", "and the map, agent by agent in place,"),
         _first_grows(true),
-        equal(
-            "condition",
-            _condition(),
+        equal("condition", _condition(), proof=_PROOF).described(
             stated="|G(jω)| falls with every ω iff c2γ²(1 - k²) >= 2 c1γ, for p_r = k dq_r/dt",
-            proof=_PROOF,
-            detail=(
-                f"the condition never holds for the true p_r; for the project's the left side is {margin:.3g} times "
-                "the right"
-            ),
+            detail=f"the condition never holds for the true p_r; for the project's the left side is {margin:.3g} times "
+            "the right",
         ),
     ]
 

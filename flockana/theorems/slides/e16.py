@@ -5,17 +5,14 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.base.checks import FloatArray
 from flockana.base.errors import SolverError
 from flockana.equilibria.collapse import perturbed, pulled_law
 from flockana.equilibria.gradient_flow import gradient_flow
 from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.interactions import AlphaInteraction
 from flockana.lattice import hexagonal_patch, hexagonal_spiral
-from flockana.theorems.claims import erratum, judged
-from flockana.theorems.enclosure import Enclosure, stacked
 from flockana.theorems.olfati_saber.attraction import attraction
-from flockana.theorems.theorem import Claim, Tolerances
+from flockana.theorems.toolkit import Claim, Enclosure, FloatArray, Tolerances, erratum, judged, stacked
 
 _ALPHA = AlphaInteraction(d=15.0, r=18.0, eps=0.1, h=0.1, a=3.0, b=3.0)  # the project's
 _RATIO = 0.7  # c1γ/c1α: its own 70 : 100
@@ -64,18 +61,14 @@ def _check(tolerances: Tolerances) -> list[Claim]:
     many = _measured(q, _RATIO, tolerances.contact)
     basin, pairs = attraction(pulled_law(_ALPHA, _RATIO), q, 0.0 * q).certificate, float(many.coincident)
     return [
-        judged(
-            "necessary",
-            strains - tolerances.quasi,
+        judged("necessary", strains - tolerances.quasi).described(
             computed=dict(zip(_SIZES, map(float, strains.mid), strict=True)),
             stated=f"at c1γ = c1α no flock of {_SIZES[0]} to {_SIZES[-1]} agents rests as a quasi-α-lattice",
             witness=f"{_STARTS} starts of each size",
             detail=f"the least strains are {', '.join(f'{x:.0%}' for x in strains.mid)} for n = {_SIZES[0]} to "
             f"{_SIZES[-1]}; a pair reaches {tolerances.quasi:.0%} at c1γ/c1α = {_pair_ratio(tolerances.quasi):.4g}",
         ),
-        judged(
-            "insufficient",
-            Enclosure(pairs if basin.certain else 0.0, pairs, pairs) - 0.5,
+        judged("insufficient", Enclosure(pairs if basin.certain else 0.0, pairs, pairs) - 0.5).described(
             computed=many.coincident,
             stated="at c1γ/c1α = 0.7 some of 61 agents coincide permanently",
             witness="a hexagonal patch relaxed by gradient flow",

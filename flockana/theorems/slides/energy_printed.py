@@ -3,15 +3,11 @@
 import numpy as np
 
 from flockana.base.checks import FloatArray
-from flockana.base.vectors import lengths
-from flockana.dynamics.trajectory import Trajectory
 from flockana.laws.algorithm3 import Algorithm3
-from flockana.theorems.hypotheses import law_is
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.energy import cancelling, never_rises, stays_outside
 from flockana.theorems.olfati_saber.gamma_agent import target_rests
 from flockana.theorems.slides.claims_on_energy import run_claim
-from flockana.theorems.theorem import Checked, Theorem, Tolerances
+from flockana.theorems.toolkit import Checked, Observed, Tolerances, Trajectory, law_is, lengths, run_theorem
 
 
 def pair_energy(run: Trajectory) -> FloatArray:
@@ -44,7 +40,7 @@ def _check(seen: Observed, tolerances: Tolerances) -> Checked:
     return needs, [never_rises(seen, needs, rate=_printed_rate, cancels=_cancelling, name="printed-run")]
 
 
-THEOREM = Theorem(
+THEOREM = run_theorem(
     id="energy-printed",
     title="The energy of Algorithm 3 as printed never rises",
     statement=(
@@ -52,7 +48,6 @@ THEOREM = Theorem(
         "(E2): the sum counts every pair twice, and the rate of the surplus has no definite sign."
     ),
     source="slides, Algorithm 3",
-    kind="trajectory",
     law=law_is("Algorithm 3", Algorithm3),
     check=_check,
     claims=("printed-run",),

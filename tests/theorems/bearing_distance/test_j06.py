@@ -19,7 +19,6 @@ CASES = [("directed", 2), ("directed", 3), ("undirected", 2), ("undirected", 3)]
 
 
 def corrected(statuses, modes):
-    """A theorem whose claims are as given."""
     named = [Claim(f"c{k}", status) for k, status in enumerate(statuses)]
     computed = None if modes is None else {"zero modes": modes}
     claims = (*named, Claim("lengths", "verified", detail="as long"), Claim("spectrum", "verified", computed=computed))

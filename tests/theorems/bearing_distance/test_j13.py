@@ -16,7 +16,6 @@ def test_a_slow_agent_stops_nearer(verdict_of):
 
 
 def test_obliquely_the_longer_zone_acts_longer():
-    """What its text grants: not so far off, but at a heading at which the shorter zone does not reach the wall."""
     world, heading = ZoneWorld(box=Box((0.0, 0.0), (50.0, 50.0))), np.array([[np.sin(0.8), np.cos(0.8)]])
     pushes = [
         ZoneFlocking(RADII, world=world, zone_length=name).behaviours([[47.3, 25.0]], 3.0 * heading)["obstacle"][0, 0]

@@ -46,7 +46,6 @@ def test_growing_is_refuted_by_any_one_of_its_three_gaps(monkeypatch, gaps):
 
 
 def test_the_mirror_image_of_an_agent_never_meets_it():
-    """Why: the box and the law are symmetric about its centre, and a lone agent keeps clear of the centre later on."""
     law = ZoneFlocking(RADII, ZoneWeights(cohesion_gain=1.0, alignment_gain=1.0), ZoneWorld(box=Box((0, 0), (50, 50))))
     q, p = np.array([[12.0, 40.0], [38.0, 10.0]]), np.array([[2.0, 1.5], [-2.0, -1.5]])
     path = law.iterate(0.0, q, p, law.start(q, p), 3000)[0]

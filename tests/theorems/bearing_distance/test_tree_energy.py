@@ -16,12 +16,10 @@ BOTH = MinimalFlocking(edges=both_ways(PAIR), spacing=RHO, mu=MU, normalised=Fal
 
 
 def claim_of(run, name):
-    """On this run alone."""
     return next(c for c in theorem("zone-1-corrected").examine(Observed.of(run), Tolerances())[1] if c.name == name)
 
 
 def edge(stretch, law=LAW, far=0.0, until=1.0):
-    """A run of two agents at rest at first, that far apart."""
     q = np.array([[far], [far + stretch]])
     return simulate(law, q, 0.0 * q, (0.0, until))
 
@@ -81,7 +79,6 @@ def test_on_an_undirected_tree_the_energy_of_all_bounds_each_edge():
 @pytest.mark.parametrize("law", [LAW, BOTH])
 @pytest.mark.parametrize("size", [1.0, 1e-3, 1e-6, 1e-9, 1e-12])
 def test_energies_and_bounds_from_far_above_to_far_below_the_noise(law, size):
-    """True of every start: verified where what moves is above the error, and never refuted."""
     statuses = {claim_of(edge(RHO - size * far, law=law, until=u), name).status
                 for far in (0.9, -0.9) for u in (1.0, 60.0)
                 for name in (("root-edge",) if law is LAW else ("energy", "no-collision"))}  # fmt: skip

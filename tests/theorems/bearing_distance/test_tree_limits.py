@@ -3,13 +3,13 @@
 What is true or false of a start is known by algebra here; sizes go from far above to far below the numerical error.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from flockana import MinimalFlocking, rescale, simulate, verify
-from flockana.measures.perception import both_ways, edge_vectors, random_out_tree
+from flockana import MinimalFlocking, rescale, simulate
+from flockana.measures.perception import both_ways, random_out_tree
 from flockana.theorems.bearing_distance.tree_case import tree_case
 from flockana.theorems.bearing_distance.tree_limits import edge_shares, settles, state
 from flockana.theorems.bearing_distance.tree_spectrum import POLYNOMIAL, tree_spectrum
@@ -17,13 +17,7 @@ from tests.theorems.made_up import said
 
 TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 PAIR = ((0, 1),)
-UNITS = [
-    (1.0, 1.0),
-    (1e6, 1.0),
-    (1e-3, 1.0),
-    (1.0, 1e3),
-    (1e-3, 1e-3),
-]  # metres to micrometres, kilometres; seconds to ms
+UNITS = [(1.0, 1.0), (1e6, 1.0), (1e-3, 1.0), (1.0, 1e3), (1e-3, 1e-3)]  # metres to µm, km; seconds to ms, ks
 SIZES = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15]
 
 
@@ -53,7 +47,6 @@ def energies_of(case, q, p):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_edge_ever_has_more_energy_than_the_certificate_allows(seed):
-    """The bound V̂ of each edge holds on, and what it feels of its parent, along a run that ends at rest."""
     rng = np.random.default_rng(seed)
     n, m = int(rng.integers(3, 6)), int(rng.integers(1, 4))
     law = MinimalFlocking(
@@ -76,103 +69,18 @@ def test_no_edge_ever_has_more_energy_than_the_certificate_allows(seed):
         assert np.abs(case.lengths(run.q[-1]) / case.rho - 1.0).max() < 1e-2 * np.sqrt(found.max())
 
 
-@pytest.mark.parametrize(("length", "time"), UNITS)
-@pytest.mark.parametrize("end", [1e-3, 0.5, 90.0])
-def test_an_edge_with_too_little_energy_to_vanish_takes_its_length(length, time, end):
-    """V(0) < ½μρ² at the root: certain from the first instant on; and the printed limit is false from then on."""
-    law = MinimalFlocking(edges=PAIR, spacing=2.0, mu=3.0, sigma=0.5, normalised=False)
-    law = rescale(law, length=length, time=time)
-    q, p = np.array([[0.0, 0.0], [2.9, 0.3]]), np.array([[0.0, 0.0], [0.2, -0.4]])
-    run = simulate(law, length * q, length / time * p, (0.0, time * end))
-    corrected, printed = said("zone-1-corrected", run), said("zone-1-printed", run)
-    assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
-    assert corrected["root-edge"] == "verified"
-    assert corrected["exponential"] == "verified"
-    assert (printed["edges"], printed["velocities"], printed["equilibrium"]) == ("refuted", "verified", "refuted")
-
-
 @pytest.mark.parametrize("off", [*SIZES, 0.0])
 @pytest.mark.parametrize("inside", [True, False])
 def test_the_barrier_is_sharp_but_for_rounding(off, inside):
     """V(0) next to ½μρ²: below it the limit is certain, above it nothing is known, at it neither is said."""
     rate = np.sqrt((1.0 - off) if inside else (1.0 + off))  # ½ rate² against ½ μ ρ² with μ = ρ = 1
-    run = simulate(
-        MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]], [[0, 0], [-rate, 0.3]], (0.0, 1e-9)
-    )
-    run_2 = simulate(
-        MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]], [[0, 0], [0, rate]], (0.0, 1e-12)
-    )
-    assert said("zone-1-corrected", run)["lengths"] in ("inconclusive", "verified")
-    status = said("zone-1-corrected", run_2)["lengths"]
+    law, q = MinimalFlocking(edges=PAIR, spacing=1.0), [[0.0, 0.0], [1.0, 0.0]]
+    near = simulate(law, q, [[0, 0], [-rate, 0.3]], (0.0, 1e-9))
+    assert said("zone-1-corrected", near)["lengths"] in ("inconclusive", "verified")
+    status = said("zone-1-corrected", simulate(law, q, [[0, 0], [0, rate]], (0.0, 1e-12)))["lengths"]
     if off >= 1e-9:
         assert status == ("verified" if inside else "inconclusive")
     assert status != "refuted"
-
-
-@pytest.mark.parametrize(("length", "time"), UNITS)
-@pytest.mark.parametrize("far", [0.0, 1e3, 1e6])
-@pytest.mark.parametrize("directed", [True, False])
-def test_at_its_own_equilibrium_nothing_is_refuted(length, time, far, directed):
-    """Here the corrected theorem is true, with every margin as small as rounding; -5e-33 refuted it once."""
-    edges = TREE if directed else both_ways(TREE)
-    law = rescale(MinimalFlocking(edges=edges, spacing=1.5, normalised=False), length=length, time=time)
-    q = oriented(law, 5, far=length * far)
-    run = simulate(law, q, 0.0 * q, (0.0, 20.0 * time))
-    corrected = said("zone-1-corrected", run)
-    assert "refuted" not in corrected.values()
-    assert corrected["lengths"] == corrected["velocities"] == corrected["spectrum"] == "verified"
-    printed = said("zone-1-printed", run)
-    assert printed.get("edges") == ("refuted" if directed else "vacuous")
-    assert printed["hurwitz"] != "verified"
-
-
-@pytest.mark.parametrize("amplitude", SIZES)
-@pytest.mark.parametrize("directed", [True, False])
-def test_near_its_equilibrium_nothing_is_refuted_either(amplitude, directed):
-    law = MinimalFlocking(edges=TREE if directed else both_ways(TREE), spacing=1.5, normalised=False)
-    q, rng = oriented(law, 5), np.random.default_rng(1)
-    run = simulate(law, q + amplitude * rng.normal(size=q.shape), amplitude * rng.normal(size=q.shape), (0.0, 40.0))
-    corrected = said("zone-1-corrected", run)
-    assert "refuted" not in corrected.values()
-    if amplitude <= 1e-3:
-        assert corrected["lengths"] == corrected["velocities"] == "verified"
-
-
-@pytest.mark.parametrize("stretch", [0.5, 0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.4])
-def test_a_bound_that_is_attained_is_kept(stretch):
-    """At rest and pressed, |x| is at ρ - √(2V(0)/μ) at the start: the margin of the bound itself is 0 there."""
-    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=4.0)
-    run = simulate(law, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0))
-    assert said("zone-1-corrected", run)["root-edge"] in ("verified", "inconclusive")
-    if abs(stretch - 1.0) > 1e-3:
-        assert said("zone-1-corrected", run)["root-edge"] == "verified"
-    both = MinimalFlocking(edges=both_ways(PAIR), spacing=1.0, mu=4.0, normalised=False)
-    found = said("zone-1-corrected", simulate(both, [[0.0], [stretch]], [[0.0], [0.0]], (0.0, 20.0)))
-    assert found["no-collision"] in ("verified", "inconclusive")
-    if abs(stretch - 1.0) > 1e-3:
-        assert found["no-collision"] == found["energy"] == "verified"
-
-
-@pytest.mark.parametrize("off", [0.5, *SIZES])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_hurwitz_is_decided_by_the_shortest_edge(off, sign):
-    """Leaving fast, an edge is longer than desired throughout, or shorter at the start: A_cl is Hurwitz, or is not."""
-    law = MinimalFlocking(edges=PAIR, spacing=1.0)
-    run = simulate(law, [[0.0, 0.0], [1.0 + sign * off, 0.0]], [[0.0, 0.0], [1.0, 0.0]], (0.0, 0.5))
-    right, wrong = ("verified", "refuted") if sign > 0.0 else ("refuted", "verified")
-    status = said("zone-1-printed", run)["hurwitz"]
-    assert status != wrong
-    if off >= 1e-6:
-        assert status == right
-
-
-def test_a_passage_between_two_samples_is_not_missed():
-    """Both samples find the edge too long, but in between it is not: A_cl is not Hurwitz throughout."""
-    law = MinimalFlocking(edges=PAIR, spacing=1.0, mu=1e-3)
-    start = [[0.0, 0.0], [3.0, 0.2]], [[0.0, 0.0], [-6.0, 0.0]]
-    run = simulate(law, *start, (0.0, 1.2), t_eval=[0.0, 1.2])
-    assert (np.linalg.norm(edge_vectors(run.q, PAIR), axis=2) > 1.0).all()
-    assert said("zone-1-printed", run)["hurwitz"] in ("inconclusive", "refuted")
 
 
 @pytest.mark.parametrize("n", [3, 20, 40])
@@ -217,67 +125,12 @@ def test_by_how_much_matrices_are_not_symmetric_is_an_error_in_every_unit(length
     assert found.error == pytest.approx(1.0 / 3.0, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["zone-1-printed", "zone-1-corrected"])
-@pytest.mark.parametrize("m", [1, 2])
-def test_coincident_linked_agents_have_no_bearing_and_make_no_crash(name, m):
-    law = MinimalFlocking(edges=TREE, spacing=1.0)
-    q = oriented(law, 5, m=m)
-    q[1] = q[0]
-    found = said(name, simulate(law, q, np.ones((5, m)), (0.0, 1.0)))
-    assert "verified" not in {found.get("hurwitz"), found.get("edges")}
-    assert found.get("lengths", "inconclusive") == "inconclusive"  # from x = 0 at rest an edge need not go anywhere
-    all_at_one = simulate(law, np.zeros((5, m)), np.zeros((5, m)), (0.0, 1.0))
-    assert "verified" not in {said(name, all_at_one).get(k) for k in ("hurwitz", "edges", "lengths", "velocities")}
-
-
-def test_what_is_no_tree_with_springs_and_damping_is_none_of_its_business():
-    q, p = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), np.zeros((3, 2))
-    laws = [
-        MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0, mu=0.0),
-        MinimalFlocking(edges=((0, 1), (1, 2)), spacing=1.0, sigma=0.0),
-        MinimalFlocking(edges=((0, 1),), spacing=1.0),
-        MinimalFlocking(),
-    ]
-    for law in laws:
-        for name in ("zone-1-printed", "zone-1-corrected"):
-            assert verify(name, simulate(law, q, p, (0.0, 1.0))).status == "vacuous"
-    alone = simulate(MinimalFlocking(), [[0.0, 0.0]], [[1.0, 0.0]], (0.0, 1.0))
-    assert verify("zone-1-printed", alone).status == verify("zone-1-corrected", alone).status == "vacuous"
-
-
-@dataclass(frozen=True)
-class Pushed(MinimalFlocking):
-    """The minimal law with a wind: another law, though it is a subclass."""
-
-    def flow(self, t, q, p):
-        u, rate = super().flow(t, q, p)
-        return u + 1e-3, rate
-
-
-def test_a_subclass_is_another_law():
-    law = Pushed(edges=PAIR, spacing=1.0)
-    run = simulate(law, [[0.0], [2.0]], [[0.0], [0.0]], (0.0, 1.0))
-    for name in ("zone-1-printed", "zone-1-corrected"):
-        assert verify(name, run).status == "vacuous"
-
-
 def test_forces_that_are_mutual_but_for_rounding_are_mutual():
-    """β_i r_i |N_i| of neighbours agree by algebra, in any unit, and differ in their last digits."""
     law = MinimalFlocking((3.0, 0.1), beta=(0.1, 3.0), edges=both_ways(PAIR), normalised=False)
     assert 3.0 * 0.1 != 0.1 * 3.0 or law.reciprocal
     for length in (1.0, 1e-3, 7.0, 1e6):
         assert rescale(law, length=length).reciprocal
     assert not MinimalFlocking((3.0, 0.1), beta=(0.1, 3.001), edges=both_ways(PAIR), normalised=False).reciprocal
-
-
-@pytest.mark.parametrize(("length", "time"), UNITS[1:])
-@pytest.mark.parametrize("directed", [True, False])
-def test_verdicts_are_the_same_in_all_units(length, time, directed):
-    edges, rng = TREE if directed else both_ways(TREE), np.random.default_rng(5)
-    law = MinimalFlocking(edges=edges, spacing=1.5, sigma=0.8, normalised=False)
-    run = simulate(law, rng.uniform(-2.0, 2.0, (5, 2)), rng.uniform(-1.0, 1.0, (5, 2)), (0.0, 60.0))
-    for name in ("zone-1-printed", "zone-1-corrected"):
-        assert said(name, rescale(run, length=length, time=time)) == said(name, run)
 
 
 @pytest.mark.parametrize("off", [-1e-9, 1e-9, -1e-6])

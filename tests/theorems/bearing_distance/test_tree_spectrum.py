@@ -64,14 +64,3 @@ def test_without_alignment_the_modes_that_drift_are_no_longer_simple():
     """C = 0: more is 0 than translations, and the statement is refuted."""
     found = spectrum_of(both_ways([(0, 1), (1, 2)]), 3, 1, mu=3.0, sigma=0.0)
     assert found.margin == -1.0
-
-
-@pytest.mark.parametrize("unit", [1e-4, 1e3])
-def test_other_units_of_time_change_the_rate_alone(unit):
-    for edges in (((0, 1), (1, 2), (1, 3)), both_ways([(0, 1), (1, 2), (1, 3)])):
-        one = spectrum_of(edges, 4, 2, mu=2.0, sigma=0.5)
-        two = spectrum_of(edges, 4, 2, mu=2.0 / unit**2, sigma=0.5 / unit)
-        assert (one.zeros, two.zeros) == (3, 3)
-        assert two.margin == pytest.approx(one.margin, rel=1e-8)
-        assert two.error == pytest.approx(one.error, rel=1e-2, abs=0.0)
-        assert two.slowest * unit == pytest.approx(one.slowest, rel=1e-8)

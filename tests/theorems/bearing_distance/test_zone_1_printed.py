@@ -13,7 +13,6 @@ EPS, MU, A = np.finfo(float).eps, 3.0, 0.7
 
 
 def at_rest(*lengths, rho=2.0):
-    """A directed chain along a line, at rest in two samples."""
     law = MinimalFlocking(edges=((0, 1), (1, 2))[: len(lengths)], spacing=rho, mu=MU, sigma=A, normalised=False)
     q = np.column_stack([np.concatenate([[0.0], np.cumsum(lengths)]), np.zeros(1 + len(lengths))])
     return judged("zone-1-printed", made_up(law, [q, q]))
@@ -38,7 +37,6 @@ def test_an_edge_with_energy_enough_may_vanish():
 
 
 def test_of_two_edges_the_one_that_keeps_more_refutes():
-    """The second is at its length, but its parent moves it: all that is known is of the first."""
     edges = at_rest(2.5, 2.0).claim("edges")
     assert edges.margin == pytest.approx(0.25 - 1.0, abs=1e-6)
     assert edges.computed == pytest.approx([2.0, 2.5])

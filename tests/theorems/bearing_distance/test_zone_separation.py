@@ -13,7 +13,6 @@ from flockana.theorems.observed import observed
 
 @pytest.fixture(scope="module")
 def seen():
-    """The claims, by name, and the runs that they are about."""
     runs = []
 
     def kept(*given, **options):

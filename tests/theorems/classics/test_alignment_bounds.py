@@ -1,7 +1,5 @@
 """Integrals of the weight, and what the theorems make of starts on both sides of their thresholds."""
 
-from __future__ import annotations
-
 from math import asinh, atan, inf, pi, sqrt
 
 import mpmath
@@ -50,12 +48,6 @@ def test_a_flock_of_two_shows_that_the_larger_integral_is_sharp():
     assert printed * sqrt(2.0) == pytest.approx((pi / 2.0 - atan(sqrt(2.0))) / sqrt(2.0), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", [name for name in fl.scenarios() if name.startswith(("cucker-smale", "tanner-"))])
-def test_scenarios_come_out_as_expected(name):
-    scenario = fl.scenario(name)
-    assert not [text for verdict in scenario.verify(scenario.run()) for text in scenario.surprises(verdict)]
-
-
 def test_an_approaching_pair_counts_the_way_past_each_other():
     law = fl.CuckerSmale(RationalWeight(1.0, 1.0), mean=True)
     for speed, fate in ((0.74 * pi, "bounded"), (0.76 * pi, "parts")):
@@ -79,24 +71,6 @@ def test_sums_that_are_not_divided_count_every_agent():
         for law in (fl.CuckerSmale(RationalWeight(1.0, 1.0)), fl.CuckerSmale(RationalWeight(3.0, 1.0), mean=True))
     ]
     assert margins[0] == pytest.approx(margins[1], rel=1e-12)
-
-
-def test_a_net_that_starts_just_at_the_range_is_not_certain_to_be_one():
-    """Rounding alone says on which side of R two agents are that begin there, though they come together at once."""
-    law = fl.ProximityFlocking()
-    run = fl.simulate(law, [[0.0], [law.r]], [[0.1], [-0.1]], (0.0, 0.5))
-    assert fl.verify("tanner-switching", run).hypotheses[-1].status == "assumed"
-    nearer = fl.simulate(law, [[0.0], [0.99 * law.r]], [[0.1], [-0.1]], (0.0, 0.5))
-    assert fl.verify("tanner-switching", nearer).hypotheses[-1].status == "met"
-
-
-@pytest.mark.parametrize(("share", "status"), [(0.9, "met"), (1.1, "assumed")])
-def test_connectedness_is_certain_below_the_energy_of_a_cut(share, status):
-    """Two agents at d with a share of V(R) as their energy: seen for so short a time that they are still linked."""
-    law = fl.ProximityFlocking()
-    speed = sqrt(share * float(law.potential.energy(law.r**2)))  # each: H = speed²
-    run = fl.simulate(law, [[0.0], [1.0]], [[-speed], [speed]], (0.0, 0.1))
-    assert fl.verify("tanner-switching", run).hypotheses[-1].status == status
 
 
 def test_a_flock_at_one_point_that_moves_as_one_has_no_size_to_compare():

@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from flockana import CuckerSmale, RationalWeight, Tolerances
-from tests.theorems.made_up import judged, made_up, same_in_all_units, statuses
+from flockana import CuckerSmale, RationalWeight
+from tests.theorems.made_up import judged, made_up, statuses
 
 Q, P = np.array([[-1.0], [1.0]]), np.array([[-0.5], [0.5]])
 
@@ -53,13 +53,3 @@ def test_beyond_one_half_it_says_nothing(decay, text):
     assert (need.status, need.margin) == ("unmet", pytest.approx(0.5 - decay, abs=1e-15))
     assert statuses(verdict) == dict.fromkeys(("bounded", "rate", "velocities"), "vacuous")
     assert verdict.claim("bounded").detail == f"β <= ½ does not hold: β = {text}"
-
-
-@pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])
-def test_in_all_units(scaling):
-    same_in_all_units("cucker-smale", motion(0.25, closing=9.0), scaling)
-
-
-def test_tolerances_do_not_matter():
-    loose = Tolerances(velocity=1e-2, energy=1e-2)
-    assert judged("cucker-smale", motion(0.25), loose).claims == judged("cucker-smale", motion(0.25)).claims

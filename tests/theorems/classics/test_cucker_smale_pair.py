@@ -59,7 +59,6 @@ def test_far_from_the_origin_the_start_itself_is_rounded():
 
 
 def test_the_invariant_is_that_of_the_whole_run():
-    """Along the run w falls by the integral between; its largest deviation is what the claim says."""
     verdict, run = pair(-1.0, 3.0, until=2.0)
     run = Observed.of(run).run
     x, w = (z[:, 1, 0] - z[:, 0, 0] for z in (run.q, run.p))

@@ -1,7 +1,5 @@
 """The Cucker-Smale law in steps: the bound of the step, on both sides, and what a step too long does."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import CuckerSmale, RationalWeight
-from tests.theorems.made_up import hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 LAW = CuckerSmale(RationalWeight(strength=1.5, length=2.0, decay=1.0), mean=True)
 FORMS = [("ha-liu", 2.0), ("ha-liu-sharp", sqrt(2.0))]
@@ -46,9 +46,3 @@ def test_a_start_between_the_two_thresholds_is_a_flock_of_the_sharper_alone():
     run = motion(1.3 / sqrt(2.0), closing=9.0)
     assert set(statuses(judged("ha-liu", run)).values()) == {"vacuous"}
     assert statuses(judged("ha-liu-sharp", run)) == dict.fromkeys(("bounded", "rate", "flock"), "verified")
-
-
-@pytest.mark.parametrize(("name", "c"), FORMS)
-@pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])
-def test_in_all_units(name, c, scaling):
-    same_in_all_units(name, motion(0.3, closing=9.0), scaling)

@@ -50,7 +50,6 @@ def test_every_step_at_which_a_heading_leaves_the_span_counts(headings, out, fir
 
 @pytest.mark.parametrize(("left", "missed"), [(0.0, False), (1e-16, False), (1e-12, True), (0.5, True)])
 def test_what_the_nets_do_not_leave_of_a_spread_is_missed(left, missed):
-    """Both take the mean of both in the first step; in the second they are apart again."""
     verdict = verdict_of([[0.0, 1.0], [0.5 - 0.5 * left, 0.5 + 0.5 * left], [0.5, 0.5]])
     claim = verdict.claim("contraction")
     assert (claim.status, claim.contradicts) == (("inconclusive", "headings") if missed else ("verified", ""))
@@ -66,7 +65,6 @@ def test_two_that_never_hear_each_other_are_in_no_window():
 
 
 def test_what_comes_after_the_run_may_not_be_known():
-    """Apart, and on the way to each other."""
     verdict = verdict_of([[0.1, 3.0]] * 3, [APART] * 3)
     assert hypothesis(verdict, "at all later times").status == "assumed"
     assert verdict.claim("agreement").status == "inconclusive"
@@ -94,7 +92,6 @@ def test_headings_must_be_kept():
 
 
 def test_what_lasts_is_that_of_the_end():
-    """Apart at first, and with headings so different that they might part again: in the end neither."""
     verdict = verdict_of([[0.0, 300.0], [150.0, 150.0], [150.0, 150.0]], [APART, NEAR, NEAR])
     assert hypothesis(verdict, "at all later times").status == "met"
     assert verdict.claim("agreement").witness == {"heading": 150.0}

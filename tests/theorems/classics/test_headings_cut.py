@@ -1,7 +1,5 @@
 """Mean headings counted from a direction: the pair that turns round, as it is told."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from flockana.theorems.classics.headings_cut import averaged

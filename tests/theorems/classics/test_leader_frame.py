@@ -5,8 +5,7 @@ import pytest
 
 from flockana import Algorithm2, AlphaInteraction, CircleTarget, Gains, LinearTarget, StaticTarget, compose
 from flockana.theorems.classics.leader_frame import as_the_leader_sees, comes_to_rest, gains_of, some_informed
-from flockana.theorems.limits import Certificate
-from flockana.theorems.observed import Observed
+from flockana.theorems.toolkit import Certificate, Observed
 from tests.theorems.made_up import made_up
 
 T = np.linspace(0.0, 40.0, 401)

@@ -12,12 +12,15 @@ from flockana.theorems.observed import Observed
 
 
 def checked(run):
-    """Claims of a run as if it were exact, by name."""
     return {claim.name: claim for claim in THEOREM.check(Observed.alone(run), fl.Tolerances())[1]}
 
 
-def test_a_chain_holds():
-    run = fl.scenario("links-kept").run()
+@pytest.fixture(scope="module")
+def run():
+    return fl.scenario("links-kept").run()
+
+
+def test_a_chain_holds(run):
     verdict = fl.verify("links-kept", run)
     assert {claim.name: claim.status for claim in verdict.claims} == dict.fromkeys(
         ("rate", "balance", "links", "connected", "velocities"), "verified"
@@ -35,15 +38,13 @@ def test_what_no_link_joins_is_vacuous():
     assert "2 component(s)" in next(each.detail for each in verdict.hypotheses if each.status == "unmet")
 
 
-def test_without_damping_velocities_swing():
-    run = fl.scenario("links-kept").run()
+def test_without_damping_velocities_swing(run):
     verdict = fl.verify("links-kept", law=replace(run.law, c=0.0), q0=run.q[0], p0=run.p[0], t_span=(0.0, 1.0))
     assert {claim.name for claim in verdict.claims if claim.status == "vacuous"} == {"velocities"}
 
 
 @pytest.mark.parametrize("level", [True, False])
-def test_longer_links_than_the_level_or_the_range_allows_contradict_the_proof(level):
-    run = fl.scenario("links-kept").run()
+def test_longer_links_than_the_level_or_the_range_allows_contradict_the_proof(run, level):
     far = replace(run, law=replace(run.law, r=0.72 if level else 0.65))  # no run of this law: links grow to 0.7175
     claims = checked(far)
     claim = claims["links" if level else "connected"]

@@ -29,7 +29,6 @@ def hypothesis_status(verdict, text):
 
 
 def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
-    """Galilei: the run seen from the leader is a run of the law with a leader at rest, its steps too."""
     run = run_of()
     seen = leader_frame.as_the_leader_sees(Observed.alone(run)).run
     again = simulate(seen.law, seen.q[0], seen.p[0], (0.0, 4.0), t_eval=run.t)
@@ -38,13 +37,6 @@ def test_the_leader_s_frame_is_that_of_a_leader_at_rest():
         [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)], seen.u
     )
     assert seen.path.t.size == run.path.t.size
-
-
-def test_told_acceleration_makes_the_leader_s_frame_one_of_rest():
-    run = simulate(compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True), Q, P, (0.0, 3.0))
-    seen = leader_frame.as_the_leader_sees(Observed.alone(run)).run
-    forces = [seen.law.flow(t, q, p)[0] for t, q, p in zip(seen.t, seen.q, seen.p, strict=True)]
-    np.testing.assert_allclose(forces, seen.u, atol=1e-9)
 
 
 def test_links_over_windows_join_who_is_near_an_informed_agent():
@@ -68,7 +60,6 @@ def test_a_link_at_one_sample_of_each_window_is_enough(near, linked):
 
 
 def test_few_lead_all_that_are_linked():
-    """That links come again and again is assumed, so that those who are linked follow is not decided."""
     verdict = scenario("informed-few").verify(scenario("informed-few").run())[0]
     verified = dict.fromkeys(("energy", "distance", "informed", "pairs", "one-instant"), "verified")
     assert statuses(verdict).items() >= (verified | {"linked": "inconclusive"}).items()

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from flockana import FixedNetFlocking
-from tests.theorems.made_up import hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import hypothesis, judged, made_up, statuses
 
 NAMES = ["energy", "no-collision", "velocities", "critical"]
 
@@ -44,16 +44,6 @@ def test_those_that_are_joined_may_not_meet_and_the_others_may():
     assert verdict.claim("energy").proof == "tanner"
 
 
-@pytest.mark.parametrize(
-    ("edges", "least"), [(((0, 1), (1, 2)), 0.9), (((0, 2), (1, 2)), 0.9), (((0, 1), (0, 2)), 0.9)]
-)
-def test_the_nearest_of_all_that_are_joined(edges, least):
-    """Three about their places, of which each net has another two; the nearest is 0.9 in all."""
-    places = {((0, 1), (1, 2)): (0.0, 1.1, 2.0), ((0, 2), (1, 2)): (0.0, 2.0, 1.1), ((0, 1), (0, 2)): (1.1, 0.0, 2.0)}
-    claim = judged("tanner-fixed", at_rest(edges, *places[edges])).claim("no-collision")
-    assert claim.computed == pytest.approx(least, rel=1e-12)
-
-
 def settling(rate):
     """Two that come to their distance at a rate, and slow down by it."""
     t = np.linspace(0.0, 20.0, 201)
@@ -69,8 +59,3 @@ def test_what_comes_to_rest_is_proved_and_its_forces_are_those_of_the_end():
         assert (claim.status, claim.proof, claim.about) == ("verified", "matched-velocities", "limit")
     s = 1.0 + 0.2 * exp(-20.0)
     assert verdict.claim("critical").computed == pytest.approx(abs(-2.0 / s**3 + 2.0 / s), rel=1e-4, abs=0.0)
-
-
-@pytest.mark.parametrize("scaling", [(1e-3, 60.0), (25.4, 1e-2)])
-def test_in_all_units(scaling):
-    same_in_all_units("tanner-fixed", settling(1.0), scaling)

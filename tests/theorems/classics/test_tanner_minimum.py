@@ -1,7 +1,5 @@
 """Three on a line: that no force acts on them, and by how much the middle one is on a hill, by differences."""
 
-from __future__ import annotations
-
 from math import hypot, log, sqrt
 
 import pytest

@@ -31,7 +31,6 @@ def test_two_are_held_by_what_they_lack_of_the_energy_at_the_range(s):
     ("s", "status"), [(0.78, "met"), (0.9, "met"), (1.3, "met"), (1.5, "assumed"), (0.6, "assumed")]
 )
 def test_a_chain_of_three_has_three_pairs_and_needs_two_to_break(s, status):
-    """The ends are out of range, and count by V(R), unless they are within it."""
     energy = 2.0 * potential(s) + potential(min(2.0 * s, 1.6))
     found = hypothesis(verdict_of(0.0, s, 2.0 * s), "connected")
     assert (energy < 2.0 * potential(1.6)) == (status == "met")
@@ -55,7 +54,6 @@ def test_it_is_apart_if_it_is_at_any_sample():
 
 
 def test_at_the_range_itself_rounding_decides_neither():
-    """A pair at R exactly has no link, but rounding might have one; nothing is certain of it."""
     assert hypothesis(verdict_of(0.0, 1.6), "connected").status == "assumed"
     assert hypothesis(verdict_of(0.0, 1.6 * (1.0 + 1e-14)), "connected").status == "unmet"
     far = 1e9  # there a distance is known to 1e-6

@@ -14,7 +14,6 @@ CONTACT = 3.49973  # within 1e-5 of where repulsion and the pull k₁ balance, o
 
 
 def slope(s, h=1e-6):
-    """F' by a central difference."""
     force = LAW.interaction.force
     return float(force(np.array([s + h]))[0] - force(np.array([s - h]))[0]) / (2.0 * h)
 

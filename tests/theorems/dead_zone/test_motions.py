@@ -16,7 +16,6 @@ def test_two_part_at_12_from_14():
 
 @pytest.mark.parametrize(("dt", "t_end", "steps"), [(0.01, 10.0, 1000), (0.01, 13.0, 1500), (0.004, 4.0, 1000)])
 def test_the_last_of_many_steps(dt, t_end, steps):
-    """Of two that repel each other, far from rest, and pull each other back."""
     law, q, p = parting_pair()[0], np.array([[0.0, 0.0], [3.0, 0.5]]), np.array([[0.0, 0.0], [0.0, 1.0]])
     states = law.semi_implicit(q, p, dt, steps)
     found = advance(law, q, p, dt, t_end)

@@ -72,7 +72,6 @@ def test_what_parts_for_ever_does():
 
 
 def test_parts_with_one_velocity_may_turn_to_meet_for_all_that_rounding_tells():
-    """Of two velocities that differ by less than their rounding the direction is not known: any path may be it."""
     law, q = DeadZoneFlocking(), np.array([[0.0, 0.0], [3.5, 0.0], [50.0, 0.0], [53.5, 0.0]])
     same = components_of(q, np.full((4, 2), 1.0), law)
     assert same.apart.error == pytest.approx(50.0 / law.interaction.r)

@@ -1,7 +1,5 @@
 """The certificate of attraction: its Lipschitz constant against the Hessian itself, its verdict against long runs."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -37,7 +35,6 @@ def shaken(seed, n=7, size=0.02, speed=0.02):
 
 @given(seeds, st.integers(2, 8), st.integers(1, 3), st.floats(-6.0, -0.7).map(lambda x: 10.0**x), st.data())
 def test_the_hessian_never_changes_faster_than_the_constant_says(seed, n, m, window, data):
-    """Random nets, coincident agents and pairs at the ends of the bump among them, random displacements."""
     alpha = data.draw(
         st.sampled_from(
             [AlphaInteraction(), AlphaInteraction(1.9, 2.8, 0.1, 0.4, 7.0, 9.0), AlphaInteraction(7.0, 8.4, 5.0, 0.9)]

@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 from flockana import Algorithm1, Algorithm2, StaticTarget, Tolerances, Trajectory, simulate, verify
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.measures.path_bounds import contacts
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber import collisions
 from flockana.theorems.olfati_saber.collisions import below_multiple, contacts_of, near, pairs_at_one_instant, passed
-from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from flockana.theorems.toolkit import Enclosure, Observed
+from tests.theorems.made_up import judged, made_up, statuses
 
 ALPHA = AlphaInteraction(a=5e4, b=5e4)
 E13_LAW = Algorithm2(ALPHA, Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01), StaticTarget((0.0,)))
@@ -27,9 +26,9 @@ def e13():
     return simulate(E13_LAW, *E13_START, (0.0, 0.05))
 
 
-def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
+def head_on(share, m=1, *, aside=0.0, law=None, times=3.0):
     """Two agents that approach each other with a share of c* as their energy, the second one a little aside."""
-    law = law or Algorithm1(gains=Gains(c2_alpha=0.0))
+    law, apart = law or Algorithm1(gains=Gains(c2_alpha=0.0)), 7.0
     q = np.zeros((2, m))
     q[1, 0] = apart
     speed = sqrt(share * law.gains.c1_alpha * law.alpha.c_star - law.energy(0.0, q, 0.0 * q))
@@ -37,9 +36,6 @@ def head_on(share, m=1, *, aside=0.0, tilt=0.0, apart=7.0, law=None, times=3.0):
     p[0, 0], p[1, 0] = speed, -speed
     if m > 1:
         q[1, 1] += aside
-        turn = np.eye(m)
-        turn[:2, :2] = [[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]]
-        q, p = q @ turn.T, p @ turn.T
     return simulate(law, q, p, (0.0, times * apart / speed))
 
 
@@ -54,7 +50,6 @@ class TestTwoAgents:
     @pytest.mark.parametrize("share", [1.1, 1.9])
     @pytest.mark.parametrize("m", [1, 2, 3])
     def test_between_c_star_and_twice_it_they_do(self, share, m):
-        """On one axis they change places for certain, whatever the dimension."""
         found = statuses(verify("collision-energy", head_on(share, m)))
         assert found == {"below": "vacuous", "twice": "refuted"}
 
@@ -65,27 +60,10 @@ class TestTwoAgents:
         found = statuses(verify("collision-energy", run))
         assert "refuted" not in found.values()
 
-    @pytest.mark.parametrize("share", [0.9, 1.1, 1.6])
-    def test_a_law_whose_forces_are_far_below_b_over_root_eps(self, share):
-        """Lengths short beside ℓ: the potential's rounding goes by the forces that there are, and decides nothing."""
-        alpha = AlphaInteraction(d=7e-6, r=7.35e-6)
-        law = Algorithm1(alpha, Gains(c2_alpha=0.0))
-        found = statuses(verify("collision-energy", head_on(share, apart=7e-6, law=law)))
-        assert found["below"] == ("verified" if share < 1.0 else "vacuous")
-
     @pytest.mark.parametrize("aside", [1e-12, 1e-9, 1e-7])
     def test_a_near_miss_is_no_collision(self, aside):
-        """Angular momentum never vanishes: they pass each other, however near."""
         claim = verify("collision-energy", head_on(1.6, 2, aside=aside)).claim("twice")
         assert claim.status in ("inconclusive", "verified")
-
-    def test_on_a_line_that_is_no_axis_rounding_tilts_the_paths(self):
-        assert verify("collision-energy", head_on(1.6, 2, tilt=0.4)).claim("twice").status == "inconclusive"
-
-    @pytest.mark.parametrize("scaling", SCALINGS)
-    def test_units(self, scaling):
-        for share in (0.5, 1.5):
-            same_in_all_units("collision-energy", head_on(share), scaling)
 
 
 @given(st.floats(-16.0, -1.0).map(lambda x: 10.0**x), st.sampled_from((-1.0, 1.0)))
@@ -124,7 +102,6 @@ class TestErratum13:
         assert verify("os-3", e13).claim("iv-printed").status == "refuted"
 
     def test_two_pairs_in_one_step_are_both_found(self, e13):
-        """Sampled so sparsely that both meetings fall between two samples: they might be together."""
         keep = [0, int(np.searchsorted(e13.t, 0.035)), len(e13.t) - 1]
         sparse = Trajectory(
             e13.t[keep], e13.q[keep], e13.p[keep], e13.u[keep], e13.law, {"work": e13.extra["work"][keep]}
@@ -134,10 +111,6 @@ class TestErratum13:
         assert judged("E13", sparse).claim("printed").status == "refuted"
         assert pairs_at_one_instant(seen, [], Tolerances(), name="corrected").status == "inconclusive"
         assert judged("E13", sparse).claim("corrected").rigour == "smt"  # by the proof alone
-
-    @pytest.mark.parametrize("scaling", SCALINGS)
-    def test_units(self, e13, scaling):
-        same_in_all_units("E13", e13, scaling)
 
     def test_energy_at_a_multiple_of_c_star_leaves_k_open(self):
         """H(0) = 2 c* but for rounding: whether one or two pairs may meet is not decided, nor is the claim on two."""

@@ -22,7 +22,6 @@ def tube_of(*places, speed=0.0, law=LAW, span=SPAN):
 
 @pytest.mark.parametrize("speed", [0.0, 39.0, 40.0, 56.0, 57.0])
 def test_the_energy_against_c_star_and_twice_it(speed):
-    """At the distance d two have the squares of their speeds alone."""
     verdict = verify("collision-energy", tube_of(0.0, 7.0, speed=speed))
     for text, times, claim in (("H(0) < c*", 1.0, "below"), ("H(0) < 2 c*", 2.0, "twice")):
         found = hypothesis(verdict, text)

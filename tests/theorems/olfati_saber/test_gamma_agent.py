@@ -50,7 +50,6 @@ def test_a_step_of_one_rounding_is_no_interval():
 @pytest.mark.parametrize("target", MOVING[:3], ids=lambda target: type(target).__name__)
 @pytest.mark.parametrize("factor", [0.0, 0.5, 0.999, 1.001])
 def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor):
-    """Its size is what is missing: mean speeds over an eighth of a time unit."""
     told = RescaledVelocity(target, factor)
     speed = np.linalg.norm([target.rate(t) for t in np.linspace(0.0, 5.0, 400)], axis=1).max()
     found = consistent(run(told))
@@ -61,10 +60,7 @@ def test_a_velocity_that_is_told_wrongly_is_seen_to_a_thousandth(target, factor)
 
 
 def test_rest_and_the_velocity_that_is_told_beside_it():
-    assert [target_rests(run(StaticTarget(HERE)), any_p_r=some).status for some in (True, False)] == [
-        "met",
-        "met",
-    ]
+    assert [target_rests(run(StaticTarget(HERE)), any_p_r=some).status for some in (True, False)] == ["met", "met"]
     assert [target_rests(run(StaticTarget(HERE, AWAY)), any_p_r=some).status for some in (True, False)] == [
         "met",
         "unmet",
@@ -86,7 +82,6 @@ def test_a_constant_that_only_rounding_moves_is_at_rest():
 
 @pytest.mark.parametrize("between", [0.02, 0.11])
 def test_a_jump_between_two_samples_is_seen(between):
-    """At rest wherever one looks but for the jump: the difference of positions over that interval tells."""
     jumps = CallableTarget(lambda t: ((0.0 if t < 1.0 + between else 1e-3, 0.0), (0.0, 0.0)))
     assert target_rests(run(jumps), any_p_r=False).status == "unmet"
     assert consistent(run(jumps)).status == "unmet"

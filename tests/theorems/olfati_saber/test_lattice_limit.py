@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget, theorem
-from flockana.theorems.leads import strained
-from tests.theorems.made_up import SCALINGS, judged, made_up, same_in_all_units, statuses
+from flockana import Algorithm1, Algorithm2, Algorithm3, Gains, Sphere, StaticTarget
+from tests.theorems.made_up import judged, made_up, statuses
 
 TRIANGLE = np.array([[0.0, 0.0], [7.0, 0.0], [3.5, 3.5 * np.sqrt(3.0)]])
 
@@ -39,16 +38,3 @@ def test_without_the_gain_or_under_another_law_it_says_nothing(law, detail):
     verdict = judged("lattice-limit-printed", at_rest(law))
     assert statuses(verdict) == {"lattice": "vacuous"}
     assert detail in verdict.claim("lattice").detail
-
-
-def test_a_search_is_led_by_strain_until_a_run_refutes():
-    item = theorem("lattice-limit-printed")
-    assert item.leads["lattice"](at_rest(Algorithm1(), 1.1 * TRIANGLE), None) == strained(
-        at_rest(Algorithm1(), 1.1 * TRIANGLE), None
-    )
-
-
-@pytest.mark.parametrize("scaling", SCALINGS)
-def test_in_all_units(scaling):
-    same_in_all_units("lattice-limit-printed", at_rest(Algorithm1()), scaling)
-    same_in_all_units("lattice-limit-printed", at_rest(Algorithm1(), 1.01 * TRIANGLE), scaling)

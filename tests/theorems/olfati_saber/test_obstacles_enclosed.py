@@ -21,6 +21,7 @@ from flockana import (
 from flockana.certified.flow import Flow
 from flockana.certified.laws import flow_of
 from flockana.certified.total_energy import powers_during, total_energy, work
+from tests.theorems.made_up import statuses
 
 LAW = Algorithm3(
     gains=Gains(c1_alpha=1.5, c2_alpha=2.0, c1_beta=100.0, c2_beta=20.0),
@@ -34,12 +35,7 @@ SPAN = (0.0, 0.0625)
 
 @pytest.fixture(scope="module")
 def tube():
-    """Two agents in range, one of them at a sphere."""
     return enclose(LAW, *START, SPAN, order=12)
-
-
-def statuses(verdict):
-    return {claim.name: claim.status for claim in verdict.claims}
 
 
 def test_all_of_theorem_6_is_decided_and_its_rigour_is_that_of_the_proof(tube):

@@ -1,18 +1,15 @@
 """Theorem 3, on runs whose answer is known."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-import flockana as fl
 from flockana import Algorithm2, Gains, Tolerances, simulate, verify
 from flockana.base.seals import sealed
-from flockana.environment.targets import CallableTarget, LinearTarget, RescaledVelocity, StaticTarget
+from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
 from flockana.lattice import hexagonal_patch
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.collisions import pairs_at_one_instant
-from tests.theorems.made_up import SCALINGS, hexagon, hypothesis, judged, made_up, same_in_all_units, statuses
+from tests.theorems.made_up import hexagon, hypothesis, judged, made_up, statuses
 
 LAW = Algorithm2(target=LinearTarget((20.0, 0.0), (1.0, 0.0)))
 ORIGIN = StaticTarget((0.0, 0.0))
@@ -37,29 +34,12 @@ def test_holds_for_a_small_flock(run):
     assert hypothesis(verdict, "dq_r/dt").status == "met"
 
 
-@pytest.mark.parametrize("scaling", SCALINGS)
-@pytest.mark.parametrize("name", ["os-3", "energy", "lattice-limit-printed", "E13"])
-def test_units_change_no_verdict(run, name, scaling):
-    same_in_all_units(name, run, scaling)
-    same_in_all_units(name, run.window(0.0, 0.3), scaling)
-
-
 @pytest.mark.parametrize("until", [1e-7, 1e-4, 0.3])
 def test_a_start_from_rest_is_no_limit(until):
     """10⁻⁷ time units after a start from rest K̃ has not grown yet: only the proof decides."""
     q, _ = start()
     verdict = verify("os-3", simulate(LAW, q, np.zeros_like(q), (0.0, until)))
     assert (verdict.claim("ii").status, verdict.claim("iii").status) == ("inconclusive", "verified")
-    assert verdict.claim("iii").detail.endswith("proved for every start")
-
-
-def test_micrometres_after_a_hundredth_of_a_second_are_no_equilibrium():
-    law = Algorithm2(
-        alpha=fl.AlphaInteraction(d=7e-6, r=8.4e-6), gains=Gains(1.0, 1.0, 0.0, 0.0, 1.0, 1.0), target=ORIGIN
-    )
-    q, p = start()
-    verdict = verify("os-3", simulate(law, 1e-6 * q, 1e-6 * p, (0.0, 0.01), atol=1e-16))
-    assert verdict.claim("ii").status == "inconclusive"
     assert verdict.claim("iii").detail.endswith("proved for every start")
 
 
@@ -81,7 +61,6 @@ def rk4(law, q, p, dt, steps):
 
 
 def test_a_run_that_blew_up_refutes_nothing():
-    """A step far too large throws the flock out of its bound; the law keeps it, and the run is not the law's."""
     q, p = hexagon()
     wild = rk4(LAW, q, p, 0.8, 25)
     assert judged("os-3", wild).claim("i").contradicts == "cohesion"  # by this run alone
@@ -109,7 +88,6 @@ def test_a_flock_that_leaves_its_bound_contradicts_the_proof():
 
 
 def test_a_radius_between_samples_counts():
-    """Two samples within the bound, a path that leaves it in between: the numbers alone verify nothing."""
     law = Algorithm2(gains=Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=1.0, c2_gamma=1.0), target=StaticTarget((0.0,)))
     q, p = [[-1.0], [1.0]], [[-5.0], [5.0]]
     run = made_up(law, [q, q], [p, [[5.0], [-5.0]]], t=(0.0, 40.0), u=[[[0.25], [-0.25]]] * 2)
@@ -145,12 +123,6 @@ def test_an_inconsistent_target_is_reported_and_does_not_matter():
     assert verdict.claim("i").status == "verified"
 
 
-def test_a_target_that_lies_about_its_velocity_is_caught():
-    lying = CallableTarget(lambda t: ((np.sin(t), 0.0), (0.0, 0.0)))
-    verdict = verify("os-3", simulate(Algorithm2(target=lying), *hexagon(), (0.0, 3.0)))
-    assert hypothesis(verdict, "dq_r/dt = p_r").status == "unmet"
-
-
 def test_a_saddle_is_not_called_a_minimum():
     law = Algorithm2(gains=Gains(c1_gamma=1e-9), target=ORIGIN)
     pair = np.array([[0.0, 0.0], [0.0, 0.0]])  # coincident, unstable: forces vanish by symmetry
@@ -168,24 +140,9 @@ def test_with_energy_below_c_star_no_pair_collides():
     assert 6.0 < claim.computed < 7.0
 
 
-def test_gains_per_agent_are_outside_the_theorem():
-    law = Algorithm2(gains=Gains(c1_gamma=[1.0] * 7, c2_gamma=2.0), target=ORIGIN)
-    assert verify("os-3", simulate(law, *hexagon(), (0.0, 0.5))).status == "vacuous"
-
-
 def test_one_sample_verifies_no_claim_about_a_run(run):
     one = simulate(LAW, *start(), (0.0, 40.0), t_eval=[40.0])
     verdict = judged("os-3", one)
     assert verdict.claim("iv-barrier").status != "verified"
     assert pairs_at_one_instant(Observed.alone(one), [], Tolerances(), name="iv-instant").status == "inconclusive"
     assert verdict.claim("iii").status == "verified"  # one state will do: it is near a strict minimum
-
-
-def test_a_failed_run_verifies_nothing(run):
-    failed = sealed(replace(run, status="failed", message="gave up"))
-    assert set(statuses(verify("os-3", failed)).values()) <= {"inconclusive", "vacuous"}
-
-
-def test_the_tolerance_of_velocities_is_in_the_laws_scale(run):
-    strict = Tolerances(velocity=1e-300)
-    assert verify("os-3", run, tolerances=strict).claim("iii").status == "verified"  # by attraction, not by a threshold

@@ -1,43 +1,37 @@
 """Theorem 6 on runs: verified, t0 found, vacuous where a hypothesis fails, refuted where a law is wrong."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, Algorithm3, Gains, Sphere, Target, Trajectory, Wall, simulate, verify
+from flockana import Algorithm3, Gains, Sphere, Wall, simulate, verify
 from flockana.environment.targets import LinearTarget, RescaledVelocity, StaticTarget
 from flockana.theorems.observed import Observed
 from flockana.theorems.olfati_saber.os_6 import condition_76
-from tests.theorems.made_up import judged, made_up
+from tests.theorems.made_up import hypothesis, judged, made_up
 
 OBSTACLES = (Sphere((3.0, 2.0), 2.0), Wall((0.0, -14.0), (0.0, 1.0)))
 
 
-def _run(target: Target, obstacles: Any = OBSTACLES, span: float = 6.0, **gains: float) -> Trajectory:
+def _run(target, obstacles=OBSTACLES, span=6.0, **gains):
     rng = np.random.default_rng(5)
     q = rng.uniform((-25.0, -12.0), (0.0, 12.0), (12, 2))
     law = Algorithm3(target=target, obstacles=obstacles, gains=Gains(**gains))
     return simulate(law, q, rng.normal(size=q.shape), (0.0, span), rtol=1e-9)  # the β-taper is steep
 
 
-def _hypothesis(verdict: Any, part: str) -> Any:
-    (found,) = [h for h in verdict.hypotheses if part in h.name]
-    return found
-
-
 @pytest.fixture(scope="module")
-def static() -> Trajectory:
+def static():
     return _run(StaticTarget((30.0, 0.0)))
 
 
-def test_a_static_gamma_agent_verifies(static: Trajectory) -> None:
+def test_a_static_gamma_agent_verifies(static):
     verdict = verify("os-6", static)
     assert verdict.status == "verified"
     assert all(h.status == "met" for h in verdict.hypotheses)
-    assert "t0 = 0, never broken" in _hypothesis(verdict, "(76)").detail
-    assert 0.0 < _hypothesis(verdict, "obstacle").margin < 4.2
+    assert "t0 = 0, never broken" in hypothesis(verdict, "(76)").detail
+    assert 0.0 < hypothesis(verdict, "obstacle").margin < 4.2
     assert verdict.claim("rate").computed == Observed.of(static).run.energy_rate().max()
     assert verdict.claim("rate").margin > 0.0
     assert verdict.claim("balance").computed < 1e-6
@@ -45,14 +39,14 @@ def test_a_static_gamma_agent_verifies(static: Trajectory) -> None:
     assert verify("energy", static).claim("rate").status == "verified"
 
 
-def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
+def test_t0_is_the_first_sample_after_which_the_condition_stays():
     """p_d ≠ 0 at a fixed q_r, towards it: (76) holds once the flock is faster than p_d, as pulled it becomes."""
     law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)), obstacles=(Sphere((0.0, 90.0), 1.0), OBSTACLES[1]))
     run = simulate(law, [[-9.0, 0.0], [-9.0, 7.0]], [[1.0, 0.0], [1.0, 0.0]], (0.0, 6.0))
     slack, verdict = condition_76(run), verify("os-6", run)
     dense = [0.5 * np.sum(p * p) - 0.5 * len(p) * p.mean(axis=0) @ [2.0, 0.0] for p in run.p]
     np.testing.assert_allclose(slack, dense, rtol=1e-12, atol=1e-12)
-    condition = _hypothesis(verdict, "(76)")
+    condition = hypothesis(verdict, "(76)")
     k = max((i for i in range(len(slack)) if slack[i] < 0.0), default=-1) + 1
     assert 0 < k < len(slack)
     assert condition.status == "met"
@@ -63,22 +57,21 @@ def test_t0_is_the_first_sample_after_which_the_condition_stays() -> None:
     assert f"t >= {run.t[k]:.6g}" in verdict.claim("rate").stated
 
 
-def test_a_condition_broken_at_the_end_makes_it_vacuous() -> None:
-    """p_d away from the target: the pull slows the flock down to less than |p_d|, for as long as it lasts."""
+def test_a_condition_broken_at_the_end_makes_it_vacuous():
     run = _run(StaticTarget((300.0, 0.0), (-2.0, 0.0)))
     verdict = verify("os-6", run)
     assert condition_76(run)[-1] < 0.0
-    assert _hypothesis(verdict, "(76)").status == "unmet"
-    assert f"it fails until t = {run.t[-1]:g}, by" in _hypothesis(verdict, "(76)").detail
-    assert _hypothesis(verdict, "static").status == "met"
-    assert "p_r = [-2.0, 0.0] though q_r does not move" in _hypothesis(verdict, "static").detail
+    assert hypothesis(verdict, "(76)").status == "unmet"
+    assert f"it fails until t = {run.t[-1]:g}, by" in hypothesis(verdict, "(76)").detail
+    assert hypothesis(verdict, "static").status == "met"
+    assert "p_r = [-2.0, 0.0] though q_r does not move" in hypothesis(verdict, "static").detail
     assert verdict.status == "vacuous"
     energy = verify("energy", run)
     assert energy.claim("rate").status == "vacuous"
     assert energy.claim("balance").status == "verified"
 
 
-def test_a_condition_that_holds_at_the_last_sample_alone_makes_it_vacuous() -> None:
+def test_a_condition_that_holds_at_the_last_sample_alone_makes_it_vacuous():
     """One instant is no "from some t0 on": an agent that comes from behind, cut just after it is as fast as p_d."""
     law = Algorithm3(target=StaticTarget((300.0, 0.0), (2.0, 0.0)))
     run = simulate(law, [[-9.0, 0.0]], [[1.9, 0.0]], (0.0, 2.0), t_eval=np.linspace(0.0, 2.0, 400))
@@ -86,23 +79,15 @@ def test_a_condition_that_holds_at_the_last_sample_alone_makes_it_vacuous() -> N
     assert 0 < k < 399
     short = run.window(0.0, float(run.t[k]))
     assert condition_76(short)[-1] >= 0.0
-    assert _hypothesis(judged("os-6", short), "(76)").status == "unmet"
-    assert _hypothesis(judged("os-6", run), "(76)").status == "met"
+    assert hypothesis(judged("os-6", short), "(76)").status == "unmet"
+    assert hypothesis(judged("os-6", run), "(76)").status == "met"
 
 
-def test_gains_per_agent_are_outside_the_theorem() -> None:
-    """Condition (76) adds up ⟨p_i, p_d⟩ with one c2γ for all."""
-    run = _run(StaticTarget((30.0, 0.0)), c2_gamma=[1.0] * 6 + [3.0] * 6)
-    verdict = verify("os-6", run)
-    assert verdict.status == "vacuous"
-    assert _hypothesis(verdict, "one c1γ and one c2γ").status == "unmet"
-
-
-def test_a_condition_that_rounding_decides_is_assumed() -> None:
+def test_a_condition_that_rounding_decides_is_assumed():
     """All agents at p_d, to the last bit: T = (n/2)⟨p_c, p_d⟩."""
     law = Algorithm3(gains=Gains(c1_gamma=0.0), target=StaticTarget((0.0, 0.0), (0.1, 0.7)))
     run = simulate(law, [[5.0, 5.0]], [[0.1, 0.7]], (0.0, 2.0))
-    assert _hypothesis(judged("os-6", run), "(76)").status == "assumed"
+    assert hypothesis(judged("os-6", run), "(76)").status == "assumed"
     assert judged("os-6", run).claim("rate").status != "refuted"
 
 
@@ -111,25 +96,18 @@ def test_a_condition_that_rounding_decides_is_assumed() -> None:
     [LinearTarget((20.0, 0.0), (3.0, 0.0)), RescaledVelocity(LinearTarget((20.0, 0.0), (3.0, 0.0)), 0.0)],
     ids=["consistent", "hidden velocity"],
 )
-def test_a_moving_gamma_agent_is_outside_the_theorem(target: Target) -> None:
+def test_a_moving_gamma_agent_is_outside_the_theorem(target):
     run = _run(target)
     verdict, energy = verify("os-6", run), verify("energy", run)
-    assert _hypothesis(verdict, "static").status == "unmet"
-    assert "outside the theorem" in _hypothesis(verdict, "static").detail
+    assert hypothesis(verdict, "static").status == "unmet"
+    assert "outside the theorem" in hypothesis(verdict, "static").detail
     assert verdict.status == "vacuous"
     assert energy.claim("rate").status == "vacuous"
     assert energy.claim("balance").status == "verified"
     assert energy.claim("balance").computed < 1e-6
 
 
-def test_another_law_is_vacuous() -> None:
-    run = simulate(Algorithm2(target=StaticTarget((0.0,))), [[0.0], [8.0]], [[0.0], [0.0]], (0.0, 1.0))
-    verdict = verify("os-6", run)
-    assert verdict.status == "vacuous"
-    assert [claim.name for claim in verdict.claims] == ["rate", "balance"]
-
-
-def test_an_agent_inside_a_sphere_voids_the_claim() -> None:
+def test_an_agent_inside_a_sphere_voids_the_claim():
     """Weak repulsion, a fast agent: it flies through, and inside dH/dt > 0 is possible; the balance is not."""
     law = Algorithm3(
         target=StaticTarget((20.0, 0.0)),
@@ -138,26 +116,25 @@ def test_an_agent_inside_a_sphere_voids_the_claim() -> None:
     )
     run = simulate(law, [[-8.0, 1.0]], [[6.0, 0.0]], (0.0, 3.0))
     verdict = verify("os-6", run)
-    inside = _hypothesis(verdict, "obstacle")
+    inside = hypothesis(verdict, "obstacle")
     assert inside.status == "unmet"
     assert -2.5 < inside.margin < 0.0
     assert verdict.status == "vacuous"
     assert verify("energy", run).claim("balance").status == "verified"
 
 
-def test_inside_a_sphere_the_energy_can_rise() -> None:
+def test_inside_a_sphere_the_energy_can_rise():
     law = Algorithm3(target=StaticTarget((0.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 2.0),), gains=Gains(c2_gamma=0.0))
     assert law.energy_rate(0.0, [[1.0, 0.0]], [[0.0, 1.0]]) > 0.0
     assert law.energy_rate(0.0, [[3.0, 0.0]], [[0.0, 1.0]]) < 0.0
 
 
-def test_numbers_of_another_law_contradict_the_proof(static: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A rate of the wrong sign, and a work that misses a hundredth: the run or the library is at fault."""
+def test_numbers_of_another_law_contradict_the_proof(static, monkeypatch):
     wrong = judged("os-6", replace(static, extra={"work": 0.99 * static.extra["work"]}))
     assert [claim.contradicts for claim in wrong.claims] == ["", "theorem6"]
     right = Algorithm3.flow
 
-    def flow(self: Algorithm3, t: float, q: Any, p: Any) -> Any:
+    def flow(self, t, q, p):
         u, rate = right(self, t, q, p)
         return u, -rate
 
@@ -167,16 +144,16 @@ def test_numbers_of_another_law_contradict_the_proof(static: Trajectory, monkeyp
     assert rising.claim("rate").margin < -0.1
 
 
-def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open() -> None:
+def test_an_obstacle_that_is_grazed_within_the_paths_error_is_left_open():
     law = Algorithm3(target=StaticTarget((20.0, 0.0)), obstacles=(Sphere((0.0, 0.0), 3.0),))
     grazing = made_up(law, [[[-4.0, 3.0]], [[4.0, 3.0]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
-    assert _hypothesis(judged("os-6", grazing), "obstacle").status == "assumed"
+    assert hypothesis(judged("os-6", grazing), "obstacle").status == "assumed"
     inside = made_up(law, [[[-4.0, 2.9]], [[4.0, 2.9]]], [[[8.0, 0.0]]] * 2, t=(0.0, 1.0))
-    assert _hypothesis(judged("os-6", inside), "obstacle").status == "unmet"
+    assert hypothesis(judged("os-6", inside), "obstacle").status == "unmet"
 
 
-def test_a_flock_at_rest_at_its_target_verifies() -> None:
+def test_a_flock_at_rest_at_its_target_verifies():
     """dH/dt = 0 exactly."""
     run = simulate(Algorithm3(target=StaticTarget((0.0, 0.0))), [[0.0, 0.0]], [[0.0, 0.0]], (0.0, 1.0))
     assert verify("os-6", run).claim("rate").status == "verified"
-    assert "there is none" in _hypothesis(verify("os-6", run), "obstacle").detail
+    assert "there is none" in hypothesis(verify("os-6", run), "obstacle").detail

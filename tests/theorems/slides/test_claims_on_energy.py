@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from flockana import Algorithm1, Trajectory
-from flockana.theorems.enclosure import Enclosure
-from flockana.theorems.observed import Observed, observed
 from flockana.theorems.slides.claims_on_energy import rises, run_claim
-from flockana.theorems.theorem import Hypothesis
+from flockana.theorems.toolkit import Enclosure, Hypothesis, Observed, observed
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +28,6 @@ def test_an_energy_that_falls_is_not_refuted_and_a_sample_of_it_verifies_nothing
 
 
 def test_a_rise_from_any_sample_on_counts(seen):
-    """An excess that falls first and then climbs: above its start it never is."""
-
     def excess(run):
         return np.minimum(np.where(run.t < 1.0, -5.0 * run.t, -5.0 + 30.0 * (run.t - 1.0)), -0.1)
 
@@ -41,8 +37,6 @@ def test_a_rise_from_any_sample_on_counts(seen):
 @pytest.mark.parametrize("size", [1e-12, 1e-6, 1.0, 1e6])
 @pytest.mark.parametrize(("times", "status"), [(1.9, "inconclusive"), (300.0, "refuted")])
 def test_a_rise_within_what_two_runs_differ_by_is_left_open(seen, size, times, status):
-    """An excess that climbs to so many times what it differs by from run to run."""
-
     def excess(run):
         return lost(run) + size * (times * run.t / 2.0 + (run is seen.other))
 

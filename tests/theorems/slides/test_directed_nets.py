@@ -1,7 +1,5 @@
 """Directed nets: two that see each other one-sidedly, by hand, and laws that are off."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +14,6 @@ LAW = Algorithm1()
 
 @pytest.fixture(scope="module")
 def run():
-    """The run that three of the claims are about."""
     return observed(DirectedNet(LAW, ranges=(8.4, 3.0)), [[0.0], [7.0]], [[0.0], [1.0]], (0.0, 30.0), rtol=1e-10).run
 
 
@@ -100,7 +97,6 @@ def test_who_sees_nobody_leads(claims, run):
     ],
 )
 def test_a_leader_that_swerves_a_follower_that_lags_and_a_length_that_is_not_d(run, scale, push, lag, margin):
-    """The run as it was, its last sample changed."""
     q, p = run.q.copy(), run.p.copy()
     q[-1, 1] = q[-1, 0] + 7.0 * scale
     p[-1] += [[lag], [push]]

@@ -1,7 +1,5 @@
 """Erratum E4 and the bounds behind it, against counts made by hand and by brute force."""
 
-from __future__ import annotations
-
 import tracemalloc
 from itertools import combinations
 
@@ -45,7 +43,6 @@ def test_another_largest_lattice_contradicts_the_proof(monkeypatch, reach):
 
 
 def test_the_margin_of_the_barrier_is_a_lower_bound(verdict_of):
-    """Of seven agents: a triangle of pairs that may be bound, so that three of fifteen pairs of six are not."""
     claim = verdict_of("E4").claim("barrier")
     assert claim.margin == pytest.approx(3.0 * ALPHA.far_potential, rel=1e-9)
     assert claim.margin < claim.computed[7]["together"] - ALPHA.c_star

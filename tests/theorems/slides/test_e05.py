@@ -49,7 +49,6 @@ def test_the_witness_is_within_the_net(e5):
 
 
 def test_fragments_are_enumerated_without_gaps_or_repeats():
-    """Against growth by one site at a time, with sets."""
     whole = {frozenset({(0, 0, 0)})}
     steps = [s for s in STAR if s != (0, 0, 0)]
     for size in range(2, 5):

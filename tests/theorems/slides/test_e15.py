@@ -1,7 +1,5 @@
 """Erratum E15: start, speed and the factor of p_r, against closed forms."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Erratum E16: strained flocks with α not above γ, and coincident pairs with α above γ."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq

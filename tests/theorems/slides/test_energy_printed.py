@@ -47,7 +47,6 @@ def test_two_that_follow_their_pull_lose_it_twice_and_two_that_part_gain_it(w, s
 
 
 def test_the_worst_of_all_samples_counts():
-    """Samples that slow down, so that no sample is above another one."""
     one, two = (verdict_of(v, v).claim("printed-run").margin for v in ((-0.1, 0.1), (-0.05, 0.05)))
     assert verdict_of((-0.1, 0.1), (-0.05, 0.05)).claim("printed-run").margin == min(one, two)
 
@@ -81,7 +80,6 @@ def test_the_target_must_rest(target):
 @pytest.mark.parametrize("size", [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("parting", [False, True])
 def test_a_planted_truth_and_falsehood_are_never_mixed_up(size, parting):
-    """Two agents that follow their pull, or part against it, at speeds from far above to far below the noise."""
     p = size * np.array([[-1.0, 0.0], [1.0, 0.0]]) * (1.0 if parting else -1.0)
     said = verify("energy-printed", law=LAW, q0=APART, p0=p, t_span=(0.0, min(1e-2, 1e-2 / size)))
     claim = said.claim("printed-run")

@@ -1,0 +1,27 @@
+"""Names that most theorem files use: of runs and enclosures, of hypotheses, of claims."""
+# ruff: noqa: F401
+# mypy: implicit-reexport
+
+from flockana.base.checks import FloatArray
+from flockana.base.vectors import lengths
+from flockana.dynamics.trajectory import Trajectory
+from flockana.theorems.claims import (
+    by_count,
+    counted,
+    equal,
+    erratum,
+    exact,
+    judged,
+    of_map,
+    of_state,
+    spectral,
+    undecided,
+    vacuous,
+)
+from flockana.theorems.enclosure import Enclosure, stacked
+from flockana.theorems.hypotheses import condition, law_is, positive, positive_room
+from flockana.theorems.limits import Certificate, evidence, limit_claim
+from flockana.theorems.observed import Observed, observed
+from flockana.theorems.rounding import EPS
+from flockana.theorems.shares import always, mostly
+from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, run_theorem, unmet
