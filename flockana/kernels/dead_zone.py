@@ -12,7 +12,7 @@ from math import inf, log, log1p, sqrt
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.tables import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
@@ -143,7 +143,7 @@ def pair_dead_zone_adjacency_slope(s2, par):
     return 0.0
 
 
-@njit(cache=True)
+@kernel
 def zones(q, par):
     """Zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
     n, m = q.shape
@@ -158,7 +158,7 @@ def zones(q, par):
     return out
 
 
-@njit(cache=True)
+@kernel
 def zone_margins(q, zone, par):
     """How far inside its zone each pair is (negative beyond it), and whether the nearer edge is the upper one."""
     n, m = q.shape
@@ -177,7 +177,7 @@ def zone_margins(q, zone, par):
     return margins, upper
 
 
-@njit(cache=True)
+@kernel
 def zone_forces(q, p, zone, par, c2, u):
     """Add every pair's force, continued beyond its zone and without ramps, to u; return Σ a_ij ‖p_j − p_i‖²."""
     n, m = q.shape

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.alpha import pair_alpha
 
 
-@njit(cache=True)
+@kernel
 def neighbour_lists(n, first, second):
     """(start, neighbour): the neighbours of i are neighbour[start[i]:start[i + 1]], in the order of the pairs."""
     start = np.zeros(n + 1, np.int64)
@@ -28,7 +28,7 @@ def neighbour_lists(n, first, second):
     return start, neighbour
 
 
-@njit(cache=True)
+@kernel
 def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
     """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i.
 

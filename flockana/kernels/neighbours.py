@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.grid import sort_into_grid
 
 FloatArray = npt.NDArray[np.float64]
@@ -31,7 +31,7 @@ _FORWARD = np.array(
 )
 
 
-@njit(cache=True)
+@kernel
 def _pad(q):
     x = np.zeros((q.shape[0], 3))
     for i in range(q.shape[0]):
@@ -40,7 +40,7 @@ def _pad(q):
     return x
 
 
-@njit(cache=True)
+@kernel
 def _fill_direct(x, r2, row, first, second):
     """Fill the block from `row` on; return (row to go on from, pairs found)."""
     n, capacity, count = x.shape[0], first.size, 0
@@ -55,7 +55,7 @@ def _fill_direct(x, r2, row, first, second):
     return row, count
 
 
-@njit(cache=True)
+@kernel
 def _sort_into_cells(x, side, size):
     """Counting sort by bucket: (order, sorted positions, sorted cells, bucket starts, strides)."""
     n = x.shape[0]
@@ -89,7 +89,7 @@ def _sort_into_cells(x, side, size):
     return order, x[order], cells[order], start, strides
 
 
-@njit(cache=True)
+@kernel
 def _fill_cells(placed, forward, r2, row, first, second):
     """As `_fill_direct`, over agents of `_sort_into_cells`; a row that does not fit whole waits for the next block."""
     order, x, cells, start, strides = placed
@@ -119,7 +119,7 @@ def _fill_cells(placed, forward, r2, row, first, second):
     return row, count
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _fill_grid(x, order, start, rows, r2, cell, row, first, second):
     """As `_fill_cells`, over agents sorted into a grid: (cell and row to go on from, pairs found)."""
     (n, m), capacity, count = x.shape, first.size, 0

@@ -10,14 +10,14 @@ from math import cos, sin
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.sums import column_mean, column_squares
 
 _MOVING, _THRUST, _BRAKE = range(3)
 _OMEGA, _PATH = 1, 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _push_along(v, u, velocity, thrust, brake, moving, centre):
     """`push_along`; `centre` is room for m numbers."""
     (n, m), power = v.shape, 0.0
@@ -39,13 +39,13 @@ def _push_along(v, u, velocity, thrust, brake, moving, centre):
     return power
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def push_along(v, u, velocity, thrust, brake, moving):
     """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
     return _push_along(v, u, velocity, thrust, brake, moving, np.empty(v.shape[1]))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def push_all(v, u, velocity, push, moving):
     """Add one acceleration to all, and return its power: 0 in the moving frame."""
     (n, m), power = v.shape, 0.0
@@ -56,14 +56,14 @@ def push_all(v, u, velocity, push, moving):
     return 0.0 if moving else power
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act_along(t, x, v, u, numbers, panels, listed):
     """`push_along` as a term of a law."""
     moving, room = numbers[_MOVING] != 0.0, listed.room[0]
     return _push_along(v, u, listed.frame[1], numbers[_THRUST], numbers[_BRAKE], moving, room)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act_all(t, x, v, u, numbers, panels, listed):
     """`push_all` as a term of a law."""
     m, omega = x.shape[1], numbers[_OMEGA]

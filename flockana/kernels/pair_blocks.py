@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
@@ -21,7 +21,7 @@ def _square(q, i, j):
     return s2
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def energy(q, i, j, par, panels):
     """Σ ψ over the block."""
     total = 0.0
@@ -30,7 +30,7 @@ def energy(q, i, j, par, panels):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def terms(q, i, j, par):
     """Per pair the weight w, the adjacency a and dw/d(s²), shape (3, L)."""
     out = np.empty((3, i.size))

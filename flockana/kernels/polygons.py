@@ -10,19 +10,19 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.segments import UNSURE, meet, turn
 
 _ROUNDING = 1e-12  # of the lengths that are compared, some thousand times what a distance is off by
 _FARTHER = (1.0 + 1e-9) ** 2
 
 
-@njit(cache=True)
+@kernel
 def _apart(x, y, ax, ay):
     return sqrt((x - ax) * (x - ax) + (y - ay) * (y - ay))
 
 
-@njit(cache=True)
+@kernel
 def _from_segment(x, y, ax, ay, bx, by):
     """Distance of a point from a segment, as GEOS's `Distance::pointToSegment` has it."""
     sx, sy = bx - ax, by - ay
@@ -37,7 +37,7 @@ def _from_segment(x, y, ax, ay, bx, by):
     return abs(((ay - y) * sx - (ax - x) * sy) / length2) * sqrt(length2)
 
 
-@njit(cache=True)
+@kernel
 def _inside(x, y, edges):
     """Whether a point is inside: 1, 0 or UNSURE; 0 on the boundary."""
     inside = 0
@@ -53,7 +53,7 @@ def _inside(x, y, edges):
     return inside
 
 
-@njit(cache=True)
+@kernel
 def from_boundary(q, edges):
     """Distance of points (N, 2) from the boundary, and whether each is inside: 1, 0 or UNSURE; 0 at no distance.
 
@@ -74,14 +74,14 @@ def from_boundary(q, edges):
     return distance, inside
 
 
-@njit(cache=True)
+@kernel
 def _in_one_box(ax, ay, bx, by, cx, cy, dx, dy):
     """Whether the boxes of two segments overlap."""
     apart = max(ax, bx) < min(cx, dx) or max(cx, dx) < min(ax, bx)
     return not (apart or max(ay, by) < min(cy, dy) or max(cy, dy) < min(ay, by))
 
 
-@njit(cache=True)
+@kernel
 def _cross(ax, ay, bx, by, cx, cy, dx, dy):
     """Whether GEOS's `Distance::segmentToSegment` finds a point that two segments share: their distance is 0."""
     det = (bx - ax) * (dy - cy) - (by - ay) * (dx - cx)
@@ -91,7 +91,7 @@ def _cross(ax, ay, bx, by, cx, cy, dx, dy):
     return 0.0 <= r / det <= 1.0 and 0.0 <= s / det <= 1.0
 
 
-@njit(cache=True)
+@kernel
 def _crossings(ax, ay, bx, by, edges):
     """Whether a way meets an edge, 1, 0 or UNSURE, and whether one crosses it as GEOS computes it."""
     met, zero = 0, False
@@ -107,7 +107,7 @@ def _crossings(ax, ay, bx, by, edges):
     return met, zero
 
 
-@njit(cache=True)
+@kernel
 def _from_corners(ax, ay, bx, by, edges, least, length):
     """The lesser of `least` and the distance of the corners from a way; what is too far to matter is left out."""
     near2 = (least + length) * (least + length) * _FARTHER
@@ -118,7 +118,7 @@ def _from_corners(ax, ay, bx, by, edges, least, length):
     return least
 
 
-@njit(cache=True)
+@kernel
 def ways_from_boundary(start, end, at_start, at_end, edges):
     """Distance of straight ways from the boundary, and whether each meets the polygon: 1, 0 or UNSURE.
 

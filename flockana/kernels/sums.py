@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 
 _SAMPLE = 256  # agents that suffice to estimate the slope
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def finite(x):
     """Whether all numbers of an array are finite."""
     known = True
@@ -18,7 +18,7 @@ def finite(x):
     return known
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def column_mean(x, c):
     """The mean over agents of coordinate c."""
     n = x.shape[0]
@@ -30,7 +30,7 @@ def column_mean(x, c):
     return ((a + b) + (d + e)) / n
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def column_squares(x, c, centre):
     """Σ_i (x_ic − centre)²."""
     n = x.shape[0]
@@ -43,7 +43,7 @@ def column_squares(x, c, centre):
     return (a + b) + (d + e)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def squared_deviations(x):
     """Σ_i ‖x_i − mean‖²."""
     total = 0.0
@@ -52,7 +52,7 @@ def squared_deviations(x):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def slope_along(x, y, c, flat):
     """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where that is no number."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
@@ -75,7 +75,7 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
             u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def pull_to(u, x, v, place, velocity, c1, c2):
     """u −= c1 (x − place) + c2 (v − velocity)."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
@@ -84,7 +84,7 @@ def pull_to(u, x, v, place, velocity, c1, c2):
         _pull_to(u, x, v, place, velocity, c1, c2, x.shape[1])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def put(values, into):
     """Write an array to the front of another; both are contiguous.
 

@@ -6,11 +6,11 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.candidates import gather, sort_into_cells
 
 
-@njit(cache=True)
+@kernel
 def _count_neighbours(q, r, c, a, cells, near, shares):
     """Add to (3,) shares how many agents are in the zones of repulsion, conflict and attraction of one, on average."""
     n, m = q.shape
@@ -25,7 +25,7 @@ def _count_neighbours(q, r, c, a, cells, near, shares):
             shares[0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
 
 
-@njit(cache=True)
+@kernel
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
     shares, near = np.zeros((q.shape[0], 3)), np.empty(q.shape[1], np.int64)
@@ -34,7 +34,7 @@ def populations(q, r, c, a):
     return shares
 
 
-@njit(cache=True)
+@kernel
 def _count_fragments(q, a, reach, cells, near, seen, stack):
     """(components, agents in the largest); `seen` and `stack` are room."""
     (n, m), components, largest = q.shape, 0, 0
@@ -60,7 +60,7 @@ def _count_fragments(q, a, reach, cells, near, seen, stack):
     return components, largest
 
 
-@njit(cache=True)
+@kernel
 def fragments(q, a):
     """(components, agents in the largest) over time, (T, 2); two agents are linked if one attracts the other."""
     steps, n, _ = q.shape

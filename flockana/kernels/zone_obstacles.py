@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 
-@njit(cache=True)
+@kernel
 def _cross(ax, ay, bx, by, x, y):
     return (bx - ax) * (y - ay) - (by - ay) * (x - ax)
 
 
-@njit(cache=True)
+@kernel
 def _between(ax, ay, bx, by, x, y):
     return min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)
 
 
-@njit(cache=True)
+@kernel
 def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     """Whether two closed segments of the plane share a point; touching counts."""
     o1, o2 = _cross(ax, ay, bx, by, cx, cy), _cross(ax, ay, bx, by, dx, dy)
@@ -38,7 +38,7 @@ def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     return o4 == 0.0 and _between(cx, cy, dx, dy, bx, by)
 
 
-@njit(cache=True)
+@kernel
 def to_segment(x, y, ax, ay, bx, by):
     """Vector from a point to the closest point of a segment, which may be a point."""
     sx, sy = bx - ax, by - ay
@@ -49,7 +49,7 @@ def to_segment(x, y, ax, ay, bx, by):
     return ax + share * sx - x, ay + share * sy - y
 
 
-@njit(cache=True)
+@kernel
 def to_boundary(x, y, edges, first, last):
     """(vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
     best, gx, gy, inside = inf, 0.0, 0.0, False
@@ -64,7 +64,7 @@ def to_boundary(x, y, edges, first, last):
     return gx, gy, inside
 
 
-@njit(cache=True)
+@kernel
 def zone_meets_edge(zone, edge, literal):
     """Whether a triangular zone meets the segment from (cx, cy) to (dx, dy).
 
@@ -86,7 +86,7 @@ def zone_meets_edge(zone, edge, literal):
     )
 
 
-@njit(cache=True)
+@kernel
 def _edge_terms(zone, c, world, first, last, inside, choices, out):
     """Add one term for each edge of a polygon that the zone meets."""
     outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
@@ -102,7 +102,7 @@ def _edge_terms(zone, c, world, first, last, inside, choices, out):
             out[1] += factor * gy
 
 
-@njit(cache=True)
+@kernel
 def zone_meets_polygon(zone, edges, first, last, literal):
     """Whether a triangular zone, as in `zone_meets_edge`, meets the polygon edges[first:last].
 
@@ -130,7 +130,7 @@ def zone_meets_polygon(zone, edges, first, last, literal):
     return (along >= 0.0 and along / depth + across / half <= 1.0) or to_boundary(x, y, edges, first, last)[2]
 
 
-@njit(cache=True)
+@kernel
 def zone_meets_ball(along, across, depth, half, radius, literal):
     """As `zone_meets_polygon` for a ball whose centre has these coordinates along and across (>= 0) the heading."""
     bx, by = to_segment(along, across, 0.0, 0.0, 0.0, half)
@@ -142,7 +142,7 @@ def zone_meets_ball(along, across, depth, half, radius, literal):
     return min(bx * bx + by * by, side2) <= radius * radius
 
 
-@njit(cache=True)
+@kernel
 def push(distance, c, inside, outward, repulsive):
     """Factor of the unit vector b from the agent to the closest boundary point, for one obstacle or wall."""
     if inside and outward:
@@ -150,7 +150,7 @@ def push(distance, c, inside, outward, repulsive):
     return min(0.0, distance - c) if repulsive else distance - c
 
 
-@njit(cache=True)
+@kernel
 def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`."""
     m, buffer = x.size, choices.obstacle_zone == 1
@@ -194,7 +194,7 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     _walls(x, h, moving, depth, half, c, world.box, choices, out)
 
 
-@njit(cache=True)
+@kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one term for each wall that the zone reaches, or for the nearest of them."""
     buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf

@@ -77,27 +77,24 @@ class Navigation(Term):
         return bend
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
-        if self._straight is not None:
-            return float(kernel.follow(t, x, v, u, self._straight))
-        target = np.array([*self.target.state(t), self.target.rate(t)])
-        still, own = np.zeros(q.shape[1]), np.arange(len(q), dtype=np.uint64)
-        return float(kernel.navigate(x, v, u, target, still, self._gains, self.unit or 0.0, self.moving, own))
+        x, v, path = np.ascontiguousarray(q), np.ascontiguousarray(p), self._path
+        if path is None or self.target.harmonic.omega:  # type: ignore[union-attr]  # else it is exact to the last bit
+            (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
+            t, path = 0.0, self._numbers(0.0, 0.0, np.array([q_r, rate, np.zeros_like(rate), np.zeros_like(rate), p_r]))
+        return float(kernel.pull(t, x, v, u, path))
+
+    def _numbers(self, omega: float, factor: float, terms: FloatArray) -> FloatArray:
+        """Return what `flockana.kernels.navigation` reads, for a harmonic path."""
+        c1, c2 = self._gains
+        return np.concatenate([[self.moving, self.unit or 0.0, c1.size, omega, factor], terms.ravel(), c1, c2])
 
     @cached_property
     def _path(self) -> FloatArray | None:
-        """Numbers that `flockana.kernels.navigation` reads, for a target whose path is harmonic; else None."""
+        """`_numbers` of a target whose path is harmonic; else None."""
         path = self.target.harmonic
         if path is None or not overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
-        c1, c2 = self._gains
-        head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]
-        return np.concatenate([head, path.terms.ravel(), c1, c2])
-
-    @cached_property
-    def _straight(self) -> FloatArray | None:
-        """Numbers for the kernel of a target at rest or on a line, exact to the last bit; else None."""
-        return None if self._path is None or self.target.harmonic.omega else self._path  # type: ignore[union-attr]
+        return self._numbers(path.omega, path.factor, path.terms)
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         return None if self._path is None else TermKernel(kernel.act, kernel.energy, self._path, np.empty((0, 0)), 0.0)
