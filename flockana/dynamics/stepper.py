@@ -8,6 +8,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
+from flockana.kernels.advance import recorded
 from flockana.kernels.march import Block
 
 
@@ -34,13 +35,8 @@ class Stepper(ABC):
 
     def states(self, good: int) -> tuple[FloatArray, FloatArray]:
         """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-        frame, size = self.frame, self.frame.size
-        t, y, f = (rows[1 : good + 1] for rows in self.block[:3])
-        states = np.empty((good, 3, *frame.shape))
-        whole = y + (frame.origin + frame.drift * (t - frame.t0)[:, None])
-        states[:, :2, self.order] = whole[:, : 2 * size].reshape(good, 2, *frame.shape)
-        states[:, 2, self.order] = f[:, size : 2 * size].reshape(good, *frame.shape)
-        return states, y[:, 2 * size].copy() if frame.energetic else np.full(good, np.nan)
+        found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
+        return found
 
     def continue_from(self, good: int) -> None:
         """Go on from the end of the last step."""

@@ -9,7 +9,7 @@ import numpy as np
 from flockana.jit import inlined, kernel
 from flockana.kernels.checks import IN_VAIN, PATIENCE, checked
 from flockana.kernels.march import RUNNING, SINGULAR, march, step_of
-from flockana.kernels.runge_kutta import energy_of, interpolated, rate_of, stages_of
+from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
 from flockana.kernels.sums import put
 
 
@@ -28,6 +28,30 @@ class Advanced(NamedTuple):
 
 
 @inlined
+def _record(y, f, order, frame, out):
+    """Write positions, velocities and accelerations in the agents' own order; return the work."""
+    n, m = order.size, frame.shape[1]
+    for i in range(n):
+        own = np.int64(order[i])
+        for c in range(m):
+            out[0, own, c] = y[i * m + c] + frame[0, c]
+            out[1, own, c] = y[n * m + i * m + c] + frame[1, c]
+            out[2, own, c] = f[n * m + i * m + c]
+    return y[2 * n * m] if y.size > 2 * n * m else np.nan
+
+
+@kernel
+def recorded(block, count, order, view):
+    """Return (states, work) at the ends of the first steps of a block, in the agents' own order."""
+    m = view[1].size
+    states, work, frame = np.empty((count, 3, order.size, m)), np.empty(count), np.empty((2, m))
+    for k in range(count):
+        frame_at(block.t[k + 1], view, frame)
+        work[k] = _record(block.y[k + 1], block.f[k + 1], order, frame, states[k])
+    return states, work
+
+
+@inlined
 def _with_room(kept, needed):
     """Return an array with room for so many samples, holding those kept so far."""
     if needed <= len(kept):
@@ -40,19 +64,12 @@ def _with_room(kept, needed):
 @inlined
 def _sampled(step, due, method, states, work, system, pairs):
     """Write samples (q, p, u) at the times due within a step, in the agents' own order; return the pairs."""
-    slope, y, frame = np.empty(step.y.size), step.trial, system.frame
-    n, m = system.order.size, frame.shape[1]
+    slope = np.empty(step.y.size)
     pairs = stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):
         interpolated((due[k] - step.t) / step.h, step, method)
-        pairs = rate_of(due[k], y, slope, system, pairs)  # and writes the frame at that time
-        for i in range(n):
-            own = np.int64(system.order[i])
-            for c in range(m):
-                states[k, 0, own, c] = y[i * m + c] + frame[0, c]
-                states[k, 1, own, c] = y[n * m + i * m + c] + frame[1, c]
-                states[k, 2, own, c] = slope[n * m + i * m + c]
-        work[k] = y[2 * n * m]
+        pairs = rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
+        work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
     return pairs
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined
 from flockana.kernels.encounters import Ends
 from flockana.kernels.march import GROWTH, spacing
 from flockana.kernels.shares import POLE
@@ -53,7 +53,7 @@ def balanced(first, last, work, balance, ledger):
     """
     if np.isfinite(first) and not np.isfinite(last):  # the step ends where the potential is infinite
         return POLE
-    residual, largest = abs(last - first - work), max(ledger[LARGEST], abs(first), abs(last))
+    residual, largest = abs(last - first - work), max(max(ledger[LARGEST], abs(first)), abs(last))
     worst, halved = 0.0, np.int64(ledger[HALVED])
     for k in range(halved + 1 - HALVINGS):
         worst = max(worst, ledger[TRIED + k])

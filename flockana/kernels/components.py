@@ -10,6 +10,7 @@ from math import sqrt
 import numpy as np
 
 from flockana.jit import kernel
+from flockana.kernels.sums import square_between
 
 
 @kernel
@@ -50,8 +51,6 @@ def squared_excess(q, first, second, d):
     """Σ (‖q_j − q_i‖ − d)² over links."""
     total = 0.0
     for k in range(first.size):
-        square = 0.0
-        for c in range(q.shape[1]):
-            square += (q[second[k], c] - q[first[k], c]) ** 2
+        square = square_between(q, first[k], second[k])
         total += (sqrt(square) - d) ** 2
     return total

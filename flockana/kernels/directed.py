@@ -9,6 +9,7 @@ import numpy as np
 from flockana.jit import kernel
 from flockana.kernels.alpha import EPS, R_ALPHA, H, pair_alpha
 from flockana.kernels.scalars import sigma_norm, taper
+from flockana.kernels.sums import square_between
 
 
 @kernel
@@ -47,9 +48,7 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
     for k in range(first.size):
         for way in range(2):
             i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
-            s2 = 0.0
-            for c in range(q.shape[1]):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             seen = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
             if seen == 0.0:
                 continue
@@ -65,9 +64,7 @@ def seen_edges(q, p, first, second, reach, width, slow2, h, least):
     """(head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
     head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
     for k in range(first.size):
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[second[k], c] - q[first[k], c]) ** 2
+        s2 = square_between(q, first[k], second[k])
         for way in range(2):
             i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
             if sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, h) > least:

@@ -63,13 +63,10 @@ class PairRoom(NamedTuple):
 @inlined
 def pair_room(radii):
     """Return room for a pair of agents with so many radii each."""
+    points = np.empty((2, 6, 3))
+    points[:] = 0.0
     return PairRoom(
-        np.empty((_DEPTH + 2, 6, 3)),
-        np.empty((_DEPTH + 2, 2)),
-        np.zeros((2, 6, 3)),
-        np.empty(2),
-        np.empty(2),
-        np.empty((2, radii)),
+        np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), points, np.empty(2), np.empty(2), np.empty((2, radii))
     )
 
 
@@ -124,7 +121,7 @@ def _visit(points, edge, far, stack, spans):
     return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
-@kernel
+@inlined
 def _apart2(points, k):
     """Squared distance of the pair's control points k."""
     x, y, z = points[1, k, 0] - points[0, k, 0], points[1, k, 1] - points[0, k, 1], points[1, k, 2] - points[0, k, 2]
@@ -175,7 +172,7 @@ def common_way(ends):
     steep.
     """
     h, q0, p0, u0, q1, p1, u1 = ends
-    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros(3), h / 5.0, h * h / 20.0
+    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
     for c in range(q0.shape[1]):
         centre[c] = column_mean(q0, c)
         out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
@@ -186,7 +183,7 @@ def common_way(ends):
         ways = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
         _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
     if not steepest(slope) < _STEEP:
-        slope = np.zeros((6, 3))
+        slope[:] = 0.0
     return mean, slope, centre
 
 

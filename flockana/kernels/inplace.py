@@ -6,6 +6,7 @@ import numpy as np
 
 from flockana.jit import kernel
 from flockana.kernels.alpha import pair_alpha
+from flockana.kernels.sums import square_between
 
 
 @kernel
@@ -41,9 +42,7 @@ def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
             total[c] = -pull * (q[i, c] - q_r[c]) - drag * (p[i, c] - p_r[c])
         for k in range(start[i], start[i + 1]):
             j = neighbour[k]
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             w, rho = pair_alpha(s2, par)
             for c in range(m):
                 total[c] += c1 * w * (q[j, c] - q[i, c]) + c2 * rho * (p[j, c] - p[i, c])

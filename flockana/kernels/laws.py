@@ -91,7 +91,4 @@ def signatures() -> LawFunctions:
     seen = (
         matrix, vector, matrix, int64[:, ::1], indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix,
     )  # fmt: skip
-    return LawFunctions(
-        float64(float64, matrix, matrix, matrix, *seen),
-        float64(float64, matrix, matrix, *seen),
-    )
+    return LawFunctions(float64(float64, matrix, matrix, matrix, *seen), float64(float64, matrix, matrix, *seen))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import inlined, kernel
+from flockana.jit import inlined
 from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
 from flockana.kernels.sums import finite, put
 
@@ -45,7 +45,7 @@ _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
 GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
 
-@kernel
+@inlined
 def spacing(t):
     """The distance from a time to the next number."""
     return np.nextafter(abs(t), np.inf) - abs(t)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from flockana.jit import kernel
 from flockana.kernels.neighbours import DENSE_MAX, FloatArray, pair_blocks
+from flockana.kernels.sums import square_between
 
 AT_ONCE = DENSE_MAX  # up to so many agents `semi_implicit_steps` is the same to the bit: pairs come in the same order
 _SLACK = 1.0 + 1e-12  # the search is strict and the radius closed: a few roundings more than R, and the filter decides
@@ -38,9 +39,7 @@ def _directed(q, first, second, square):
     count = 0
     for k in range(first.size):
         i, j = first[k], second[k]
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         if s2 <= square[i]:
             head[count], tail[count] = i, j
             count += 1
@@ -92,9 +91,7 @@ def _count(q, first, second, square, count):
     """Add to the number of agents that each perceives, among some pairs."""
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         count[i] += s2 <= square[i]
         count[j] += s2 <= square[j]
 
@@ -105,9 +102,7 @@ def _pull(q, p, first, second, square, mu, rho, align, u):
     m = q.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
-        s2 = 0.0
-        for c in range(m):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         s = np.sqrt(s2)
         for way in range(2):
             head, tail = (i, j) if way == 0 else (j, i)
@@ -187,14 +182,8 @@ def _many_steps(x, v, square, edges, dt, steps):
     m, n = x.shape
     _, spacing, shared, mu, sigma, normalised = edges
     qs, ps, us = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
-    count, rho, align, s2, w, u = (
-        np.empty(n),
-        spacing.copy(),
-        np.full(n, sigma),
-        np.empty(n),
-        np.empty(n),
-        np.empty((m, n)),
-    )
+    count, s2, w, u = np.empty(n), np.empty(n), np.empty(n), np.empty((m, n))
+    rho, align = spacing.copy(), np.full(n, sigma)
     for k in range(steps):
         if shared or normalised:
             _numbers(x, square, s2, count)

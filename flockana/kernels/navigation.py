@@ -7,12 +7,10 @@ of gains (1, or one per agent), ω, f and then a, b, c, s, e; p_r = f dq_r/dt + 
 from __future__ import annotations
 
 from math import cos, sin, sqrt
-from typing import Any
 
 import numpy as np
 
 from flockana.jit import inlined, kernel
-from flockana.kernels.listed import Listed
 from flockana.kernels.sums import pull_to, squared_deviations
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
@@ -50,14 +48,6 @@ def act(t, x, v, u, numbers, panels, listed):
             u[i, k] -= pull + c2[own] * slip
             power -= c2[own] * (v[i, k] + frame[1, k]) * slip + pull * target[2, k]
     return power
-
-
-def pull(t: float, x: Any, v: Any, u: Any, numbers: Any) -> Any:
-    """`act` on agents in their own order, seen from where the path is described."""
-    (n, m), none = x.shape, np.empty(0, np.uint32)
-    order = np.arange(n if numbers[_GAINS] > 1.0 else 0, dtype=np.uint64)
-    listed = Listed(np.zeros((2, m)), none, none, 0, order, np.empty((2, 0), np.uint64), np.empty((3, m)))
-    return act(t, x, v, u, numbers, np.empty((0, 0)), listed)
 
 
 @kernel

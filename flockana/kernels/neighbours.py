@@ -26,8 +26,7 @@ _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding i
 
 # The cell itself is handled apart; of each two opposite neighbouring cells one is listed.
 _FORWARD = np.array(
-    [(x, y, z) for z in (0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1) if (z, y, x) > (0, 0, 0)],
-    dtype=np.int64,
+    [(x, y, z) for z in (0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1) if (z, y, x) > (0, 0, 0)], dtype=np.int64
 )
 
 
@@ -63,7 +62,8 @@ def _sort_into_cells(x, side, size):
     for i in range(n):
         for k in range(3):
             cells[i, k] = np.int64(np.floor(min(_CLAMP, max(-_CLAMP, x[i, k] / side))))
-    strides, total = np.ones(3, np.int64), 1.0
+    strides, total = np.empty(3, np.int64), 1.0
+    strides[:] = 1
     for k in range(3):  # row-major cell numbers keep neighbouring cells close in memory ...
         low, high = cells[0, k], cells[0, k]
         for i in range(n):
@@ -82,7 +82,7 @@ def _sort_into_cells(x, side, size):
     for b in range(size):
         start[b + 1] += start[b]
     fill = start[:-1].copy()
-    order = np.empty(n, np.int32)
+    order = np.empty(n, np.int64)
     for i in range(n):
         order[fill[bucket[i]]] = i
         fill[bucket[i]] += 1

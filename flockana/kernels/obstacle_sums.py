@@ -151,12 +151,12 @@ def _visit(curve, edge, far, par, here, room):
 
 
 @kernel
-def share(points, allowance, bodies, shell, far, most):
+def guard(points, allowance, numbers, shell, far, most):
     """Return the share of the step, at most the one given, in which no agent leaps over an obstacle's surroundings.
 
     An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """
-    pars, starts, balls = bodies
+    pars, starts, balls = bodies_of(numbers)
     m = balls.shape[1] - 1
     here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
     begin, end = points[:, 0], points[:, 5]
@@ -196,9 +196,3 @@ def energy(t, x, v, numbers, panels, listed):
     """c1 Σ ψ_β."""
     seen = x + listed.frame[0]
     return numbers[C1] * potential(seen, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
-
-
-@kernel
-def guard(points, allowance, numbers, shell, far, most):
-    """`share` as a term of a law."""
-    return share(points, allowance, bodies_of(numbers), shell, far, most)

@@ -168,13 +168,16 @@ def forces(q, p, r, numbers, c1, c2, u, room):
 def forces_of(q, p, first, second, numbers, c1, c2, u):
     """As `forces`, over pairs that are within range; return the sum."""
     total, par = 0.0, as_tuple(numbers)
-    room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    s2 = room[0]
+    room, pairs = (
+        (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)),
+        (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)),
+    )
     for begin in range(0, first.size, BLOCK):
-        i, j = first[begin : begin + BLOCK], second[begin : begin + BLOCK]
-        for k in range(i.size):
-            s2[k] = 0.0
+        count = min(BLOCK, first.size - begin)
+        for k in range(count):
+            i, j, s2 = np.uint64(first[begin + k]), np.uint64(second[begin + k]), 0.0
             for c in range(M):
-                s2[k] += (q[j[k], c] - q[i[k], c]) ** 2
-        total += _add(i.size, (i, j), room, q, p, u, par, (c1, c2))
+                s2 += (q[j, c] - q[i, c]) ** 2
+            room[0][k], pairs[0][k], pairs[1][k] = s2, i, j
+        total += _add(count, pairs, room, q, p, u, par, (c1, c2))
     return total

@@ -10,6 +10,7 @@ import numpy as np
 
 from flockana.jit import kernel
 from flockana.kernels.paths import control_points
+from flockana.kernels.sums import square_between
 
 NEVER, UNSURE, ENTERS = 0, 1, 2
 _DEPTH = 30  # halvings of an interval: a visit that is shorter is left open
@@ -125,14 +126,11 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
 @kernel
 def follow_steps(q, r, noise, was_out, unsure):
     """As `follow_pairs` for one state of a map: the first pair that was out of range and is in it, or (-1, -1)."""
-    n, m = q.shape
-    k = -1
+    n, k = len(q), -1
     for i in range(n):
         for j in range(i + 1, n):
             k += 1
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             s = np.sqrt(s2)
             if s > r + noise:
                 was_out[k] = True

@@ -138,8 +138,9 @@ def interpolated(theta, step, method):
     """Write the vector at a share θ of the step into its room."""
     interpolant = method.interpolant
     count, powers = interpolant.shape
-    weights = np.zeros(count)
+    weights = np.empty(count)
     for j in range(count):
+        weights[j] = 0.0
         for k in range(powers - 1, -1, -1):
             weights[j] = (weights[j] + interpolant[j, k]) * theta
     combine(step.y, step.h, weights, step.rates, method.rows, count, step.trial)
@@ -153,7 +154,7 @@ def _allowed(k, size, floor):
 
 @inlined
 def error_of(step, method):
-    """The estimated error of a step over what is allowed, as scipy's solvers weigh it; the step's room is written to."""
+    """The estimated error of a step over what is allowed, as scipy's solvers weigh it, by means of its room."""
     h, y, reached, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
     for estimate in range(len(method.estimates)):
         weights, square, other = method.estimates[estimate], 0.0, square
@@ -188,7 +189,8 @@ def _weighed(a, b, y, method):
 def first_step(span, step, method, system, pairs):
     """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
-    rest = np.zeros(y.size)
+    rest = np.empty(y.size)
+    rest[:] = 0.0
     d0, d1 = _weighed(y, rest, y, method), _weighed(rates[0], rest, y, method)
     ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
@@ -196,4 +198,4 @@ def first_step(span, step, method, system, pairs):
     pairs = rate_of(step.t + ahead, trial, rates[1], system, pairs)
     d2 = _weighed(rates[1], rates[0], y, method) / ahead
     h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
-    return min(100.0 * ahead, h, span), pairs
+    return min(min(100.0 * ahead, h), span), pairs

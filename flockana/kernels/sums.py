@@ -4,9 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import kernel, register_jitable
+from flockana.jit import inlined, kernel
 
 _SAMPLE = 256  # agents that suffice to estimate the slope
+
+
+@inlined
+def square_between(q, i, j):
+    """‖q_j − q_i‖²."""
+    total = 0.0
+    for c in range(q.shape[1]):
+        total += (q[j, c] - q[i, c]) ** 2
+    return total
 
 
 @kernel
@@ -67,7 +76,7 @@ def slope_along(x, y, c, flat):
     return slope if np.isfinite(slope) else flat
 
 
-@register_jitable
+@inlined
 def _pull_to(u, x, v, place, velocity, c1, c2, m):
     for c in range(m):
         x_c, v_c = place[c], velocity[c]
@@ -75,7 +84,7 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
             u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
 
 
-@kernel
+@inlined
 def pull_to(u, x, v, place, velocity, c1, c2):
     """u −= c1 (x − place) + c2 (v − velocity)."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once

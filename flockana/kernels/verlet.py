@@ -101,8 +101,7 @@ def list_pairs(q, reach, first, second):
     order, start, rows = sort_into_grid(q, reach)
     if start.size:
         return _list_by_grid(q, reach, order, start, rows, first, second)
-    x, limit, row, count = _pad(q), max(reach * reach, 5e-324), 0, 0
-    size = 1
+    x, limit, row, count, size = _pad(q), max(reach * reach, 5e-324), np.int64(0), 0, 1  # row typed, as in `advance`
     while size < 4 * n:
         size *= 2
     forward = _FORWARD[: (1, 4, 13)[m - 1]]

@@ -8,17 +8,16 @@ import numpy as np
 
 from flockana.jit import kernel
 from flockana.kernels.candidates import gather, sort_into_cells
+from flockana.kernels.sums import square_between
 
 
 @kernel
 def _count_neighbours(q, r, c, a, cells, near, shares):
     """Add to (3,) shares how many agents are in the zones of repulsion, conflict and attraction of one, on average."""
-    n, m = q.shape
+    n = len(q)
     for i in range(n):
         for j in near[: gather(i, q, a[i], cells, near)]:
-            d2 = 0.0
-            for k in range(m):
-                d2 += (q[j, k] - q[i, k]) ** 2
+            d2 = square_between(q, i, j)
             d = sqrt(d2)
             if j == i or d > a[i]:
                 continue
@@ -37,7 +36,7 @@ def populations(q, r, c, a):
 @kernel
 def _count_fragments(q, a, reach, cells, near, seen, stack):
     """(components, agents in the largest); `seen` and `stack` are room."""
-    (n, m), components, largest = q.shape, 0, 0
+    n, components, largest = len(q), 0, 0
     for i in range(n):
         seen[i] = False
     for root in range(n):
@@ -49,9 +48,7 @@ def _count_fragments(q, a, reach, cells, near, seen, stack):
             i = stack[waiting]
             size += 1
             for j in near[: gather(i, q, reach, cells, near)]:
-                d2 = 0.0
-                for k in range(m):
-                    d2 += (q[j, k] - q[i, k]) ** 2
+                d2 = square_between(q, i, j)
                 if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
                     seen[j], stack[waiting] = True, j
                     waiting += 1

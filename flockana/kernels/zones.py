@@ -17,6 +17,7 @@ import numpy.typing as npt
 from flockana.jit import kernel, register_jitable
 from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.noise import noise
+from flockana.kernels.sums import square_between
 from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
 
 FloatArray = npt.NDArray[np.float64]
@@ -149,9 +150,7 @@ def _neighbours(i, near, flock, step, rules, out):
     for j in near:
         if j == i:
             continue
-        d2 = 0.0
-        for k in range(m):
-            d2 += (q[j, k] - q[i, k]) ** 2
+        d2 = square_between(q, i, j)
         d = sqrt(d2)
         if d > a or d == 0.0:
             continue
@@ -352,13 +351,7 @@ def run(flock, first, rules, steps):
     q, p, heading, estimate, reach, alien = flock
     settings, choices = rules.settings, rules.choices
     n, m = q.shape
-    qs, ps, us, hs, es = (
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-    )
+    states = np.empty((5, steps, n, m))
     aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     near = np.empty(n, np.int64)
@@ -366,6 +359,7 @@ def run(flock, first, rules, steps):
     for taken in range(steps):
         step, cells = first + taken, sort_into_cells(q, reach.max() + further)
         _take_step(flock, u, step, cells, near, rules, out, total)
-        qs[taken], ps[taken], us[taken], hs[taken], es[taken] = q, p, u, heading, estimate
+        for k, own in enumerate((q, p, u, heading, estimate)):
+            states[k, taken] = own
         reaches[taken], aliens[taken] = reach, alien
-    return qs, ps, us, hs, es, reaches, aliens
+    return states[0], states[1], states[2], states[3], states[4], reaches, aliens
