@@ -69,6 +69,11 @@ class Kernel:
         return _with_cache(self.function, self.kept, lambda numba, cache: numba.njit(cache=cache, **self.options))
 
     @property
+    def targetoptions(self) -> dict[str, Any]:
+        """The options of `numba.njit`, which numba asks for where it may inline a call."""
+        return self.options
+
+    @property
     def py_func(self) -> Callable[..., Any]:
         """The function as it was written."""
         return self.function
@@ -144,6 +149,17 @@ def register_jitable(function: Callable[..., Any]) -> Inlined:
     (42, 43)
     """
     return Inlined(function, False, {"forceinline": True, "error_model": "numpy"})
+
+
+def inlined(function: Callable[..., Any]) -> Inlined:
+    """Return a function for kernels to call, written into their source: for what has one caller.
+
+    Each function that is compiled by itself costs some tenths of a second.
+    """
+    return Inlined(function, False, {"inline": "always"})
+
+
+kernel = njit(cache=True, error_model="numpy", nogil=True)  # all alike, so that what numba compiles for them is shared
 
 
 @cache

@@ -10,8 +10,8 @@ from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
 from flockana.dynamics.stepper import Stepper
 from flockana.jit import thawed
-from flockana.kernels.advance import advance, reordered
-from flockana.kernels.march import CROWDED, RUNNING, SINGULAR, TOO_SMALL, Block, Room
+from flockana.kernels.advance import advance
+from flockana.kernels.march import CROWDED, NOT_FINITE, SINGULAR, TOO_SMALL, Block, Room
 from flockana.kernels.runge_kutta import Method
 from flockana.kernels.tableaus import tableau
 from flockana.kernels.verlet import SKIN, list_pairs, no_pairs, spatial_order
@@ -62,9 +62,9 @@ class Engine(Stepper):
         t = float(self.block.t[made.steps])
         if made.status == CROWDED:
             self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'"
-        elif made.status == SINGULAR:
+        elif made.status == SINGULAR and not checks.looks_at_crowd():
             self.failure = at_a_pole(t)
-        elif made.status != RUNNING:
+        elif made.status in (TOO_SMALL, NOT_FINITE):
             why = _SMALL if made.status == TOO_SMALL else "the state is no longer finite"
             self.failure = self.plan.describe_failure(t + made.h, why)
         return int(made.steps)
@@ -74,7 +74,8 @@ class Engine(Stepper):
         (n, m), reach = self.frame.shape, sum(self._system.reach)
         order = spatial_order(self.block.y[0, : n * m].reshape(n, m), reach)
         for rows in (self.block.y, self.block.f):
-            rows[:1] = reordered(rows[:1], order, m)
+            both = rows[0, : 2 * n * m].reshape(2, n, m)
+            both[:] = both[:, order]
         self.order = self.order[order]
         self._system = self._system._replace(order=self.order)
         self.pairs = self.pairs._replace(places=np.empty((0, m)))

@@ -22,13 +22,7 @@ from flockana.laws.switched import SwitchedLaw
 
 
 def integrated(
-    law: Law,
-    q0: FloatArray,
-    p0: FloatArray,
-    t0: float,
-    plan: Plan,
-    keep: FloatArray | None,
-    tally: Tally,
+    law: Law, q0: FloatArray, p0: FloatArray, t0: float, plan: Plan, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample | Samples]:
     """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step."""
     # A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law

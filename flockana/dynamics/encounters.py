@@ -26,13 +26,15 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.dynamics.frame import Frame, Plan
 from flockana.environment.beta import ObstacleField
-from flockana.jit import callback_like, thawed
+from flockana.jit import Kernel, callback_like, thawed
 from flockana.kernels.alpha import BETA_AREA
 from flockana.kernels.bodies import body_numbers
-from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger, share_of_step
+from flockana.kernels.bound import bound
+from flockana.kernels.checks import IN_VAIN, PATIENCE, Judged, Rules, checked, empty_ledger
 from flockana.kernels.encounters import Around, Ends
 from flockana.kernels.laws import guard_of
 from flockana.kernels.march import Block
+from flockana.kernels.shares import TOO_MANY
 from flockana.kernels.verlet import Pairs, lister, no_pairs
 from flockana.laws.law import Law
 
@@ -83,14 +85,16 @@ class Encounters:
         """Return the accepted fraction of a step, 1 for all of it; negative if a pair crosses a pole."""
         n, m = before.q.shape
         ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
-        rules, none = self.rules(False, (0.0, 0.0), fixed=False), no_pairs(0, m)
-        still = 0.0, np.zeros(m), np.zeros(m)
-        return float(share_of_step(0.0, ends, self.around(np.arange(n), 1.0), rules, still, none, none)[0])
+        still, none, around = (0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m), self.around(np.arange(n), 1.0)
+        found = float(self.compiled(crowd=False)(0.0, ends, around, still, none, none)[0])
+        return found if found > TOO_MANY else float(self.compiled(crowd=True)(0.0, ends, around, still, none, none)[0])
 
-    def rules(self, energetic: bool, balance: tuple[float, float], *, fixed: bool) -> Rules:
-        """Return the settings of the step checks for compiled code."""
-        pairs = self.radii.size > 0 or self.poles.size > 0
-        return Rules(self.bodies is not None, bool(pairs), energetic, balance, fixed, lister())
+    def compiled(self, *, crowd: bool) -> Kernel:
+        """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
+        bodies, poles, pairs = self.bodies is not None, self.poles.size > 0, self.radii.size > 0
+        flags = {"BODIES": bodies, "PAIRS": pairs or poles, "POLES": poles, "CROWD": crowd}
+        found: Kernel = bound("flockana.kernels.shares", **flags).share_of_step
+        return found
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
         """Return the encounters for compiled code, with agents permuted by `order`."""
@@ -100,7 +104,7 @@ class Encounters:
         first, second = (place[each] for each in among.T)
         return Around(
             radii, float(self.far), (float(min(edges)), float(max(edges))), thawed(self.poles), toward, first, second,
-            few, *self._guard, (float(self.shell), float(self.skirt)),
+            few, *self._guard, (float(self.shell), float(self.skirt)), lister(),
         )  # fmt: skip
 
     @cached_property
@@ -121,30 +125,38 @@ class StepChecks:
         if plan.method.rpartition("-")[2] in ONE_STEP:
             balance = (BALANCED * plan.control.rtol, BALANCED * plan.control.floor.work)
         energetic = frame.energetic and (poles or not fixed)  # of fixed steps: whether the energy stays finite
-        self._rules = self._encounters.rules(energetic, balance, fixed=fixed)
+        self._rules = Rules(self._encounters.any, energetic, balance, fixed)
         self._toward, self._shape = _TOWARD if fixed else 1.0, frame.shape
-        self._ledger, self._order = empty_ledger(), np.empty(0)
+        self._ledger, self._order, self._crowd = empty_ledger(), np.empty(0), False
 
     @property
     def energetic(self) -> bool:
         """Whether the energy balance of the steps is still checked."""
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
-    def judged(self, order: npt.NDArray[Any]) -> Judged:
-        """Return the data that steps are checked against, with agents permuted by `order`."""
+    def judged(self, order: npt.NDArray[Any], *, compiled: bool = True) -> Judged:
+        """Return the data that steps are checked against, with agents permuted by `order`, for compiled code or not."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
-            around = self._encounters.around(order, self._toward)
-            none = np.empty((0, self._shape[1]))
-            step = 0.0, Ends(0.0, *6 * (none,)), around, self._rules, self._view, self.near, self.near
-            share = callback_like(share_of_step, (0.0, self.near), *step)
+            around, share = self._encounters.around(order, self._toward), self._encounters.compiled(crowd=self._crowd)
+            if compiled:
+                ends = Ends(0.0, *6 * (np.empty((0, self._shape[1])),))
+                share = callback_like(share, (0.0, self.near), 0.0, ends, around, self._view, self.near, self.near)
             self._judged = Judged(around, self._rules, self._ledger, share)
         return self._judged
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
         """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
-        shorter, singular, self.near = checked(block, 0, self.judged(order), self._view, kept, self.near)
-        return shorter, singular
+        judged = self.judged(order, compiled=False)
+        shorter, singular, self.near = checked(block, 0, judged, self._view, kept, self.near)
+        return self.examine(block, order, kept) if singular and self.looks_at_crowd() else (shorter, singular)
+
+    def looks_at_crowd(self) -> bool:
+        """Whether pairs turned out to be too many for a list just now: the next step looks at them block by block."""
+        if self._crowd or self.near.count >= 0:
+            return False
+        self._crowd, self._order = True, np.empty(0)
+        return True
 
 
 def at_a_pole(t: float) -> str:

@@ -1,13 +1,14 @@
 """The steps of a map."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
 from flockana.dynamics.sample import Samples, Tally, copied, finite
-from flockana.laws.discrete import DiscreteLaw, IndexArray
+from flockana.laws.discrete import DiscreteLaw, IndexArray, States
+from flockana.laws.law import Arrays
 
 _NUMBERS = 6_000_000  # kept of the steps made at once, at most
 
@@ -19,12 +20,7 @@ def count_steps(start: float, stop: float, dt: float, rounded: Callable[[float],
 
 
 def discrete(
-    law: DiscreteLaw,
-    q0: FloatArray,
-    p0: FloatArray,
-    t_span: tuple[float, float],
-    keep: FloatArray | None,
-    tally: Tally,
+    law: DiscreteLaw, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], keep: FloatArray | None, tally: Tally
 ) -> Iterator[Samples]:
     """Iterate the map; sample k holds the state at t0 + k dt and the input that brought it there."""
     # Samples come as many at once as steps are made at once: one by one they would cost more than a compiled step. Of
@@ -67,14 +63,8 @@ def wanted_steps(law: DiscreteLaw, t_span: tuple[float, float], keep: FloatArray
 
 
 def _chunk(
-    law: DiscreteLaw,
-    t: float,
-    q: FloatArray,
-    p: FloatArray,
-    memory: Mapping[str, FloatArray],
-    own: IndexArray,
-    steps: int,
-) -> tuple[IndexArray, IndexArray, tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]]:
+    law: DiscreteLaw, t: float, q: FloatArray, p: FloatArray, memory: Arrays, own: IndexArray, steps: int
+) -> tuple[IndexArray, IndexArray, States]:
     """Return (indices of steps, positions of the wanted ones among them, states after them from `iterate` or `visit`).
 
     They are its own and the last where the law can leave out others; all where it cannot, or where the map has left the

@@ -15,8 +15,8 @@ from flockana.base.checks import FloatArray, ensure_points, freeze_vector
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
 from flockana.environment.obstacles import Sphere
-from flockana.kernels.polygons import from_boundary, ways_from_boundary
-from flockana.kernels.segments import UNSURE
+
+_ROWS = 2**16  # points and ways at once
 
 
 @dataclass(frozen=True)
@@ -78,25 +78,15 @@ class SimplePolygon:
         q = ensure_points("q", q)
         if q.shape[1] != 2:
             raise ArgumentError(f"q has shape {q.shape}: expected (N, 2), points of the plane of {self}")
-        distance, inside = from_boundary(q, self.edges)
-        if (unsure := inside == UNSURE).any():
-            import shapely
-
-            inside[unsure] = shapely.contains(self._shape, shapely.points(q[unsure]))
-        signed: FloatArray = np.where(inside == 1, -distance, distance)
+        signed: FloatArray = _in_parts(self._signed, q)
         return signed
 
-    def holds(self, point: FloatArray) -> bool:
-        """Return whether a point is inside or on the boundary, without compiled code.
-
-        Parameters
-        ----------
-        point : ndarray, shape (2,)
-            The point.
-        """
+    def _signed(self, q: FloatArray) -> FloatArray:
         import shapely
 
-        return bool(shapely.distance(self._shape, shapely.Point(point)) == 0.0)
+        points = shapely.points(q)
+        distance = shapely.distance(self._shape.boundary, points)
+        return np.where(shapely.contains(self._shape, points), -distance, distance)
 
     def clearance_along(
         self, start: FloatArray, end: FloatArray, ends: tuple[FloatArray, FloatArray] | None = None
@@ -113,16 +103,17 @@ class SimplePolygon:
             Signed distances of both, where they are known already.
         """
         ends = (self.clearance(start), self.clearance(end)) if ends is None else ends
-        distance, met = ways_from_boundary(start, end, *ends, self.edges)
-        if (unsure := met == UNSURE).any():
-            import shapely
-
-            ways = shapely.linestrings(np.stack([start[unsure], end[unsure]], axis=1))
-            met[unsure] = shapely.intersects(ways, self._shape)
-        least = np.minimum(distance, np.minimum(*ends))
-        deepest = 0.5 * (ends[0] + ends[1] - np.linalg.norm(end - start, axis=1))
-        bound: FloatArray = np.where(met == 1, np.minimum(least, deepest), least)
+        bound: FloatArray = _in_parts(self._signed_along, start, end, *ends)
         return bound
+
+    def _signed_along(self, start: FloatArray, end: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+        import shapely
+
+        ways = shapely.linestrings(np.stack([start, end], axis=1))
+        least = np.minimum(shapely.distance(self._shape.boundary, ways), np.minimum(first, last))
+        deepest = 0.5 * (first + last - np.linalg.norm(end - start, axis=1))
+        met = shapely.intersects(self._shape, ways) | (first < 0.0) | (last < 0.0)
+        return np.where(met, np.minimum(least, deepest), least)
 
     def enclosing_circle(self) -> Sphere:
         """Return the smallest enclosing disc, the buffer zone of the conventional method."""
@@ -131,6 +122,12 @@ class SimplePolygon:
         circle = shapely.minimum_bounding_circle(self._shape)
         centre = (circle.centroid.x, circle.centroid.y)
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
+
+
+def _in_parts(function: Any, *rows: FloatArray) -> FloatArray:
+    """Return a function of many rows, evaluated some at a time: shapely makes an object of each."""
+    parts = [function(*(each[k : k + _ROWS] for each in rows)) for k in range(0, len(rows[0]), _ROWS)]
+    return np.concatenate([np.empty(0), *parts])
 
 
 def ball_clearance_along(ball: Sphere, start: FloatArray, end: FloatArray) -> FloatArray:

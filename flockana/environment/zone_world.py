@@ -53,7 +53,7 @@ class Alien:
             return
         if not isinstance(self.territory, SimplePolygon) or start.size != 2:
             raise ArgumentError(f"territory = {self.territory!r}: expected a SimplePolygon, and an alien in the plane")
-        if not self.territory.holds(start):
+        if self.territory.clearance(start[None])[0] > 0.0:
             raise ArgumentError(f"start = {self.start}: expected a point of the alien's territory {self.territory}")
 
 

@@ -12,18 +12,14 @@ from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.facts import Fact, PairFacts
 from flockana.base.units import Powers
-from flockana.interactions.pair import PairInteraction, ensure_bump_start, ensure_resolved, evaluate
+from flockana.interactions.pair import PairInteraction, Tabulated, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.scalars import bump, phi, phi_integral, sigma_norm
 from flockana.kernels.tables import integral_panels, on_panels, panel_edges
 
 _STRENGTH_GRID = 2049
-_PROOFS = (
-    "σ₁ is analytic, and ρ_h is C¹ with ρ_h(1) = ρ_h'(1) = 0",
-    "ρ_h >= 0",
-    "ρ_h(z) > 0 for z < 1",
-)
+_PROOFS = ("σ₁ is analytic, and ρ_h is C¹ with ρ_h(1) = ρ_h'(1) = 0", "ρ_h >= 0", "ρ_h(z) > 0 for z < 1")
 MAX_ASYMMETRY = 1e12  # of repulsion over attraction: beyond it φ(0) = 0 is lost in rounding
 
 _ADJACENCY_ALPHA = lift_scalar(kernel.adjacency_alpha)
@@ -43,7 +39,7 @@ _ALPHA = lift(
 
 
 @dataclass(frozen=True)
-class AlphaInteraction(PairInteraction):
+class AlphaInteraction(Tabulated, PairInteraction):
     """The α-pair law of Olfati-Saber (2006): action φ_α, potential ψ_α, adjacency a_ij.
 
     Parameters
@@ -161,8 +157,7 @@ class AlphaInteraction(PairInteraction):
         values: FloatArray = self.psi_alpha(self.sigma_norm(lengths))
         return values
 
-    @cached_property
-    def _parts(self) -> tuple[FloatArray, FloatArray]:
+    def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Parameters for the kernels, and Chebyshev panels of ψ_α, whose constants follow from ψ_α(d_α) = 0."""
         d_alpha, r_alpha, knee, area = self.d_alpha, self.r_alpha, self.h * self.r_alpha, self.unit**2
         par = np.array([self.eps, self.h, self.a, self.b, self.c, d_alpha, r_alpha, 0.0, 0.0, area])
@@ -184,19 +179,7 @@ class AlphaInteraction(PairInteraction):
         else:
             panels = integral_panels(taper, edges, anchor=edges[0], value=at_knee)
         par[kernel.FAR] = on_panels(r_alpha, panels)
-        for array in (par, panels):
-            array.setflags(write=False)
         return par, panels
-
-    @property
-    def par(self) -> FloatArray:
-        """Parameters for the kernels: ε, h, a, b, c, d_α, r_α, constant of ψ_α on the plateau, ψ_α(r_α), ℓ²."""
-        return self._parts[0]
-
-    @property
-    def panels(self) -> FloatArray:
-        """Chebyshev panels of ψ_α on [h r_α, r_α]."""
-        return self._parts[1]
 
     def sigma_norm(self, x: Any) -> Any:
         """Return ‖x‖_σ = (√(1 + ε x²) − 1)/ε of a Euclidean length.

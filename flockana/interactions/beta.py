@@ -10,7 +10,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.interactions.pair import ensure_bump_start, ensure_resolved, evaluate
+from flockana.interactions.pair import Tabulated, ensure_bump_start, ensure_resolved, evaluate
 from flockana.kernels import alpha as kernel
 from flockana.kernels.lift import lift_scalar
 from flockana.kernels.scalars import sigma_norm
@@ -22,7 +22,7 @@ _PSI_BETA = lift_scalar(kernel.psi_beta)
 
 
 @dataclass(frozen=True)
-class BetaInteraction:
+class BetaInteraction(Tabulated):
     """Repulsion between an agent and the β-agent of an obstacle (Olfati-Saber 2006).
 
     Parameters
@@ -71,8 +71,7 @@ class BetaInteraction:
         """σ-norm ‖r'‖_σ of the range."""
         return float(sigma_norm(self.r * self.r, self.eps))
 
-    @cached_property
-    def _parts(self) -> tuple[FloatArray, FloatArray]:
+    def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         d_beta, knee, area = self.d_beta, self.h * self.d_beta, self.unit**2
         par = np.array([self.eps, self.h, d_beta, 0.0, area])
         numbers = par.tolist()
@@ -83,19 +82,7 @@ class BetaInteraction:
         edges = area * panel_edges(knee / area, d_beta / area, d_beta / area)
         panels = integral_panels(taper, edges, anchor=edges[-1])
         par[kernel.BETA_OFFSET] = on_panels(knee, panels) - kernel.integral_beta(knee, numbers)
-        for array in (par, panels):
-            array.setflags(write=False)
         return par, panels
-
-    @property
-    def par(self) -> FloatArray:
-        """(ε, h, d_β, constant of ψ_β where ρ_h = 1, ℓ²)."""
-        return self._parts[0]
-
-    @property
-    def panels(self) -> FloatArray:
-        """Chebyshev panels of ψ_β on [h d_β, d_β]."""
-        return self._parts[1]
 
     def phi_beta(self, z: Any) -> Any:
         """Return φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1) ≤ 0."""

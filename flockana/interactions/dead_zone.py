@@ -11,7 +11,7 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, ensure_positive, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.interactions.pair import PairInteraction, evaluate
+from flockana.interactions.pair import PairInteraction, Tabulated, evaluate
 from flockana.kernels import dead_zone as kernel
 from flockana.kernels.lift import lift, lift_scalar
 from flockana.kernels.tables import integral_panels, on_panels
@@ -37,7 +37,7 @@ class Jump(NamedTuple):
 
 
 @dataclass(frozen=True)
-class DeadZoneInteraction(PairInteraction):
+class DeadZoneInteraction(Tabulated, PairInteraction):
     """The dead-zone pair law of Li, Yuan and Liu, eq. (7)-(9), with gaps filled (errata L1-L3).
 
     The force along the line from i to j is F(ρ) = f(ρ) ρ/√(1 + ηρ²) + k₁ρ within r and 0 beyond, with
@@ -164,8 +164,7 @@ class DeadZoneInteraction(PairInteraction):
         """Potential of a pair out of range, ψ(r) + ½ k₁ r²: continuous at r (erratum L5)."""
         return float(_POTENTIAL(np.array([self.r]), self.par, self.panels)[0])
 
-    @cached_property
-    def _parts(self) -> tuple[FloatArray, FloatArray]:
+    def _tabulate(self) -> tuple[FloatArray, FloatArray]:
         """Parameters for the kernels, and Chebyshev panels of ψ on the ramps within range."""
         edges = self.d1, self.d2, self.r, self.r_d
         par = np.array([self.eta, self.k_r, self.k_delta, self.k1, *edges, self.ramp, 0.0, 0.0])
@@ -192,19 +191,7 @@ class DeadZoneInteraction(PairInteraction):
                 outer[:, 2] -= on_panels(self.d2, outer)
                 par[kernel.OUTER] = on_panels(end, outer)
                 panels = np.vstack([panels, outer])
-        for array in (par, panels):
-            array.setflags(write=False)
         return par, panels
-
-    @property
-    def par(self) -> FloatArray:
-        """Parameters for the kernels: η, k_r, k_δ, k₁, d₁, d₂, r, r_d, ramp, ψ(d₁ − ramp), ψ(d₂ + ramp)."""
-        return self._parts[0]
-
-    @property
-    def panels(self) -> FloatArray:
-        """Chebyshev panels of ψ on the ramps."""
-        return self._parts[1]
 
     def action(self, s: Any) -> Any:
         """Return f(ρ), the paper's φ_z without its direction; negative repels."""

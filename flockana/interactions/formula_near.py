@@ -70,10 +70,7 @@ def _cancels(cut: PiecewiseFormula, piece: Any, end: float, scale: float) -> boo
         parts.append((piece.potential, scale * end))
     for part, size in parts:
         plain = sp.lambdify(
-            [y, *symbols],
-            part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))),
-            "math",
-            dummify=True,
+            [y, *symbols], part.subs(pf.ROOT, sp.sqrt(1 + pf.EPS * (2 * pf.Z + pf.EPS * pf.Z**2))), "math", dummify=True
         )
         exact = cut.function(part)
         for share in (0.0, *(0.25**j for j in range(2, 60))):

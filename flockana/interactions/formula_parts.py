@@ -103,15 +103,7 @@ def formula_parts(
         array.setflags(write=False)
     surfaces = tuple(sorted({*jumps, r}))
     return FormulaParts(
-        cut,
-        texts,
-        par,
-        panels,
-        surfaces,
-        view.strength,
-        near.kind != "excluded",
-        view.holds(d),
-        view.looks,
+        cut, texts, par, panels, surfaces, view.strength, near.kind != "excluded", view.holds(d), view.looks
     )
 
 

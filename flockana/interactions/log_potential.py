@@ -9,6 +9,7 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_positive, normalise
 from flockana.base.units import Powers
+from flockana.interactions.pair import pair_matrix
 
 
 @dataclass(frozen=True)
@@ -112,22 +113,12 @@ def net_forces(
 
 def net_derivatives(potential: LogPotential, damping: float, q: FloatArray, i: Any, j: Any) -> tuple[Any, Any]:
     """Return (∂u/∂q, ∂u/∂p) of the forces along given edges, sparse."""
-    from scipy.sparse import coo_array
-
-    (n, m), delta, axes = q.shape, q[j] - q[i], np.arange(q.shape[1])
+    (n, m), delta = q.shape, q[j] - q[i]
     s2 = np.einsum("kc,kc->k", delta, delta)
     bend = 2.0 * potential.weight_slope(s2)[:, None, None] * delta[:, :, None] * delta[:, None, :]
     stiff = potential.weight(s2)[:, None, None] * np.eye(m) + bend
-    found = []
-    for blocks in (stiff, np.broadcast_to(damping * np.eye(m), stiff.shape)):
-        rows, columns, values = [], [], []
-        for a, b, sign in ((i, i, -1.0), (j, j, -1.0), (i, j, 1.0), (j, i, 1.0)):
-            rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], stiff.shape).ravel())
-            columns.append(np.broadcast_to((b[:, None] * m + axes)[:, None, :], stiff.shape).ravel())
-            values.append((sign * blocks).ravel())
-        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-        found.append(coo_array(entries, shape=(n * m, n * m)).tocsr())
-    return found[0], found[1]
+    drag = np.broadcast_to(damping * np.eye(m), stiff.shape)
+    return -pair_matrix(i, j, stiff, n), -pair_matrix(i, j, drag, n)
 
 
 def length_scale_time(potential: LogPotential) -> float:

@@ -32,6 +32,31 @@ def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
     return float(out[0]) if values.ndim == 0 else out.reshape(values.shape)
 
 
+class Tabulated(ABC):
+    """Law whose parameters and panels are computed together, once."""
+
+    @abstractmethod
+    def _tabulate(self) -> tuple[FloatArray, FloatArray]:
+        """Return parameters for the kernels, and Chebyshev panels of the potential."""
+
+    @cached_property
+    def _parts(self) -> tuple[FloatArray, FloatArray]:
+        parts = self._tabulate()
+        for array in parts:
+            array.setflags(write=False)
+        return parts
+
+    @property
+    def par(self) -> FloatArray:
+        """Parameters in the order that the kernels read."""
+        return self._parts[0]
+
+    @property
+    def panels(self) -> FloatArray:
+        """Chebyshev panels of the potential, where it is in no closed form."""
+        return self._parts[1]
+
+
 class PairInteraction(ABC):
     """Base class of pair laws: sums over all pairs within range from scalar functions.
 
@@ -243,8 +268,8 @@ class PairInteraction(ABC):
         return blocks
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
-        """Return the matrix of ±B over pairs: B on the two diagonal blocks, −B on the two others."""
-        from scipy.sparse import bsr_array
+        """Return `pair_matrix` over pairs."""
+        from scipy.sparse import csr_array
 
         n, m = q.shape
         found = []
@@ -254,17 +279,25 @@ class PairInteraction(ABC):
                 _ensure_apart(i, j, delta)
             found.append((i.copy(), j.copy(), block_of(i, j, delta, self.kernels.terms(q, i, j, self.par))))
         if not found:
-            return bsr_array((n * m, n * m), blocksize=(m, m)).tocsr()
+            return csr_array((n * m, n * m))
         i, j, blocks = (np.concatenate(each) for each in zip(*found, strict=True))
-        own = np.zeros((n, m, m))
-        for end in (i, j):
-            np.add.at(own, end, blocks)
-        met = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
-        rows, columns = np.concatenate([i, j, met]), np.concatenate([j, i, met])
-        order = np.lexsort((columns, rows))
-        starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
-        values = np.concatenate([-blocks, -blocks, own[met]])[order]
-        return bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
+        return pair_matrix(i, j, blocks, n)
+
+
+def pair_matrix(i: Any, j: Any, blocks: FloatArray, n: int) -> csr_array:
+    """Return the sparse matrix of ±B over distinct pairs: B on the two diagonal blocks, −B on the two others."""
+    from scipy.sparse import bsr_array
+
+    m = blocks.shape[-1]
+    own = np.zeros((n, m, m))
+    for end in (i, j):
+        np.add.at(own, end, blocks)
+    met = np.flatnonzero(np.bincount(np.concatenate([i, j]), minlength=n))
+    rows, columns = np.concatenate([i, j, met]), np.concatenate([j, i, met])
+    order = np.lexsort((columns, rows))
+    starts = np.append(0, np.cumsum(np.bincount(rows, minlength=n)))
+    values = np.concatenate([-blocks, -blocks, own[met]])[order]
+    return bsr_array((values, columns[order], starts), shape=(n * m, n * m)).tocsr()
 
 
 def _ensure_apart(i: Any, j: Any, delta: FloatArray) -> None:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import inlined, kernel
 from flockana.kernels.checks import IN_VAIN, PATIENCE, checked
 from flockana.kernels.march import RUNNING, SINGULAR, march, step_of
 from flockana.kernels.runge_kutta import energy_of, frame_at, interpolated, rate_of, stages_of
@@ -27,24 +27,10 @@ class Advanced(NamedTuple):
     work: Any  # NaN where a step ended
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def reordered(vectors, order, m):
-    """Return rows of vectors with agents permuted: agent i of the result is agent order[i]."""
-    n, out = order.size, vectors.copy()
-    for k in range(len(vectors)):
-        for i in range(n):
-            own = np.int64(order[i])
-            for c in range(m):
-                out[k, i * m + c], out[k, (n + i) * m + c] = vectors[k, own * m + c], vectors[k, (n + own) * m + c]
-    return out
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _record(t, y, f, order, view, out):
+@inlined
+def _record(y, f, order, frame, out):
     """Write positions, velocities and accelerations in the agents' own order; return the work."""
-    n, m = order.size, view[1].size
-    frame = np.empty((2, m))
-    frame_at(t, view, frame)
+    n, m = order.size, frame.shape[1]
     for i in range(n):
         own = np.int64(order[i])
         for c in range(m):
@@ -54,41 +40,40 @@ def _record(t, y, f, order, view, out):
     return y[2 * n * m] if y.size > 2 * n * m else np.nan
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def recorded(block, count, order, view):
     """Return (states, work) at the ends of the first steps of a block, in the agents' own order."""
-    states, work = np.empty((count, 3, order.size, view[1].size)), np.empty(count)
+    m = view[1].size
+    states, work, frame = np.empty((count, 3, order.size, m)), np.empty(count), np.empty((2, m))
     for k in range(count):
-        work[k] = _record(block.t[k + 1], block.y[k + 1], block.f[k + 1], order, view, states[k])
+        frame_at(block.t[k + 1], view, frame)
+        work[k] = _record(block.y[k + 1], block.f[k + 1], order, frame, states[k])
     return states, work
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _with_room(kept, due, at):
-    """Return an array with room for the samples due before a time, holding those kept so far."""
-    needed = len(kept)
-    while needed < due.size and due[needed] < at:
-        needed += 1
+@inlined
+def _with_room(kept, needed):
+    """Return an array with room for so many samples, holding those kept so far."""
     if needed <= len(kept):
         return kept
     more = np.empty((max(needed, 2 * len(kept)), *kept.shape[1:]))
-    put(kept, more)
+    put(kept.reshape(kept.size), more.reshape(more.size))
     return more
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def _sampled(step, due, method, states, work, system, pairs):
-    """Write samples at the times due within a step; returns the pairs."""
+    """Write samples (q, p, u) at the times due within a step, in the agents' own order; return the pairs."""
     slope = np.empty(step.y.size)
     pairs = stages_of(step, method, np.int64(method.stages + 1), np.int64(len(method.rows)), system, pairs)
     for k in range(due.size):
         interpolated((due[k] - step.t) / step.h, step, method)
-        pairs = rate_of(due[k], step.trial, slope, system, pairs)
-        work[k] = _record(due[k], step.trial, slope, system.order, system.seen_from, states[k])
+        pairs = rate_of(due[k], step.trial, slope, system, pairs)  # and writes the frame at that time
+        work[k] = _record(step.trial, slope, system.order, system.frame, states[k])
     return pairs
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def advance(system, method, block, room, h, lists, stops, due, judged):
     """Fill a block with accepted steps up to the last of `stops`, from its first row; return `Advanced`.
 
@@ -100,16 +85,16 @@ def advance(system, method, block, room, h, lists, stops, due, judged):
     states, work = np.empty((0, 3, n, m)), np.empty(due.size)
     evaluations, redone, status, stop, sampled = 0, 0, RUNNING, 0, 0
     made = np.int64(0)  # typed: of a literal, all that is called would be compiled once more
-    while made + 1 < block.t.size and stop < stops.size and status == RUNNING:
+    while made + 1 < block.t.size and stop < stops.size:
         now = march(block, made, h, (stops[stop], stops[-1]), system, method, room, pairs)
         status, pairs, evaluations, at = now.status, now.pairs, evaluations + now.evaluations, block.t[made + 1]
         if status != RUNNING:
             h = now.h
             break
         if energetic and judged.ledger[IN_VAIN] < PATIENCE:
-            if np.isnan(block.energy[made]):
-                block.energy[made] = energy_of(block.t[made], block.y[made], system, pairs)
-            block.energy[made + 1] = energy_of(at, block.y[made + 1], system, pairs)
+            for row in range(made, made + 2):
+                if row > made or np.isnan(block.energy[row]):
+                    block.energy[row] = energy_of(block.t[row], block.y[row], system, pairs)
         shorter, singular, near = checked(block, made, judged, system.seen_from, pairs, near)
         if singular:
             status = SINGULAR
@@ -117,16 +102,18 @@ def advance(system, method, block, room, h, lists, stops, due, judged):
         if shorter > 0.0:
             h, redone = shorter, redone + 1
             continue
-        before, states = sampled, _with_room(states, due, at)
+        before = sampled
         while sampled < due.size and due[sampled] < at:
             sampled += 1
+        known = sampled
+        while known < due.size and due[known] == at:
+            work[known], known = np.nan, known + 1  # the step itself is the sample
+        states = _with_room(states, known)
         if sampled > before:
             step, inside = step_of(block, made, room), due[before:sampled]
             pairs = _sampled(step, inside, method, states[before:sampled], work[before:sampled], system, pairs)
             evaluations += len(method.rows) - method.stages - 1 + sampled - before
-        while sampled < due.size and due[sampled] == at:
-            work[sampled], sampled = np.nan, sampled + 1  # the step itself is the sample
+        sampled = known
         stop += at == stops[stop]
         h, made = now.later, made + 1
-    states = _with_room(states, due[:sampled], np.inf)[:sampled]
-    return Advanced(made, status, h, pairs, near, evaluations, redone, states, work[:sampled])
+    return Advanced(made, status, h, pairs, near, evaluations, redone, states[:sampled], work[:sampled])

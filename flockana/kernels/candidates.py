@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.grid import sort_into_grid
 
 IndexArray = npt.NDArray[np.int64]
@@ -27,7 +27,7 @@ class Cells(NamedTuple):
     cell: IndexArray
 
 
-@njit(cache=True)
+@kernel
 def sort_into_cells(q, reach):
     """Return the cells of a flock; four empty arrays where looking at all agents is as fast."""
     n, m = q.shape
@@ -50,7 +50,7 @@ def sort_into_cells(q, reach):
     return Cells(order.astype(np.int64), start.astype(np.int64), rows.astype(np.int64), cell)
 
 
-@njit(cache=True)
+@kernel
 def gather(i, q, reach, cells, near):
     """Write the indices of agents that may be within reach of agent i, itself included, to `near`; return the count."""
     n, m = q.shape
@@ -71,7 +71,7 @@ def gather(i, q, reach, cells, near):
     return count
 
 
-@njit(cache=True)
+@kernel
 def _sort(near, count):
     """Sort `count` indices in place by Shell's method; few ones by insertion, as their rows are sorted already."""
     gap = 1

@@ -9,10 +9,11 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
+from flockana.kernels.sums import square_between
 
 
-@njit(cache=True)
+@kernel
 def _root(parent, i):
     """Return the first known agent of i's component, and shorten the path to it."""
     while parent[i] != i:
@@ -21,7 +22,7 @@ def _root(parent, i):
     return i
 
 
-@njit(cache=True)
+@kernel
 def unite(parent, first, second):
     """Put both ends of every link into one component; `parent` begins as 0 … n − 1."""
     for k in range(first.size):
@@ -32,7 +33,7 @@ def unite(parent, first, second):
             parent[a] = b
 
 
-@njit(cache=True)
+@kernel
 def labelled(parent):
     """Label of each agent's component, counted from 0 in the order of their first agents."""
     labels, count = np.empty(parent.size, np.int32), 0
@@ -45,13 +46,11 @@ def labelled(parent):
     return labels
 
 
-@njit(cache=True)
+@kernel
 def squared_excess(q, first, second, d):
     """Σ (‖q_j − q_i‖ − d)² over links."""
     total = 0.0
     for k in range(first.size):
-        square = 0.0
-        for c in range(q.shape[1]):
-            square += (q[second[k], c] - q[first[k], c]) ** 2
+        square = square_between(q, first[k], second[k])
         total += (sqrt(square) - d) ** 2
     return total

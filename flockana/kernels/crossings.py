@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit, thawed
+from flockana.jit import kernel, thawed
 from flockana.kernels.segments import between, cross, foot
 
 FloatArray = npt.NDArray[np.float64]
@@ -38,12 +38,12 @@ class Grid(NamedTuple):
     cell: npt.NDArray[np.int64]  # (E, 3): its cell
 
 
-@njit(cache=True)
+@kernel
 def _bucket(c0, c1, c2, size):
     return (c0 * 73856093 + c1 * 19349663 + c2 * 83492791) & (size - 1)
 
 
-@njit(cache=True)
+@kernel
 def _enter(home, last, size):
     """Counting sort of (piece, cell) by bucket."""
     start = np.zeros(size + 1, np.int64)
@@ -69,7 +69,7 @@ def _enter(home, last, size):
     return piece, stop, cell
 
 
-@njit(cache=True)
+@kernel
 def _compared(owner, low, high, home, piece, cell, s, t):
     """Whether two entries are pieces of two links with overlapping boxes, in the one cell where they are compared."""
     p, o = piece[s], piece[t]
@@ -84,7 +84,7 @@ def _compared(owner, low, high, home, piece, cell, s, t):
     return True
 
 
-@njit(cache=True)
+@kernel
 def _fill(links, planes, row, first, second, sure):
     """Fill the block from entry `row` on; a row that does not fit whole is left for the next block."""
     x, pairs, owner, low, high, home, piece, stop, cell = links
@@ -105,7 +105,7 @@ def _fill(links, planes, row, first, second, sure):
     return piece.size, count
 
 
-@njit(cache=True)
+@kernel
 def _nearest(links, planar, reach):
     x, pairs, owner, low, high, home, piece, stop, cell = links
     best, first, second = reach, -1, -1

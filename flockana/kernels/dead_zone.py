@@ -12,7 +12,8 @@ from math import inf, log, log1p, sqrt
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
+from flockana.kernels.sums import square_between
 from flockana.kernels.tables import on_panels
 
 REPULSION, DEAD, ATTRACTION, OUT = 0, 1, 2, 3
@@ -143,32 +144,26 @@ def pair_dead_zone_adjacency_slope(s2, par):
     return 0.0
 
 
-@njit(cache=True)
+@kernel
 def zones(q, par):
     """Zone of every pair, shape (n(n−1)/2,), pairs in lexicographic order."""
-    n, m = q.shape
+    n = len(q)
     out, k = np.empty(n * (n - 1) // 2, np.int8), 0
     for i in range(n):
         for j in range(i + 1, n):
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
-            out[k] = zone_of(sqrt(s2), par)
+            out[k] = zone_of(sqrt(square_between(q, i, j)), par)
             k += 1
     return out
 
 
-@njit(cache=True)
+@kernel
 def zone_margins(q, zone, par):
     """How far inside its zone each pair is (negative beyond it), and whether the nearer edge is the upper one."""
-    n, m = q.shape
+    n = len(q)
     margins, upper, k = np.empty(zone.size), np.empty(zone.size, np.bool_), 0
     for i in range(n):
         for j in range(i + 1, n):
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
-            s, z = sqrt(s2), zone[k]
+            s, z = sqrt(square_between(q, i, j)), zone[k]
             low = (0.0, par[D_1], par[D_2], par[R])[z]
             high = (par[D_1], min(par[D_2], par[R]), par[R], inf)[z]
             upper[k] = high - s < s - low if z != REPULSION else True
@@ -177,7 +172,7 @@ def zone_margins(q, zone, par):
     return margins, upper
 
 
-@njit(cache=True)
+@kernel
 def zone_forces(q, p, zone, par, c2, u):
     """Add every pair's force, continued beyond its zone and without ramps, to u; return Σ a_ij ‖p_j − p_i‖²."""
     n, m = q.shape
@@ -188,10 +183,9 @@ def zone_forces(q, p, zone, par, c2, u):
             k += 1
             if z == OUT:
                 continue
-            s2 = 0.0
             for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
                 total += (p[j, c] - p[i, c]) ** 2
+            s2 = square_between(q, i, j)
             s, f = sqrt(s2), 0.0
             if z == REPULSION:
                 f = -repulsion(s, par)

@@ -6,7 +6,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.dead_zone import D_1, D_2, K_1, R, pair_dead_zone
 from flockana.kernels.sums import put
 
@@ -16,7 +16,7 @@ _AHEAD = 30.0  # steps that a list is made for, at the speeds of its time
 # Loops over arrays without branches become vector instructions: no check for a zero divisor stands in their way. The
 # order of every sum is written down, so that all processors give the same bits, and so does every list that is kept.
 # Two components are summed at a time: what is read of a pair serves both. An odd one goes with a row of zeros.
-@njit(cache=True, error_model="numpy")
+@kernel
 def semi_implicit_steps(q, p, par, c2, dt, wanted):
     """Return q, p after the wanted steps (by rising numbers), and the u applied, by semi-implicit Euler.
 
@@ -119,7 +119,7 @@ def _scatter(w, d, second, ends, u, v, both):
         u[i], v[i] = both[i, 0], both[i, 1]
 
 
-@njit(cache=True)
+@kernel
 def _square_of_range(r):
     """The least number whose square root is not below r: `s2 < square` says that √s2 < r, to the bit."""
     square = r * r
@@ -130,7 +130,7 @@ def _square_of_range(r):
     return square
 
 
-@njit(cache=True)
+@kernel
 def _crossed(s2, square, kept, near, degree, first, second, inside):
     """Note which pairs of the list have come into range or left it."""
     for k in range(kept):
@@ -159,7 +159,7 @@ def _moved_beyond(x, then, drift, passed, square, squares):
     return far > 0
 
 
-@njit(cache=True)
+@kernel
 def _spread(v, drift):
     """Return the largest speed relative to the mean velocity, which is written to `drift`."""
     largest = 0.0
@@ -173,7 +173,7 @@ def _spread(v, drift):
     return sqrt(largest)
 
 
-@njit(cache=True)
+@kernel
 def _listed(x, par, skin, near, degree, first, second, inside, ends):
     """List pairs within a skin of where they act by more than k₁ or come into range.
 

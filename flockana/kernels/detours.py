@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.paths import polygon
 
 
@@ -25,7 +25,7 @@ def _parted(points, share):
     return (a0, b0, c0, d0, e0, f0), (f0, e1, d2, c3, b4, a5)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def detours(times, first, middle, last, slack0, slack1):
     """Return how far each agent's path from the first state (q, p, u) to the last may be from that through the middle.
 

@@ -6,12 +6,13 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.alpha import EPS, R_ALPHA, H, pair_alpha
 from flockana.kernels.scalars import sigma_norm, taper
+from flockana.kernels.sums import square_between
 
 
-@njit(cache=True)
+@kernel
 def sight(q, p, i, j, s2, reach2, width, slow2, h):
     """Return how well agent i sees j, from 0 to 1: by its range, and by its cone, with the bump of the angle's 1 − cos.
 
@@ -32,7 +33,7 @@ def sight(q, p, i, j, s2, reach2, width, slow2, h):
     return (slow2 + speed2 * cone) / (slow2 + speed2)
 
 
-@njit(cache=True)
+@kernel
 def directed_forces(q, p, pairs, reach, par, gains, view, u):
     """Add w_ij (c1 s_ij (q_j − q_i) + c2 a_ij (p_j − p_i)) to u_i, with the bump of its range and its `sight` w_ij.
 
@@ -47,9 +48,7 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
     for k in range(first.size):
         for way in range(2):
             i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
-            s2 = 0.0
-            for c in range(q.shape[1]):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             seen = sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, par[H])
             if seen == 0.0:
                 continue
@@ -60,14 +59,12 @@ def directed_forces(q, p, pairs, reach, par, gains, view, u):
                 u[i, c] += pull * (q[j, c] - q[i, c]) + drag * (p[j, c] - p[i, c])
 
 
-@njit(cache=True)
+@kernel
 def seen_edges(q, p, first, second, reach, width, slow2, h, least):
     """(head, tail) of the directed edges among some pairs: head sees tail, with more than the least sight."""
     head, tail, count = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64), 0
     for k in range(first.size):
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[second[k], c] - q[first[k], c]) ** 2
+        s2 = square_between(q, first[k], second[k])
         for way in range(2):
             i, j = (first[k], second[k]) if way == 0 else (second[k], first[k])
             if sight(q, p, i, j, s2, reach[i] * reach[i], width, slow2, h) > least:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import factorial, floor, pi
 
-from flockana.jit import register_jitable
+from flockana.jit import inlined, register_jitable
 
 _S1, _S2, _S3, _S4, _S5, _S6, _S7, _S8, _S9, _S10 = ((-1.0) ** k / factorial(2 * k + 1) for k in range(1, 11))
 _HIGH, _MIDDLE, _LOW = 1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21  # ½π; the first of 33 bits
 
 
-@register_jitable
+@inlined
 def _of_quarter(x, m):
     """The sine of x − ½πm, which is at most ½π in size, by its series: y and a rest whose parts need not wait."""
     y = ((x - m * _HIGH) - m * _MIDDLE) - m * _LOW

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import inlined, kernel
 from flockana.kernels.paths import _DEPTH, ALLOWED, _first_touch, _hull_bound, polygon, quintic, reach_of
 from flockana.kernels.sums import column_mean, put, slope_along
 
@@ -46,6 +46,7 @@ class Around(NamedTuple):
     numbers: Any  # what it reads
     starts: Any
     shell: Any  # distance at which the force of obstacles begins, and how far an agent may go within it
+    listed: Any  # how pairs are listed: `flockana.kernels.verlet.listed_anew`
 
 
 class PairRoom(NamedTuple):
@@ -59,20 +60,17 @@ class PairRoom(NamedTuple):
     radii: Any
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def pair_room(radii):
     """Return room for a pair of agents with so many radii each."""
+    points = np.empty((2, 6, 3))
+    points[:] = 0.0
     return PairRoom(
-        np.empty((_DEPTH + 2, 6, 3)),
-        np.empty((_DEPTH + 2, 2)),
-        np.zeros((2, 6, 3)),
-        np.empty(2),
-        np.empty(2),
-        np.empty((2, radii)),
+        np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2)), points, np.empty(2), np.empty(2), np.empty((2, radii))
     )
 
 
-@njit(cache=True)
+@kernel
 def relative_curve(points, curve):
     """The pair's relative control points into `curve`; the largest distance from the first of them."""
     way = 0.0
@@ -85,7 +83,7 @@ def relative_curve(points, curve):
     return np.sqrt(way)
 
 
-@njit(cache=True)
+@inlined
 def _ahead(points, s, far, room):
     """Return the share of the step from s to the pair's next closest approach, or over a way of `far`; -1 if it parts.
 
@@ -107,7 +105,7 @@ def _ahead(points, s, far, room):
     return min(closing / speed2, far / np.sqrt(speed2))
 
 
-@njit(cache=True)
+@inlined
 def _visit(points, edge, far, stack, spans):
     """Return the share of the step at which a pair that starts beyond `edge` is first well within it, at most 1.
 
@@ -123,14 +121,14 @@ def _visit(points, edge, far, stack, spans):
     return 1.0 if ahead < 0.0 or s + SLACK * ahead >= 1.0 else s + ahead
 
 
-@njit(cache=True)
+@inlined
 def _apart2(points, k):
     """Squared distance of the pair's control points k."""
     x, y, z = points[1, k, 0] - points[0, k, 0], points[1, k, 1] - points[0, k, 1], points[1, k, 2] - points[0, k, 2]
     return x * x + y * y + z * z
 
 
-@njit(cache=True)
+@inlined
 def share_of_pair(room, far, share):
     """The share of the step that the pair in `room` allows, if less than `share`."""
     points, radii = room.points, room.radii
@@ -156,7 +154,7 @@ def share_of_pair(room, far, share):
     return share
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def steepest(slope):
     """The largest of all slopes."""
     most = 0.0
@@ -166,7 +164,7 @@ def steepest(slope):
     return most
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def common_way(ends):
     """Return (mean, slope, centre) of all agents' control points relative to the first of them: 6 × 3, twice, and 3.
 
@@ -174,7 +172,7 @@ def common_way(ends):
     steep.
     """
     h, q0, p0, u0, q1, p1, u1 = ends
-    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros(3), h / 5.0, h * h / 20.0
+    mean, slope, centre, s, z = np.zeros((6, 3)), np.zeros((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
     for c in range(q0.shape[1]):
         centre[c] = column_mean(q0, c)
         out, back, bend0, bend1 = column_mean(p0, c), column_mean(p1, c), column_mean(u0, c), column_mean(u1, c)
@@ -185,11 +183,11 @@ def common_way(ends):
         ways = polygon(0.0, slope_along(q0, q1, c, 1.0) - 1.0, s * out, s * back, z * bend0, z * bend1)
         _, slope[1, c], slope[2, c], slope[3, c], slope[4, c], slope[5, c] = ways
     if not steepest(slope) < _STEEP:
-        slope = np.zeros((6, 3))
+        slope[:] = 0.0
     return mean, slope, centre
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def farthest_ways(ends, common):
     """Return (longest way of an agent relative to the common one, largest allowance), both to rounding."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
@@ -213,7 +211,7 @@ def farthest_ways(ends, common):
     return far, blur
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def band(common, farthest, edges, far):
     """Return (low, high), the distances at a step's beginning between which a pair may cut the step short.
 
@@ -225,7 +223,7 @@ def band(common, farthest, edges, far):
     return low if (steep * high + 2.0 * way) * _WIDER <= far else 0.0, high
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def share_of_listed(ends, mean, between, around, first, second, share):
     """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.runge_kutta import rate_of
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def euler_maruyama_steps(t, h, y, kicks, wanted, system, pairs, out):
     """Write (q, p, u) after the steps wanted, numbered from 1; returns whether the pairs fit into a list.
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 _MOVING, _OMEGA, _ROWS, _FIRST = range(4)
 
@@ -22,7 +22,7 @@ def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -
     return np.concatenate([head, np.ravel(constant), np.ravel(cosine), np.ravel(sine)])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act(t, x, v, u, numbers, panels, listed):
     """Add the push to u and return its power."""
     (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0

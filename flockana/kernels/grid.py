@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most: a sparser box is left to the search by hashed cells
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def sort_into_grid(q, side):
     """(order, start, rows): agents by cell, first agent of each cell, and where the later adjacent rows of cells are.
 

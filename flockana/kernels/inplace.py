@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.alpha import pair_alpha
+from flockana.kernels.sums import square_between
 
 
-@njit(cache=True)
+@kernel
 def neighbour_lists(n, first, second):
     """(start, neighbour): the neighbours of i are neighbour[start[i]:start[i + 1]], in the order of the pairs."""
     start = np.zeros(n + 1, np.int64)
@@ -28,7 +29,7 @@ def neighbour_lists(n, first, second):
     return start, neighbour
 
 
-@njit(cache=True)
+@kernel
 def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
     """Overwrite q, p, u agent by agent: u_i from the state as it stands, then q_i and p_i from u_i.
 
@@ -41,9 +42,7 @@ def advance_alpha(q, p, u, near, par, gains, goal, dt, position_factor):
             total[c] = -pull * (q[i, c] - q_r[c]) - drag * (p[i, c] - p_r[c])
         for k in range(start[i], start[i + 1]):
             j = neighbour[k]
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             w, rho = pair_alpha(s2, par)
             for c in range(m):
                 total[c] += c1 * w * (q[j, c] - q[i, c]) + c2 * rho * (p[j, c] - p[i, c])

@@ -6,11 +6,11 @@ from math import inf, sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.sums import column_mean
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def least_distances(q):
     """Least distance between two agents at each instant, shape (T,) of (T, n, m); ∞ for one agent.
 
@@ -36,7 +36,7 @@ def least_distances(q):
     return distances
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _square(x, i, place):
     total = 0.0
     for c in range(place.size):
@@ -44,7 +44,7 @@ def _square(x, i, place):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _farthest(x, place):
     """Return (agent, squared distance) of the agent farthest from a place."""
     agent, most = 0, 0.0
@@ -55,7 +55,7 @@ def _farthest(x, place):
     return agent, most
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def greatest_distances(q):
     """Greatest distance between two agents at each instant, shape (T,) of (T, n, m); 0 for one agent.
 

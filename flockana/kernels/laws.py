@@ -15,7 +15,7 @@ import numpy as np
 from flockana.jit import Kernel, callback, load_numba
 from flockana.kernels.bound import made
 
-_HEAD = """from flockana.jit import njit
+_HEAD = """from flockana.jit import kernel
 from flockana.kernels.listed import Listed
 
 """
@@ -64,7 +64,7 @@ def law_functions(terms: tuple[tuple[Kernel, Kernel], ...]) -> LawFunctions:
         lines[_ACT].append(f"    total += act_{k}(t, x, v, u, {both}, seen)")
         lines[_ENERGY].append(f"    total += energy_{k}(t, x, v, {both}, seen)")
     bodies = ("\n".join([head, *body, "    return total"]) for head, body in lines.items())
-    module = made(_HEAD + "\n".join(f"\n@njit(cache=True)\n{body}\n" for body in bodies), "law", **functions)
+    module = made(_HEAD + "\n".join(f"\n@kernel\n{body}\n" for body in bodies), "law", **functions)
     return LawFunctions(*(callback(getattr(module, k), sign) for k, sign in signatures()._asdict().items()))
 
 
@@ -77,7 +77,7 @@ def guard_of(kinds: tuple[Kernel, ...]) -> Any:
         f"    share = guard_{k}(points, allowance, numbers[starts[{k}] : starts[{k + 1}]], shell, far, share)\n"
         for k in range(len(kinds))
     ]
-    text = "from flockana.jit import njit\n\n\n@njit(cache=True)\n" + _GUARD + "".join(lines) + "    return share\n"
+    text = "from flockana.jit import kernel\n\n\n@kernel\n" + _GUARD + "".join(lines) + "    return share\n"
     module = made(text, "guard", **{f"guard_{k}": kind for k, kind in enumerate(kinds)})
     return callback(module.guard, real(real[:, :, ::1], vector, vector, numba.int64[::1], real, real, real))
 
@@ -91,7 +91,4 @@ def signatures() -> LawFunctions:
     seen = (
         matrix, vector, matrix, int64[:, ::1], indices, indices, int64, numba.uint64[::1], numba.uint64[:, ::1], matrix,
     )  # fmt: skip
-    return LawFunctions(
-        float64(float64, matrix, matrix, matrix, *seen),
-        float64(float64, matrix, matrix, *seen),
-    )
+    return LawFunctions(float64(float64, matrix, matrix, matrix, *seen), float64(float64, matrix, matrix, *seen))

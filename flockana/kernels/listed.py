@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 
 class Listed(NamedTuple):
@@ -21,7 +21,7 @@ class Listed(NamedTuple):
     room: Any  # (3, BLOCK), the same
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def no_energy(t, x, v, numbers, panels, listed):
     """The energy of a term without a potential."""
     return 0.0

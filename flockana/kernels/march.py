@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import inlined
 from flockana.kernels.runge_kutta import Step, error_of, first_step, stages_of
 from flockana.kernels.sums import finite, put
 
@@ -45,13 +45,13 @@ _SAFETY, _LEAST, _MOST = 0.9, 0.2, 10.0  # scipy's: factors of a step
 GROWTH = 8.0  # times its last length may a step of RK4 grow, and by so much it is shortened at once
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def spacing(t):
     """The distance from a time to the next number."""
     return np.nextafter(abs(t), np.inf) - abs(t)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def _controlled(h, error, exponent, rejected):
     """Return (next step, whether this one is accepted), as scipy's solvers choose."""
     factor = _SAFETY * error**exponent
@@ -61,13 +61,13 @@ def _controlled(h, error, exponent, rejected):
     return h * (factor if factor > _LEAST else _LEAST), False  # of an error that is no number too
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def step_of(block, k, room):
     """The step from row k of a block to the next."""
     return Step(block.t[k], block.t[k + 1] - block.t[k], block.y[k], block.y[k + 1], room.rates, room.trial)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def march(block, k, h, ends, system, method, room, pairs):
     """Make a step from row k of a block to the next; `ends` are the time at which it ends at the latest, and the last.
 

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.neighbours import DENSE_MAX, FloatArray, pair_blocks
+from flockana.kernels.sums import square_between
 
 AT_ONCE = DENSE_MAX  # up to so many agents `semi_implicit_steps` is the same to the bit: pairs come in the same order
 _SLACK = 1.0 + 1e-12  # the search is strict and the radius closed: a few roundings more than R, and the filter decides
@@ -31,16 +32,14 @@ class EqualEdges(NamedTuple):
     normalised: bool
 
 
-@njit(cache=True)
+@kernel
 def _directed(q, first, second, square):
     """(head, tail) of the edges among some pairs; a pair gives two, one or none: ‖x‖ ≤ R_i, closed."""
     head, tail = np.empty(2 * first.size, np.int64), np.empty(2 * first.size, np.int64)
     count = 0
     for k in range(first.size):
         i, j = first[k], second[k]
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         if s2 <= square[i]:
             head[count], tail[count] = i, j
             count += 1
@@ -66,7 +65,7 @@ def perceived_edges(q: FloatArray, radius: FloatArray) -> tuple[npt.NDArray[np.i
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
-@njit(cache=True)
+@kernel
 def edge_forces(q, p, head, tail, mu, rho, align, u):
     """Add μ (1 − ρ/‖x‖) x + a (p_j − p_i) of each edge, x = q_j − q_i, to u_i; return Σ a ‖p_j − p_i‖² over edges.
 
@@ -87,27 +86,23 @@ def edge_forces(q, p, head, tail, mu, rho, align, u):
     return dissipated
 
 
-@njit(cache=True)
+@kernel
 def _count(q, first, second, square, count):
     """Add to the number of agents that each perceives, among some pairs."""
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
-        s2 = 0.0
-        for c in range(q.shape[1]):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         count[i] += s2 <= square[i]
         count[j] += s2 <= square[j]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _pull(q, p, first, second, square, mu, rho, align, u):
     """`edge_forces` of the edges among some pairs, whose weights and lengths are the perceiving agent's."""
     m = q.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
-        s2 = 0.0
-        for c in range(m):
-            s2 += (q[j, c] - q[i, c]) ** 2
+        s2 = square_between(q, i, j)
         s = np.sqrt(s2)
         for way in range(2):
             head, tail = (i, j) if way == 0 else (j, i)
@@ -132,7 +127,7 @@ def perceived_forces(q: FloatArray, p: FloatArray, edges: EqualEdges, u: FloatAr
         _pull(q, p, i, j, square, mu, rho, align, u)
 
 
-@njit(cache=True)
+@kernel
 def _squares(x, j, s2):
     """Squared distances of all from agent j; coordinates (m, n)."""
     s2[:] = 0.0
@@ -142,7 +137,7 @@ def _squares(x, j, s2):
             s2[i] += (there - here[i]) ** 2
 
 
-@njit(cache=True)
+@kernel
 def _numbers(x, square, s2, count):
     """How many agents each perceives."""
     count[:] = -1.0  # not oneself
@@ -152,7 +147,7 @@ def _numbers(x, square, s2, count):
             count[i] += 1.0 if s2[i] <= square[i] else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _springs(s2, mu, rho, w):
     """Factor of x = q_j − q_i in the force on each."""
     for i in range(s2.size):
@@ -160,7 +155,7 @@ def _springs(s2, mu, rho, w):
         w[i] = stretch if s2[i] > 0.0 else 0.0
 
 
-@njit(cache=True)
+@kernel
 def _pull_along(here, there, now, then, s2, square, w, align, u):
     """Add one component of the force of one agent on all; on those that do not perceive it a zero."""
     for i in range(u.size):
@@ -168,7 +163,7 @@ def _pull_along(here, there, now, then, s2, square, w, align, u):
         u[i] += force if s2[i] <= square[i] else 0.0
 
 
-@njit(cache=True)
+@kernel
 def _pull_all(x, v, square, mu, rho, align, s2, w, u):
     """`_pull` of all pairs: by those that are perceived, one after the other, on all others.
 
@@ -182,19 +177,13 @@ def _pull_all(x, v, square, mu, rho, align, s2, w, u):
             _pull_along(x[c], x[c, j], v[c], v[c, j], s2, square, w, align, u[c])
 
 
-@njit(cache=True)
+@kernel
 def _many_steps(x, v, square, edges, dt, steps):
     m, n = x.shape
     _, spacing, shared, mu, sigma, normalised = edges
     qs, ps, us = np.empty((steps, n, m)), np.empty((steps, n, m)), np.empty((steps, n, m))
-    count, rho, align, s2, w, u = (
-        np.empty(n),
-        spacing.copy(),
-        np.full(n, sigma),
-        np.empty(n),
-        np.empty(n),
-        np.empty((m, n)),
-    )
+    count, s2, w, u = np.empty(n), np.empty(n), np.empty(n), np.empty((m, n))
+    rho, align = spacing.copy(), np.full(n, sigma)
     for k in range(steps):
         if shared or normalised:
             _numbers(x, square, s2, count)

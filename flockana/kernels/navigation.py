@@ -10,26 +10,33 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import inlined, kernel
 from flockana.kernels.sums import pull_to, squared_deviations
 
 _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def navigate(x, v, u, target, velocity, gains, unit, moving, order):
-    """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power.
+@inlined
+def _place(t, co, si, path, k):
+    """Coordinate k of the path, from the cosine and sine of ωt."""
+    return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
 
-    The rows of `target` are q_r and p_r, seen from a frame as x and v are, and the true dq_r/dt; `velocity` is that of
-    the frame. `gains` are c1γ and c2γ, one each or one per agent, whose own number `order` has. ℓ = 0 is the linear
-    pull.
-    """
-    (n, m), (c1, c2), power = x.shape, gains, 0.0
-    if moving:
+
+@kernel
+def act(t, x, v, u, numbers, panels, listed):
+    """Add −c1γ ℓ σ₁((q − q_r)/ℓ) − c2γ (p − p_r) to u, and return its power; ℓ = 0 is the linear pull."""
+    (n, m), omega, gains, frame, target = x.shape, numbers[_OMEGA], np.int64(numbers[_GAINS]), listed.frame, listed.room
+    path, c1 = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
+    c2, co, si, unit, power = c1[gains:], cos(omega * t), sin(omega * t), numbers[_UNIT], 0.0
+    for k in range(m):  # q_r and p_r, seen from the frame as x and v are, and the true dq_r/dt
+        rate = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
+        target[0, k] = _place(t, co, si, path, k) - frame[0, k]
+        target[1, k], target[2, k] = numbers[_FACTOR] * rate + path[4, k] - frame[1, k], rate
+    if numbers[_MOVING] != 0.0:
         pull_to(u, x, v, target[0], target[1], c1[0], c2[0])
         return -c2[0] * squared_deviations(v)
     for i in range(n):
-        own = np.int64(order[i]) if c1.size > 1 else 0
+        own = np.int64(listed.order[i]) if gains > 1 else 0
         bend = 1.0
         if unit > 0.0:
             square = 0.0
@@ -39,44 +46,11 @@ def navigate(x, v, u, target, velocity, gains, unit, moving, order):
         for k in range(m):
             pull, slip = c1[own] * (x[i, k] - target[0, k]) / bend, v[i, k] - target[1, k]
             u[i, k] -= pull + c2[own] * slip
-            power -= c2[own] * (v[i, k] + velocity[k]) * slip + pull * target[2, k]
+            power -= c2[own] * (v[i, k] + frame[1, k]) * slip + pull * target[2, k]
     return power
 
 
-@register_jitable
-def _place(t, co, si, path, k):
-    """Coordinate k of the path, from the cosine and sine of ωt."""
-    return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _follow(t, x, v, u, frame, numbers, order, target):
-    """`navigate` to the path that the numbers describe; `target` is room for it, three rows of m numbers or more."""
-    m, omega, gains = x.shape[1], numbers[_OMEGA], np.int64(numbers[_GAINS])
-    path, c = numbers[_PATH : _PATH + 5 * m].reshape(5, m), numbers[_PATH + 5 * m :]
-    co, si = cos(omega * t), sin(omega * t)
-    for k in range(m):
-        rate = path[1, k] + omega * (path[3, k] * co - path[2, k] * si)
-        target[0, k] = _place(t, co, si, path, k) - frame[0, k]
-        target[1, k], target[2, k] = numbers[_FACTOR] * rate + path[4, k] - frame[1, k], rate
-    return navigate(x, v, u, target, frame[1], (c[:gains], c[gains:]), numbers[_UNIT], numbers[_MOVING] != 0.0, order)
-
-
-@njit(cache=True, error_model="numpy")
-def follow(t, x, v, u, numbers):
-    """`navigate` to the path that the numbers describe, seen from where it is at rest and in the agents' own order."""
-    (n, m), gains = x.shape, numbers[_GAINS]
-    order = np.arange(n if gains > 1.0 else 0).astype(np.uint64)
-    return _follow(t, x, v, u, np.zeros((2, m)), numbers, order, np.empty((3, m)))
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def act(t, x, v, u, numbers, panels, listed):
-    """`follow` as a term of a law."""
-    return _follow(t, x, v, u, listed.frame, numbers, listed.order, listed.room)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def energy(t, x, v, numbers, panels, listed):
     """½ c1γ Σ‖x_i‖² in the moving frame, or Σ c1γ_i ℓ² (√(1 + ‖q_i − q_r‖²/ℓ²) − 1)."""
     (n, m), unit, gains = x.shape, numbers[_UNIT], numbers[_GAINS]

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.grid import sort_into_grid
 
 FloatArray = npt.NDArray[np.float64]
@@ -26,12 +26,11 @@ _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding i
 
 # The cell itself is handled apart; of each two opposite neighbouring cells one is listed.
 _FORWARD = np.array(
-    [(x, y, z) for z in (0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1) if (z, y, x) > (0, 0, 0)],
-    dtype=np.int64,
+    [(x, y, z) for z in (0, 1) for y in (-1, 0, 1) for x in (-1, 0, 1) if (z, y, x) > (0, 0, 0)], dtype=np.int64
 )
 
 
-@njit(cache=True)
+@kernel
 def _pad(q):
     x = np.zeros((q.shape[0], 3))
     for i in range(q.shape[0]):
@@ -40,7 +39,7 @@ def _pad(q):
     return x
 
 
-@njit(cache=True)
+@kernel
 def _fill_direct(x, r2, row, first, second):
     """Fill the block from `row` on; return (row to go on from, pairs found)."""
     n, capacity, count = x.shape[0], first.size, 0
@@ -55,7 +54,7 @@ def _fill_direct(x, r2, row, first, second):
     return row, count
 
 
-@njit(cache=True)
+@kernel
 def _sort_into_cells(x, side, size):
     """Counting sort by bucket: (order, sorted positions, sorted cells, bucket starts, strides)."""
     n = x.shape[0]
@@ -63,7 +62,8 @@ def _sort_into_cells(x, side, size):
     for i in range(n):
         for k in range(3):
             cells[i, k] = np.int64(np.floor(min(_CLAMP, max(-_CLAMP, x[i, k] / side))))
-    strides, total = np.ones(3, np.int64), 1.0
+    strides, total = np.empty(3, np.int64), 1.0
+    strides[:] = 1
     for k in range(3):  # row-major cell numbers keep neighbouring cells close in memory ...
         low, high = cells[0, k], cells[0, k]
         for i in range(n):
@@ -82,14 +82,14 @@ def _sort_into_cells(x, side, size):
     for b in range(size):
         start[b + 1] += start[b]
     fill = start[:-1].copy()
-    order = np.empty(n, np.int32)
+    order = np.empty(n, np.int64)
     for i in range(n):
         order[fill[bucket[i]]] = i
         fill[bucket[i]] += 1
     return order, x[order], cells[order], start, strides
 
 
-@njit(cache=True)
+@kernel
 def _fill_cells(placed, forward, r2, row, first, second):
     """As `_fill_direct`, over agents of `_sort_into_cells`; a row that does not fit whole waits for the next block."""
     order, x, cells, start, strides = placed
@@ -119,7 +119,7 @@ def _fill_cells(placed, forward, r2, row, first, second):
     return row, count
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _fill_grid(x, order, start, rows, r2, cell, row, first, second):
     """As `_fill_cells`, over agents sorted into a grid: (cell and row to go on from, pairs found)."""
     (n, m), capacity, count = x.shape, first.size, 0

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -17,7 +17,7 @@ _ONE = np.uint64(1)
 _TO_UNIT = 2.0**-51  # of whole numbers below 2⁵², and a half: to (0, 2)
 
 
-@njit(cache=True)
+@kernel
 def _absorb(state, word):
     z = state + _GOLDEN * (np.uint64(word) + _ONE)
     z = (z ^ (z >> _30)) * _FIRST
@@ -25,7 +25,7 @@ def _absorb(state, word):
     return z ^ (z >> _31)
 
 
-@njit(cache=True)
+@kernel
 def noise(seed, step, agent, partner, channel):
     """Return a number in (−1, 1) of uniform symmetric distribution over 2⁵² values, mean 0 and variance 1/3."""
     z = _absorb(_absorb(_absorb(_absorb(_absorb(np.uint64(0), seed), step), agent), partner), channel)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.alpha import adjacency_beta_slope, pair_beta, pair_beta_slope, psi_beta
 from flockana.kernels.bodies import BETA, C1, C2, REACH, STARTS, bodies_of
 from flockana.kernels.encounters import SLACK
@@ -19,7 +19,7 @@ from flockana.kernels.scalars import sigma_norm
 from flockana.kernels.shells import LOOKS, MARCHES, TOUCH, longest, out_of_reach, point_at, within_reach
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def forces(q, p, bodies, beta, reach, gains, u):
     """Add c1 φ_β n̂_ik + c2 b_ik (p̂_ik − p_i) to u_i for every obstacle in reach; return Σ b_ik ⟨p_i, p̂_ik − p_i⟩."""
     (pars, starts, balls), (c1, c2), total = bodies, gains, 0.0
@@ -43,7 +43,7 @@ def forces(q, p, bodies, beta, reach, gains, u):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def potential(q, bodies, beta, panels, reach):
     """Σ ψ_β."""
     (pars, starts, balls), total = bodies, 0.0
@@ -60,7 +60,7 @@ def potential(q, bodies, beta, panels, reach):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def agents(q, p, par, gap, rate, clearance):
     """Fill the arrays for one obstacle and every agent."""
     n, m = q.shape
@@ -73,7 +73,7 @@ def agents(q, p, par, gap, rate, clearance):
             gap[i, c], rate[i, c] = g[c], w[c]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def slopes(q, par, beta, reach, blocks):
     """Add the Hessian block of ψ_β of one obstacle to every agent's."""
     # ∇ψ_β = −w (q̂ − q), so its derivative along e_c is w (e_c − D e_c) + 2 w' (q̂ − q)_c (q̂ − q), D = dq̂/dq
@@ -91,7 +91,7 @@ def slopes(q, par, beta, reach, blocks):
             axis[c] = 0.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def braking(q, p, par, beta, reach, by_position, by_velocity):
     """Add the derivatives of b_ik (p̂_ik − p_i) of one obstacle to every agent's blocks."""
     # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
@@ -120,7 +120,7 @@ def _distance(q, par, room):
     return abs(project(q, room[0], par, room[1], room[2]))
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _visit(curve, edge, far, par, here, room):
     """Share of a step at which an agent that starts beyond `edge` is first well within it; 1 if it never is."""
     # The distance from an obstacle changes by no more than the way: so far beyond the edge may be gone safely.
@@ -150,13 +150,13 @@ def _visit(curve, edge, far, par, here, room):
     return 1.0 if s + SLACK * (stop - s) >= 1.0 or stop <= s else stop
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def share(points, allowance, bodies, shell, far, most):
+@kernel
+def guard(points, allowance, numbers, shell, far, most):
     """Return the share of the step, at most the one given, in which no agent leaps over an obstacle's surroundings.
 
     An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """
-    pars, starts, balls = bodies
+    pars, starts, balls = bodies_of(numbers)
     m = balls.shape[1] - 1
     here, room = np.empty(m), np.zeros((3, m))  # a place, and for the projection: rest, gap and rate
     begin, end = points[:, 0], points[:, 5]
@@ -184,21 +184,15 @@ def share(points, allowance, bodies, shell, far, most):
     return most
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act(t, x, v, u, numbers, panels, listed):
     """`forces` as a term of a law."""
     law, reach, gains = numbers[BETA:STARTS], numbers[REACH], (numbers[C1], numbers[C2])
     return gains[1] * forces(x + listed.frame[0], v + listed.frame[1], bodies_of(numbers), law, reach, gains, u)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def energy(t, x, v, numbers, panels, listed):
     """c1 Σ ψ_β."""
     seen = x + listed.frame[0]
     return numbers[C1] * potential(seen, bodies_of(numbers), numbers[BETA:STARTS], panels, numbers[REACH])
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard(points, allowance, numbers, shell, far, most):
-    """`share` as a term of a law."""
-    return share(points, allowance, bodies_of(numbers), shell, far, most)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.scalars import sigma_1 as function  # bound
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def over_array(z, parameters):
     """Evaluate function(z_k, *parameters) for every k."""
     out = np.empty(z.size)

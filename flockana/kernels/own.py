@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from math import cos, sin
 
-import numpy as np
-
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.sums import column_mean, column_squares
 
 _MOVING, _THRUST, _BRAKE = range(3)
 _OMEGA, _PATH = 1, 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _push_along(v, u, velocity, thrust, brake, moving, centre):
-    """`push_along`; `centre` is room for m numbers."""
-    (n, m), power = v.shape, 0.0
+@kernel
+def act_along(t, x, v, u, numbers, panels, listed):
+    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power."""
+    (n, m), velocity, centre, thrust, brake, power = (
+        v.shape, listed.frame[1], listed.room[0], numbers[_THRUST], numbers[_BRAKE], 0.0,
+    )  # fmt: skip
     for k in range(m):
-        centre[k] = column_mean(v, k) if moving else -velocity[k]
+        centre[k] = column_mean(v, k) if numbers[_MOVING] != 0.0 else -velocity[k]
     for i in range(n):
         square = 0.0
         for k in range(m):
@@ -39,35 +39,14 @@ def _push_along(v, u, velocity, thrust, brake, moving, centre):
     return power
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def push_along(v, u, velocity, thrust, brake, moving):
-    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power; `velocity` is that of the frame v is seen from."""
-    return _push_along(v, u, velocity, thrust, brake, moving, np.empty(v.shape[1]))
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def push_all(v, u, velocity, push, moving):
-    """Add one acceleration to all, and return its power: 0 in the moving frame."""
-    (n, m), power = v.shape, 0.0
-    for i in range(n):
-        for k in range(m):
-            u[i, k] += push[k]
-            power += push[k] * (v[i, k] + velocity[k])
-    return 0.0 if moving else power
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def act_along(t, x, v, u, numbers, panels, listed):
-    """`push_along` as a term of a law."""
-    moving, room = numbers[_MOVING] != 0.0, listed.room[0]
-    return _push_along(v, u, listed.frame[1], numbers[_THRUST], numbers[_BRAKE], moving, room)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act_all(t, x, v, u, numbers, panels, listed):
-    """`push_all` as a term of a law."""
-    m, omega = x.shape[1], numbers[_OMEGA]
-    path, push = numbers[_PATH : _PATH + 5 * m].reshape(5, m), listed.room[0]
+    """Add d²q_r/dt² of a path to all, and return its power: 0 in the moving frame."""
+    (n, m), omega, power = x.shape, numbers[_OMEGA], 0.0
+    path = numbers[_PATH : _PATH + 5 * m].reshape(5, m)
     for k in range(m):
-        push[k] = -omega * omega * (path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t))
-    return push_all(v, u, listed.frame[1], push, numbers[_MOVING] != 0.0)
+        push = -omega * omega * (path[2, k] * cos(omega * t) + path[3, k] * sin(omega * t))
+        for i in range(n):
+            u[i, k] += push
+            power += push * (v[i, k] + listed.frame[1, k])
+    return 0.0 if numbers[_MOVING] != 0.0 else power

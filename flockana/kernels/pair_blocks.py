@@ -4,38 +4,31 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
+from flockana.kernels.sums import square_between
 
 NORMED = True  # bound
 
 
-@register_jitable
-def _square(q, i, j):
-    s2 = 0.0
-    for c in range(q.shape[1]):
-        s2 += (q[j, c] - q[i, c]) ** 2
-    return s2
-
-
-@njit(cache=True, error_model="numpy")
+@kernel
 def energy(q, i, j, par, panels):
     """Σ ψ over the block."""
     total = 0.0
     for k in range(i.size):
-        total += potential(_square(q, i[k], j[k]), par, panels)
+        total += potential(square_between(q, i[k], j[k]), par, panels)
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def terms(q, i, j, par):
     """Per pair the weight w, the adjacency a and dw/d(s²), shape (3, L)."""
     out = np.empty((3, i.size))
     for k in range(i.size):
-        s2 = _square(q, i[k], j[k])
+        s2 = square_between(q, i[k], j[k])
         if NORMED:
             z, root = norm(s2, par)
             out[0, k], out[1, k] = pair(z, root, par)

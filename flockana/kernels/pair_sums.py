@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import inlined, kernel, register_jitable
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
@@ -23,7 +23,7 @@ M = 2  # bound
 NORMED = True  # bound
 
 
-@register_jitable
+@inlined
 def _law(count, s2, w, a, par, c1):
     """The law of a block of pairs, w and a, from their squared distances.
 
@@ -83,7 +83,7 @@ def _gather(x, limit, first, second, begin, end, near, s2):
     return count
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act(t, x, v, u, numbers, panels, listed):
     """Add the forces of the listed pairs to u and return their power."""
     total, gains, r = 0.0, (numbers[0], numbers[1]), numbers[2]
@@ -96,7 +96,7 @@ def act(t, x, v, u, numbers, panels, listed):
     return -gains[1] * total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def energy(t, x, v, numbers, panels, listed):
     """c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
     total, r, par, pairs = 0.0, numbers[2], numbers[4:], 0
@@ -113,7 +113,7 @@ def energy(t, x, v, numbers, panels, listed):
     return numbers[0] * (total + beyond * numbers[3] if beyond > 0 else total)  # it may be infinite there
 
 
-@njit(error_model="numpy")
+@inlined
 def _sweep(start, rows, flock, r2, par, gains, pairs, room):
     """The forces of a flock (q, p, u) sorted into a grid."""
     (x, v, forced), (first, second), s2 = flock, pairs, room[0]
@@ -140,7 +140,7 @@ def _sweep(start, rows, flock, r2, par, gains, pairs, room):
     return total + _add(count, pairs, room, x, v, forced, par, gains)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def forces(q, p, r, numbers, c1, c2, u, room):
     """Add c1 w (q_j − q_i) + c2 a (p_j − p_i) to u_i and its opposite to u_j, over all pairs within r.
 
@@ -164,17 +164,20 @@ def forces(q, p, r, numbers, c1, c2, u, room):
     return True, total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def forces_of(q, p, first, second, numbers, c1, c2, u):
     """As `forces`, over pairs that are within range; return the sum."""
     total, par = 0.0, as_tuple(numbers)
-    room = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    s2 = room[0]
+    room, pairs = (
+        (np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)),
+        (np.empty(BLOCK, np.uint64), np.empty(BLOCK, np.uint64)),
+    )
     for begin in range(0, first.size, BLOCK):
-        i, j = first[begin : begin + BLOCK], second[begin : begin + BLOCK]
-        for k in range(i.size):
-            s2[k] = 0.0
+        count = min(BLOCK, first.size - begin)
+        for k in range(count):
+            i, j, s2 = np.uint64(first[begin + k]), np.uint64(second[begin + k]), 0.0
             for c in range(M):
-                s2[k] += (q[j[k], c] - q[i[k], c]) ** 2
-        total += _add(i.size, (i, j), room, q, p, u, par, (c1, c2))
+                s2 += (q[j, c] - q[i, c]) ** 2
+            room[0][k], pairs[0][k], pairs[1][k] = s2, i, j
+        total += _add(count, pairs, room, q, p, u, par, (c1, c2))
     return total

@@ -16,14 +16,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import inlined, kernel, register_jitable
 from flockana.kernels.sums import put
 
 ALLOWED = 0.35  # of ‖L2‖ + ‖L3‖: the largest quotient of a single truncated power is 0.3453
 _DEPTH = 48  # halvings of an interval: below rounding of the time itself
 
 
-@njit(cache=True)
+@inlined
 def _norm(x):
     return np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])
 
@@ -34,7 +34,7 @@ def polygon(a, b, out, back, bend0, bend1):
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
-@njit(cache=True)
+@kernel
 def quintic(h, a, p0, u0, b, p1, u1, out):
     """The control points of one agent's quintic from a to b into `out`, (6, 3), and its error allowance."""
     off2, off3 = 0.0, 0.0
@@ -48,7 +48,7 @@ def quintic(h, a, p0, u0, b, p1, u1, out):
     return ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
 
 
-@njit(cache=True)
+@kernel
 def bernstein(h, q0, p0, u0, q1, p1, u1):
     """Bernstein control points (n, 6, 3) of every agent's quintic, its reach (n,) and its error allowance (n,).
 
@@ -63,7 +63,7 @@ def bernstein(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True)
+@kernel
 def reach_of(c):
     """Return the largest distance of a curve's control points (6, 3) from the first: a bound for the curve."""
     s2 = 0.0
@@ -72,7 +72,7 @@ def reach_of(c):
     return np.sqrt(s2)
 
 
-@njit(cache=True)
+@kernel
 def centred(points, allowance):
     """Take the flock's common drift out of the control points, in place, and return the reaches that are left.
 
@@ -92,7 +92,7 @@ def centred(points, allowance):
     return reach
 
 
-@njit(cache=True)
+@kernel
 def control_points(h, q0, p0, u0, q1, p1, u1):
     """`bernstein` without the flock's common drift."""
     points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
@@ -100,7 +100,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
     return points, reach, allowance
 
 
-@njit(cache=True)
+@kernel
 def _start(points, reach, i, j, stop, stack):
     """Load the pair's relative curve into the stack, unless its ends already rule out a distance below stop."""
     s2 = 0.0
@@ -114,7 +114,7 @@ def _start(points, reach, i, j, stop, stack):
     return True
 
 
-@njit(cache=True)
+@kernel
 def _hull_bound(c):
     """A lower bound of the curve's distance to 0: its control points projected on their mean direction."""
     axis0, axis1, axis2 = 0.0, 0.0, 0.0
@@ -129,7 +129,7 @@ def _hull_bound(c):
     return bound
 
 
-@njit(cache=True)
+@kernel
 def _halve(stack, spans, top):
     """De Casteljau: the left half of the curve stack[top] goes on top of it, the right half remains in place."""
     c, left, right = stack[top], spans[top, 0], spans[top, 1]
@@ -143,7 +143,7 @@ def _halve(stack, spans, top):
     spans[top + 1, 0], spans[top + 1, 1] = left, middle
 
 
-@njit(cache=True)
+@kernel
 def _least_distance(stack, spans, stop, tol):
     """(lower bound, distance, parameter) of the curve stack[0]: its closest point to 0 is within tol of both.
 
@@ -152,7 +152,7 @@ def _least_distance(stack, spans, stop, tol):
     """
     proven, best, where = stop, stop, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
-    top = 0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
@@ -169,11 +169,11 @@ def _least_distance(stack, spans, stop, tol):
     return proven, best, where
 
 
-@njit(cache=True)
+@kernel
 def _first_touch(stack, spans, tol):
     """The first parameter at which the curve stack[0] is within tol of 0, -1 if it never is (work space as above)."""
     spans[0, 0], spans[0, 1] = 0.0, 1.0
-    top = 0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         left, right = spans[top, 0], spans[top, 1]
         if _norm(stack[top, 0]) < tol:
@@ -188,7 +188,7 @@ def _first_touch(stack, spans, tol):
     return -1.0
 
 
-@njit(cache=True)
+@kernel
 def closest_pair(points, reach, allowance, first, second, stop, tol):
     """Over the pairs given: (lower bound, distance reached, parameter, i, j); i = -1 if none comes below `stop`.
 
@@ -214,7 +214,7 @@ def closest_pair(points, reach, allowance, first, second, stop, tol):
     return lower, reached, where, a, b
 
 
-@njit(cache=True)
+@kernel
 def closest_of_few(t, states, slack, stops, tols):
     """Return `closest_pair` over all pairs of a small flock in each interval, five arrays; skip those with stop 0.
 
@@ -240,7 +240,7 @@ def closest_of_few(t, states, slack, stops, tols):
     return lower, reached, where, a, b
 
 
-@njit(cache=True)
+@kernel
 def touching_pairs(points, reach, first, second, tol, out):
     """Mark in `out` the first parameter at which each pair's quintics are within tol of each other, -1 if never."""
     stack, spans = np.empty((_DEPTH + 2, 6, 3)), np.empty((_DEPTH + 2, 2))
@@ -251,12 +251,12 @@ def touching_pairs(points, reach, first, second, tol, out):
         out[k] = _first_touch(stack, spans, tol)
 
 
-@njit(cache=True)
+@kernel
 def _largest_distance(stack, spans, enough, tol):
     """(upper bound, parameter) of how far the curve stack[0] gets from 0: within tol, or no more than `enough`."""
     proven, best, where = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
-    top = 0
+    top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more
     while top >= 0:
         c, left, right = stack[top], spans[top, 0], spans[top, 1]
         for end in (0, 5):
@@ -275,7 +275,7 @@ def _largest_distance(stack, spans, enough, tol):
     return proven, where
 
 
-@njit(cache=True)
+@kernel
 def farthest(points, allowance, floor, tol):
     """(upper bound, agent, parameter) of how far any agent gets from the centre of all; `floor` is known to be reached.
 
@@ -302,7 +302,7 @@ def farthest(points, allowance, floor, tol):
     return upper, agent, at
 
 
-@njit(cache=True)
+@kernel
 def farthest_in_turn(t, states, slack, floors, tols):
     """Return the upper bound of `farthest` in each interval; arguments as of `closest_of_few`."""
     (q, p, u), upper = states, np.empty(len(t) - 1)

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import inlined, kernel
 from flockana.kernels.encounters import pair_room, relative_curve
 from flockana.kernels.paths import _largest_distance, _least_distance, quintic
 
 _NEAR = 1e-3  # of the way to a pole that is left where a step begins: a path that comes so near has not resolved it
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _stage_crosses(curve, edge, inward):
     """Whether a pair at a stage of a Runge-Kutta step, halfway or at its end, is beyond a distance."""
     for stage in range(3):
@@ -32,7 +32,7 @@ def _stage_crosses(curve, edge, inward):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@inlined
 def _crosses(room, pole, toward):
     """Whether a pair's path goes the share `toward` of its way to the pole, from the side on which it begins."""
     stack = room.stack
@@ -47,7 +47,7 @@ def _crosses(room, pole, toward):
     return _least_distance(stack, room.spans, begin, left)[0] <= edge
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def crossing_listed(ends, ways, poles, toward, first, second):
     """Whether a listed pair crosses a pole in a step; `ways` are (steepest slope, longest way beside it) of all."""
     h, q0, p0, u0, q1, p1, u1 = ends

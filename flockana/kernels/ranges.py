@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.paths import control_points
+from flockana.kernels.sums import square_between
 
 NEVER, UNSURE, ENTERS = 0, 1, 2
 _DEPTH = 30  # halvings of an interval: a visit that is shorter is left open
@@ -19,7 +20,7 @@ _CHOOSE = np.array([1.0, 5.0, 10.0, 10.0, 5.0, 1.0])
 _CHOOSE_10 = np.array([1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0, 10.0, 1.0])
 
 
-@njit(cache=True)
+@kernel
 def _squared(points, i, j, r, out):
     """Bernstein coefficients of ρ² - r² of two quintics."""
     for k in range(11):
@@ -34,7 +35,7 @@ def _squared(points, i, j, r, out):
         out[k] -= r * r
 
 
-@njit(cache=True)
+@kernel
 def _halve(stack, top):
     """The left half of the polynomial stack[top] goes on top of it, the right half remains in place."""
     c = stack[top]
@@ -44,7 +45,7 @@ def _halve(stack, top):
             c[k] = 0.5 * (c[k] + c[k + 1])
 
 
-@njit(cache=True)
+@kernel
 def _slopes(c):
     """Least and largest difference of neighbouring coefficients: a tenth of the slope over the piece."""
     least, most = np.inf, -np.inf
@@ -53,7 +54,7 @@ def _slopes(c):
     return least, most
 
 
-@njit(cache=True)
+@kernel
 def _follow(stack, widths, band, slope_band, was_out):
     """(was out of range, what is known of entries) along stack[0], known to `band`, its slope to `slope_band`."""
     known = NEVER
@@ -85,7 +86,7 @@ def _follow(stack, widths, band, slope_band, was_out):
     return was_out, known
 
 
-@njit(cache=True)
+@kernel
 def follow_pairs(h, start, end, r, noise, was_out, unsure):
     """Go on by one interval with every pair: the first that comes into range for certain, or (-1, -1).
 
@@ -122,17 +123,14 @@ def follow_pairs(h, start, end, r, noise, was_out, unsure):
     return -1, -1
 
 
-@njit(cache=True)
+@kernel
 def follow_steps(q, r, noise, was_out, unsure):
     """As `follow_pairs` for one state of a map: the first pair that was out of range and is in it, or (-1, -1)."""
-    n, m = q.shape
-    k = -1
+    n, k = len(q), -1
     for i in range(n):
         for j in range(i + 1, n):
             k += 1
-            s2 = 0.0
-            for c in range(m):
-                s2 += (q[j, c] - q[i, c]) ** 2
+            s2 = square_between(q, i, j)
             s = np.sqrt(s2)
             if s > r + noise:
                 was_out[k] = True

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import inlined, kernel
 from flockana.kernels.sums import column_squares, squared_deviations
 from flockana.kernels.verlet import covers
 
@@ -62,7 +62,7 @@ class System(NamedTuple):
 _STRIP = 1024  # components at once: what is summed over the stages stays in the first-level cache
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def combine(y, h, weights, rates, rows, count, out):
     """y + h Σ weights_j K_j over the first `count` stages."""
     for begin in range(0, y.size, _STRIP):
@@ -79,7 +79,7 @@ def combine(y, h, weights, rates, rows, count, out):
             total[k] = start[k] + h * total[k]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def frame_at(t, view, frame):
     """Write place and velocity of the frame that the vectors are seen from."""
     start, origin, drift = view
@@ -87,28 +87,14 @@ def frame_at(t, view, frame):
         frame[0, c], frame[1, c] = origin[c] + drift[c] * (t - start), drift[c]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def rate_of(t, y, f, system, pairs):
-    """Write the rate of the vector y into f; returns the pairs, listed anew if need be."""
-    pairs = _kept_up(y, system, pairs)
-    _act(t, y, f, system, pairs)
-    return pairs
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _kept_up(y, system, pairs):
-    """Return the list while it holds every pair within reach, else a new one."""
-    (reach, skin), n, m = system.reach, system.order.size, system.frame.shape[1]
-    q = y[: n * m].reshape(n, m)
-    return system.listed(q, reach + skin, pairs) if reach > 0.0 and not covers(pairs, q, reach) else pairs
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _act(t, y, f, system, pairs):
-    """Write the rate of y to f, for listed pairs."""
-    n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
+    """Write the rate of the vector y into f; return the pairs, listed anew unless the list holds all within reach."""
+    n, m, law, frame, (reach, skin) = system.order.size, system.frame.shape[1], system.law, system.frame, system.reach
     size = n * m
     x, v, u = y[:size].reshape(n, m), y[size : 2 * size].reshape(n, m), f[size : 2 * size].reshape(n, m)
+    if reach > 0.0 and not covers(pairs, x, reach):
+        pairs = system.listed(x, reach + skin, pairs)
     frame_at(t, system.seen_from, frame)
     for k in range(size):
         f[k], f[size + k] = y[size + k], 0.0
@@ -116,9 +102,10 @@ def _act(t, y, f, system, pairs):
         t, x, v, u, frame, law.numbers, law.panels, law.starts, pairs.first, pairs.second, pairs.count, system.order,
         system.near, system.room,
     )  # fmt: skip
+    return pairs
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def energy_of(t, y, system, pairs):
     """H of a vector whose pairs are listed: potential energies, and the kinetic one in the law's frame."""
     n, m, law, frame = system.order.size, system.frame.shape[1], system.law, system.frame
@@ -135,95 +122,75 @@ def energy_of(t, y, system, pairs):
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _stages(step, method, begin, end, system, pairs):
-    """Compute stages up to `end`, or to one for which the list is outdated; return which, not yet evaluated."""
-    reach, n, m = system.reach[0], system.order.size, system.frame.shape[1]
+@kernel
+def stages_of(step, method, begin, end, system, pairs):
+    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
         into = step.reached if s == method.stages else step.trial
         combine(step.y, step.h, method.a[s], rates, rows, s, into)
-        if reach > 0.0 and not covers(pairs, into[: n * m].reshape(n, m), reach):
-            return s
-        _act(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
-    return end
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def stages_of(step, method, begin, end, system, pairs):
-    """Stages `begin` to `end` of a step; `reached` is its end once the last stage of the step itself is through."""
-    s = _stages(step, method, begin, end, system, pairs)
-    while s < end:
-        into, rate = step.reached if s == method.stages else step.trial, step.rates[method.rows[s]]
-        pairs = rate_of(step.t + method.c[s] * step.h, into, rate, system, pairs)
-        s = _stages(step, method, s + 1, end, system, pairs)
+        pairs = rate_of(step.t + method.c[s] * step.h, into, rates[rows[s]], system, pairs)
     return pairs
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def interpolated(theta, step, method):
     """Write the vector at a share θ of the step into its room."""
     interpolant = method.interpolant
     count, powers = interpolant.shape
-    weights = np.zeros(count)
+    weights = np.empty(count)
     for j in range(count):
+        weights[j] = 0.0
         for k in range(powers - 1, -1, -1):
             weights[j] = (weights[j] + interpolant[j, k]) * theta
     combine(step.y, step.h, weights, step.rates, method.rows, count, step.trial)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def allowed(k, size, floor):
+@inlined
+def _allowed(k, size, floor):
     """Return the absolute tolerance of component k: a position, a velocity, or the work."""
     return floor[0] if k < size else (floor[1] if k < 2 * size else floor[2])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _estimate(weights, step, method):
-    """The sum of squares of one estimate of a step's error over what is allowed; the step's room is written to."""
-    total, y, reached, strip = 0.0, step.y, step.reached, step.trial
-    for begin in range(0, y.size, _STRIP):
-        end = min(begin + _STRIP, y.size)
-        for k in range(end - begin):
-            strip[k] = 0.0
-        for j in range(weights.size):
-            if weights[j] != 0.0:
-                rate, weight = step.rates[method.rows[j], begin:end], weights[j]
-                for k in range(end - begin):
-                    strip[k] += weight * rate[k]
-        for k in range(begin, end):
-            scale = allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(reached[k])) * method.rtol
-            total += (strip[k - begin] / scale) ** 2
-    return total
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def error_of(step, method):
-    """The estimated error of a step over what is allowed, as scipy's solvers weigh it."""
-    h, size = abs(step.h), step.y.size
-    square = _estimate(method.estimates[0], step, method)
-    if method.estimates.shape[0] == 1:
-        return h * sqrt(square / size)
-    other = _estimate(method.estimates[1], step, method)
-    if square == 0.0 and other == 0.0:
-        return 0.0
-    return h * square / sqrt((square + 0.01 * other) * size)
+    """The estimated error of a step over what is allowed, as scipy's solvers weigh it, by means of its room."""
+    h, y, reached, strip, square, other = abs(step.h), step.y, step.reached, step.trial, 0.0, 0.0
+    for estimate in range(len(method.estimates)):
+        weights, square, other = method.estimates[estimate], 0.0, square
+        for begin in range(0, y.size, _STRIP):
+            end = min(begin + _STRIP, y.size)
+            for k in range(end - begin):
+                strip[k] = 0.0
+            for j in range(weights.size):
+                if weights[j] != 0.0:
+                    rate, weight = step.rates[method.rows[j], begin:end], weights[j]
+                    for k in range(end - begin):
+                        strip[k] += weight * rate[k]
+            for k in range(begin, end):
+                scale = _allowed(k, y.size // 2, method.floor) + max(abs(y[k]), abs(reached[k])) * method.rtol
+                square += (strip[k - begin] / scale) ** 2
+    if len(method.estimates) == 1:
+        return h * sqrt(square / y.size)
+    fifth, third = other, square  # the orders of DOP853's two estimates
+    return h * fifth / sqrt((fifth + 0.01 * third) * y.size) if fifth != 0.0 or third != 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _weighed(a, b, y, method):
     """The root mean square of a − b over what is allowed."""
     total = 0.0
     for k in range(y.size):
-        total += ((a[k] - b[k]) / (allowed(k, y.size // 2, method.floor) + abs(y[k]) * method.rtol)) ** 2
+        total += ((a[k] - b[k]) / (_allowed(k, y.size // 2, method.floor) + abs(y[k]) * method.rtol)) ** 2
     return sqrt(total / y.size)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def first_step(span, step, method, system, pairs):
     """(first step, pairs), as scipy's solvers choose it; the second rate is overwritten."""
     y, rates, trial = step.y, step.rates, step.trial
-    rest = np.zeros(y.size)
+    rest = np.empty(y.size)
+    rest[:] = 0.0
     d0, d1 = _weighed(y, rest, y, method), _weighed(rates[0], rest, y, method)
     ahead = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, span)
     for k in range(y.size):
@@ -231,4 +198,4 @@ def first_step(span, step, method, system, pairs):
     pairs = rate_of(step.t + ahead, trial, rates[1], system, pairs)
     d2 = _weighed(rates[1], rates[0], y, method) / ahead
     h = max(1e-6, ahead * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -method.exponent
-    return min(100.0 * ahead, h, span), pairs
+    return min(min(100.0 * ahead, h), span), pairs

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 UNSURE = 2
 _TURN = 3.5 * 2.0**-53  # Shewchuk's bounds are (3 + 16u)u and (7 + 56u)u; the rest is slack for subnormal products
@@ -17,7 +17,7 @@ _DOT = 8.0 * 2.0**-53
 _TINY = 1e-280  # below, products may have underflowed
 
 
-@njit(cache=True)
+@kernel
 def turn(a0, a1, b0, b1, c0, c1):
     """Sign of the turn a → b → c in the plane: 1 left, −1 right, 0 none, UNSURE.
 
@@ -36,7 +36,7 @@ def turn(a0, a1, b0, b1, c0, c1):
     return UNSURE
 
 
-@njit(cache=True)
+@kernel
 def _volume(a, b, c, d):
     """Return the sign of the volume of a tetrahedron abcd: 1, −1 or 0, or UNSURE within rounding."""
     u, v, w = a - d, b - d, c - d
@@ -53,7 +53,7 @@ def _volume(a, b, c, d):
     return UNSURE
 
 
-@njit(cache=True)
+@kernel
 def meet(c, d, a, b):
     """Whether two closed segments with overlapping boxes meet in the plane: 1, 0 or UNSURE.
 
@@ -69,7 +69,7 @@ def meet(c, d, a, b):
     return 1  # each line is met by the other segment; four points on one line have overlapping boxes
 
 
-@njit(cache=True)
+@kernel
 def _overlap(a, b, c, planes):
     """Whether the links a–b and a–c of one agent share more than it: they run the same way."""
     unsure = False
@@ -90,7 +90,7 @@ def _overlap(a, b, c, planes):
     return 1 if not unsure and size > _TINY and dot > _DOT * size else UNSURE
 
 
-@njit(cache=True)
+@kernel
 def cross(x, i, j, g, h, planes):
     """Whether the links i–j and g–h cross: 1, 0 or UNSURE.
 
@@ -129,7 +129,7 @@ def cross(x, i, j, g, h, planes):
     return answer
 
 
-@njit(cache=True)
+@kernel
 def foot(p, a, b):
     """Distance of a point from a segment.
 
@@ -149,7 +149,7 @@ def foot(p, a, b):
     return np.sqrt(far)
 
 
-@njit(cache=True)
+@kernel
 def between(a, b, c, d):
     """Distance of two segments that do not cross: at an end of one, or along their common normal.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 
 MARCHES = 60  # towards an obstacle, each as far as it is away
 TOUCH = 1e-6  # of the range: so near counts as in range
@@ -38,7 +38,7 @@ def within_reach(q, balls, k, reach, s2, near):
     return count
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def point_at(curve, s, out):
     """Write the point of a Bézier curve (degree + 1, 3) at s into the first components of `out`."""
     degree, b = len(curve) - 1, np.empty(len(curve))
@@ -51,7 +51,7 @@ def point_at(curve, s, out):
         out[c] = b[0]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def longest(vectors):
     """The largest length of some vectors."""
     s2 = 0.0

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import inlined, kernel
 
 _SAMPLE = 256  # agents that suffice to estimate the slope
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
+def square_between(q, i, j):
+    """‖q_j − q_i‖²."""
+    total = 0.0
+    for c in range(q.shape[1]):
+        total += (q[j, c] - q[i, c]) ** 2
+    return total
+
+
+@kernel
 def finite(x):
     """Whether all numbers of an array are finite."""
     known = True
@@ -18,7 +27,7 @@ def finite(x):
     return known
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def column_mean(x, c):
     """The mean over agents of coordinate c."""
     n = x.shape[0]
@@ -30,7 +39,7 @@ def column_mean(x, c):
     return ((a + b) + (d + e)) / n
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def column_squares(x, c, centre):
     """Σ_i (x_ic − centre)²."""
     n = x.shape[0]
@@ -43,7 +52,7 @@ def column_squares(x, c, centre):
     return (a + b) + (d + e)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def squared_deviations(x):
     """Σ_i ‖x_i − mean‖²."""
     total = 0.0
@@ -52,7 +61,7 @@ def squared_deviations(x):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def slope_along(x, y, c, flat):
     """By how much y_ic grows with x_ic, by least squares over some hundred agents; `flat` where that is no number."""
     n, stride = x.shape[0], x.shape[0] // _SAMPLE + 1
@@ -67,7 +76,7 @@ def slope_along(x, y, c, flat):
     return slope if np.isfinite(slope) else flat
 
 
-@register_jitable
+@inlined
 def _pull_to(u, x, v, place, velocity, c1, c2, m):
     for c in range(m):
         x_c, v_c = place[c], velocity[c]
@@ -75,7 +84,7 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
             u[i, c] -= c1 * (x[i, c] - x_c) + c2 * (v[i, c] - v_c)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def pull_to(u, x, v, place, velocity, c1, c2):
     """u −= c1 (x − place) + c2 (v − velocity)."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
@@ -84,7 +93,7 @@ def pull_to(u, x, v, place, velocity, c1, c2):
         _pull_to(u, x, v, place, velocity, c1, c2, x.shape[1])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def put(values, into):
     """Write an array to the front of another; both are contiguous.
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flockana.jit import callback_like, njit, register_jitable
+from flockana.jit import callback_like, inlined, kernel
 from flockana.kernels.grid import sort_into_grid
 from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
 from flockana.kernels.sums import put, slope_along
@@ -36,14 +36,13 @@ SKIN = 0.15  # of the range: what a list holds beyond it, so that it lasts some 
 MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def spatial_order(q, side):
+def spatial_order(q: Any, side: float) -> Any:
     """An order of the agents in which those in one cell follow each other; as they come where the box is too sparse."""
     order, start, _ = sort_into_grid(q, side)
-    return order if start.size else np.arange(q.shape[0]).astype(np.uint64)
+    return order if start.size else np.arange(len(q), dtype=np.uint64)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def _grown(first, second, needed):
     """Return the same pairs with room for at least `needed`, and twice as many as before."""
     room = max(np.int64(needed), 2 * first.size)
@@ -53,7 +52,7 @@ def _grown(first, second, needed):
     return more_first, more_second
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@inlined
 def _list_by_grid(q, reach, order, start, rows, first, second):
     """Return the pairs of a flock sorted into a grid: cell by cell, each agent with those after it."""
     m = q.shape[1]
@@ -90,7 +89,7 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
     return first, second, count
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def list_pairs(q, reach, first, second):
     """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
 
@@ -102,8 +101,7 @@ def list_pairs(q, reach, first, second):
     order, start, rows = sort_into_grid(q, reach)
     if start.size:
         return _list_by_grid(q, reach, order, start, rows, first, second)
-    x, limit, row, count = _pad(q), max(reach * reach, 5e-324), 0, 0
-    size = 1
+    x, limit, row, count, size = _pad(q), max(reach * reach, 5e-324), np.int64(0), 0, 1  # row typed, as in `advance`
     while size < 4 * n:
         size *= 2
     forward = _FORWARD[: (1, 4, 13)[m - 1]]
@@ -118,58 +116,35 @@ def list_pairs(q, reach, first, second):
         first, second = _grown(first, second, count + n)
 
 
-@register_jitable
-def _widened(low, high, way):
-    return way if way < low else low, way if way > high else high
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _spreads(q, reference, c, d, along_c, along_d):
-    """Return the widths of the agents' displacements in coordinates c and d, a stretch of each taken out."""
-    low_c = high_c = q[0, c] - along_c * reference[0, c]
-    low_d = high_d = q[0, d] - along_d * reference[0, d]
-    for i in range(1, q.shape[0]):
-        low_c, high_c = _widened(low_c, high_c, q[i, c] - along_c * reference[i, c])
-        low_d, high_d = _widened(low_d, high_d, q[i, d] - along_d * reference[i, d])
-    return high_c - low_c, high_d - low_d
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _diagonal(q, reference, stretched):
-    """Return (diagonal of the box of all displacements, least stretch), without the stretch itself if `stretched`."""
-    m, square, least = q.shape[1], 0.0, np.inf
-    for c in range(0, m, 2):
-        d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
-        if stretched:
-            along_c, along_d = slope_along(reference, q, c, 1.0), slope_along(reference, q, d, 1.0)
-        spread_c, spread_d = _spreads(q, reference, c, d, along_c, along_d)
-        square += spread_c**2 + (spread_d**2 if d > c else 0.0)
-        least = min(least, min(along_c, along_d))
-    return np.sqrt(square), least
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def holds(q, within, made, reference):
-    """Whether a list of pairs closer than `made` at `reference` still holds all pairs closer than `within`.
+@kernel
+def covers(pairs, q, within):
+    """Whether a list still holds every pair that is closer than `within`.
 
     A motion that all share brings no two nearer, and one that stretches each coordinate by a factor brings them nearer
     by the least of these factors: the ways are seen beside it, and differ by no more than the diagonal of their box.
     Only where the first does not do is the second asked: a flock drawn together by its target.
     """
-    diagonal, _ = _diagonal(q, reference, False)
-    if diagonal <= made - within:
-        return True
-    diagonal, least = _diagonal(q, reference, True)
-    return diagonal <= least * made - within
+    reference, m = pairs.places, q.shape[1]
+    for stretched in range(2 if reference.size > 0 else 0):
+        square, least = 0.0, np.inf
+        for c in range(0, m, 2):  # two coordinates at once: they lie side by side
+            d, along_c, along_d = min(c + 1, m - 1), 1.0, 1.0
+            if stretched:
+                along_c, along_d = slope_along(reference, q, c, 1.0), slope_along(reference, q, d, 1.0)
+            low_c = high_c = q[0, c] - along_c * reference[0, c]
+            low_d = high_d = q[0, d] - along_d * reference[0, d]
+            for i in range(1, q.shape[0]):
+                way_c, way_d = q[i, c] - along_c * reference[i, c], q[i, d] - along_d * reference[i, d]
+                low_c, high_c = way_c if way_c < low_c else low_c, way_c if way_c > high_c else high_c
+                low_d, high_d = way_d if way_d < low_d else low_d, way_d if way_d > high_d else high_d
+            square += (high_c - low_c) ** 2 + ((high_d - low_d) ** 2 if d > c else 0.0)
+            least = min(least, min(along_c, along_d))
+        if np.sqrt(square) <= least * pairs.reach - within:
+            return True
+    return False
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def covers(pairs, q, within):
-    """Whether a list holds every pair that is closer than `within` now."""
-    return pairs.places.size > 0 and holds(q, within, pairs.reach, pairs.places)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def listed_anew(q, reach, pairs):
     """Return a new list of pairs, stored in the arrays of an old one."""
     first, second, count = list_pairs(q, reach, pairs.first, pairs.second)

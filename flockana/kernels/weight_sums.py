@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import njit, register_jitable
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.alignment import rational as weight  # bound
 
 
@@ -28,7 +28,7 @@ def _exchange(i, j, x, v, gain, r2, par, u):
     return a * slip2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def match(x, v, gain, r2, par, u):
     """Add gain Σ a (v_j − v_i) over the pairs nearer than √r2; return the dissipation Σ a ‖v_j − v_i‖²."""
     total = 0.0
@@ -38,7 +38,7 @@ def match(x, v, gain, r2, par, u):
     return total
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def act(t, x, v, u, numbers, panels, listed):
     """`match` as a term of a law, over all pairs or those of the list."""
     gain, r2, par = numbers[0], numbers[2] * numbers[2], numbers[3:]

@@ -6,26 +6,25 @@ from math import sqrt
 
 import numpy as np
 
-from flockana.jit import njit
+from flockana.jit import kernel
 from flockana.kernels.candidates import gather, sort_into_cells
+from flockana.kernels.sums import square_between
 
 
-@njit(cache=True)
+@kernel
 def _count_neighbours(q, r, c, a, cells, near, shares):
     """Add to (3,) shares how many agents are in the zones of repulsion, conflict and attraction of one, on average."""
-    n, m = q.shape
+    n = len(q)
     for i in range(n):
         for j in near[: gather(i, q, a[i], cells, near)]:
-            d2 = 0.0
-            for k in range(m):
-                d2 += (q[j, k] - q[i, k]) ** 2
+            d2 = square_between(q, i, j)
             d = sqrt(d2)
             if j == i or d > a[i]:
                 continue
             shares[0 if d <= r[i] else 1 if d <= c[i] else 2] += 1.0 / n
 
 
-@njit(cache=True)
+@kernel
 def populations(q, r, c, a):
     """Mean number of agents in the zones of repulsion, conflict and attraction of an agent, (T, n, m) -> (T, 3)."""
     shares, near = np.zeros((q.shape[0], 3)), np.empty(q.shape[1], np.int64)
@@ -34,10 +33,10 @@ def populations(q, r, c, a):
     return shares
 
 
-@njit(cache=True)
+@kernel
 def _count_fragments(q, a, reach, cells, near, seen, stack):
     """(components, agents in the largest); `seen` and `stack` are room."""
-    (n, m), components, largest = q.shape, 0, 0
+    n, components, largest = len(q), 0, 0
     for i in range(n):
         seen[i] = False
     for root in range(n):
@@ -49,9 +48,7 @@ def _count_fragments(q, a, reach, cells, near, seen, stack):
             i = stack[waiting]
             size += 1
             for j in near[: gather(i, q, reach, cells, near)]:
-                d2 = 0.0
-                for k in range(m):
-                    d2 += (q[j, k] - q[i, k]) ** 2
+                d2 = square_between(q, i, j)
                 if not seen[j] and sqrt(d2) <= max(a[i], a[j]):
                     seen[j], stack[waiting] = True, j
                     waiting += 1
@@ -60,7 +57,7 @@ def _count_fragments(q, a, reach, cells, near, seen, stack):
     return components, largest
 
 
-@njit(cache=True)
+@kernel
 def fragments(q, a):
     """(components, agents in the largest) over time, (T, 2); two agents are linked if one attracts the other."""
     steps, n, _ = q.shape

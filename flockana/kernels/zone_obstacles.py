@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from flockana.jit import njit
+from flockana.jit import kernel
 
 
-@njit(cache=True)
+@kernel
 def _cross(ax, ay, bx, by, x, y):
     return (bx - ax) * (y - ay) - (by - ay) * (x - ax)
 
 
-@njit(cache=True)
+@kernel
 def _between(ax, ay, bx, by, x, y):
     return min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)
 
 
-@njit(cache=True)
+@kernel
 def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     """Whether two closed segments of the plane share a point; touching counts."""
     o1, o2 = _cross(ax, ay, bx, by, cx, cy), _cross(ax, ay, bx, by, dx, dy)
@@ -38,7 +38,7 @@ def segments_meet(ax, ay, bx, by, cx, cy, dx, dy):
     return o4 == 0.0 and _between(cx, cy, dx, dy, bx, by)
 
 
-@njit(cache=True)
+@kernel
 def to_segment(x, y, ax, ay, bx, by):
     """Vector from a point to the closest point of a segment, which may be a point."""
     sx, sy = bx - ax, by - ay
@@ -49,7 +49,7 @@ def to_segment(x, y, ax, ay, bx, by):
     return ax + share * sx - x, ay + share * sy - y
 
 
-@njit(cache=True)
+@kernel
 def to_boundary(x, y, edges, first, last):
     """(vector to the closest boundary point of the polygon edges[first:last], whether the point is inside)."""
     best, gx, gy, inside = inf, 0.0, 0.0, False
@@ -64,115 +64,109 @@ def to_boundary(x, y, edges, first, last):
     return gx, gy, inside
 
 
-@njit(cache=True)
-def zone_meets_edge(zone, edge, literal):
-    """Whether a triangular zone meets the segment from (cx, cy) to (dx, dy).
+@kernel
+def _in_zone(along, across, depth, half):
+    """Whether a zone holds a point of these coordinates along and across (>= 0) the heading."""
+    return along >= 0.0 and along / depth + across / half <= 1.0
+
+
+@kernel
+def _crosses(zone, edge, literal):
+    """Whether a side of a triangular zone meets a segment; literal: one of those from the agent to the corners.
 
     The zone is (x, y, hx, hy, depth, half): its agent's place and unit heading, its altitude and half base.
-    Literal: one of the segments from the agent to the three corners meets it. Else exact: a side does, or the zone
-    holds it.
     """
     (x, y, hx, hy, depth, half), (cx, cy, dx, dy) = zone, edge
     ax, ay = x + depth * hx, y + depth * hy
     rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
+    if segments_meet(rx, ry, lx, ly, cx, cy, dx, dy):
+        return True
     if literal:
-        return segments_meet(x, y, ax, ay, cx, cy, dx, dy) or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
-    along, across = (cx - x) * hx + (cy - y) * hy, abs((cx - x) * hy - (cy - y) * hx)
-    return (
-        segments_meet(ax, ay, rx, ry, cx, cy, dx, dy)
-        or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
-        or segments_meet(lx, ly, ax, ay, cx, cy, dx, dy)
-        or (along >= 0.0 and along / depth + across / half <= 1.0)
-    )
+        return segments_meet(x, y, ax, ay, cx, cy, dx, dy)
+    return segments_meet(ax, ay, rx, ry, cx, cy, dx, dy) or segments_meet(lx, ly, ax, ay, cx, cy, dx, dy)
 
 
-@njit(cache=True)
+@kernel
+def _holds(zone, px, py):
+    """Whether a triangular zone holds a point."""
+    x, y, hx, hy, depth, half = zone
+    return _in_zone((px - x) * hx + (py - y) * hy, abs((px - x) * hy - (py - y) * hx), depth, half)
+
+
+@kernel
+def _add_push(gx, gy, c, inside, choices, out):
+    """Add the push along a vector to the boundary."""
+    distance = sqrt(gx * gx + gy * gy)
+    if distance > 0.0:
+        factor = push(distance, c, inside, choices) / distance
+        out[0] += factor * gx
+        out[1] += factor * gy
+
+
+@kernel
 def _edge_terms(zone, c, world, first, last, inside, choices, out):
     """Add one term for each edge of a polygon that the zone meets."""
-    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
+    literal = choices.trigger == 1
     for k in range(first, last):
         edge = (world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3])
-        if not zone_meets_edge(zone, edge, literal):
-            continue
-        gx, gy = to_segment(zone[0], zone[1], edge[0], edge[1], edge[2], edge[3])
-        distance = sqrt(gx * gx + gy * gy)
-        if distance > 0.0:
-            factor = push(distance, c, inside, outward, repulsive) / distance
-            out[0] += factor * gx
-            out[1] += factor * gy
+        if _crosses(zone, edge, literal) or (not literal and _holds(zone, edge[0], edge[1])):
+            gx, gy = to_segment(zone[0], zone[1], edge[0], edge[1], edge[2], edge[3])
+            _add_push(gx, gy, c, inside, choices, out)
 
 
-@njit(cache=True)
+@kernel
 def zone_meets_polygon(zone, edges, first, last, literal):
-    """Whether a triangular zone, as in `zone_meets_edge`, meets the polygon edges[first:last].
+    """Whether a triangular zone, as in `_crosses`, meets the polygon edges[first:last].
 
     Literal: one of the segments from the agent to the three corners meets an edge, which misses a corner of the
     polygon that comes in between them. Else exact: edges cross, or one of the two holds the other.
     """
-    x, y, hx, hy, depth, half = zone
-    ax, ay = x + depth * hx, y + depth * hy
-    rx, ry, lx, ly = x + half * hy, y - half * hx, x - half * hy, y + half * hx
     for k in range(first, last):
-        cx, cy, dx, dy = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
-        if literal:
-            if segments_meet(x, y, ax, ay, cx, cy, dx, dy) or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy):
-                return True
-        elif (
-            segments_meet(ax, ay, rx, ry, cx, cy, dx, dy)
-            or segments_meet(rx, ry, lx, ly, cx, cy, dx, dy)
-            or segments_meet(lx, ly, ax, ay, cx, cy, dx, dy)
-        ):
+        if _crosses(zone, (edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]), literal):
             return True
     if literal:
         return False
-    cx, cy = edges[first, 0] - x, edges[first, 1] - y
-    along, across = cx * hx + cy * hy, abs(cx * hy - cy * hx)
-    return (along >= 0.0 and along / depth + across / half <= 1.0) or to_boundary(x, y, edges, first, last)[2]
+    return _holds(zone, edges[first, 0], edges[first, 1]) or to_boundary(zone[0], zone[1], edges, first, last)[2]
 
 
-@njit(cache=True)
+@kernel
 def zone_meets_ball(along, across, depth, half, radius, literal):
     """As `zone_meets_polygon` for a ball whose centre has these coordinates along and across (>= 0) the heading."""
     bx, by = to_segment(along, across, 0.0, 0.0, 0.0, half)
     ux, uy = to_segment(along, across, 0.0, 0.0, depth, 0.0)
     vx, vy = to_segment(along, across, depth, 0.0, 0.0, half)
-    if not literal and along >= 0.0 and along / depth + across / half <= 1.0:
+    if not literal and _in_zone(along, across, depth, half):
         return True
     side2 = ux * ux + uy * uy if literal else vx * vx + vy * vy
     return min(bx * bx + by * by, side2) <= radius * radius
 
 
-@njit(cache=True)
-def push(distance, c, inside, outward, repulsive):
+@kernel
+def push(distance, c, inside, choices):
     """Factor of the unit vector b from the agent to the closest boundary point, for one obstacle or wall."""
-    if inside and outward:
+    if inside and choices.inside == 0:
         return distance + c
-    return min(0.0, distance - c) if repulsive else distance - c
+    return min(0.0, distance - c) if choices.obstacle_force != 2 else distance - c
 
 
-@njit(cache=True)
+@kernel
 def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
     """Write Σ_e (d_ie − c) b_ie over all triggered obstacles and walls of one agent into `out`."""
-    m, buffer = x.size, choices.obstacle_zone == 1
-    outward, repulsive, literal = choices.inside == 0, choices.obstacle_force != 2, choices.trigger == 1
+    m, buffer, outward, literal = x.size, choices.obstacle_zone == 1, choices.inside == 0, choices.trigger == 1
     for k in range(m):
         out[k] = 0.0
     for o in range(world.starts.size - 1):
         first, last = world.starts[o], world.starts[o + 1]
+        zone = (x[0], x[1], h[0], h[1], depth, half)
         gx, gy, inside = to_boundary(x[0], x[1], world.edges, first, last)
         s2 = gx * gx + gy * gy
         if s2 == 0.0 or (s2 > (depth + half) ** 2 and not inside):
             continue
         if choices.polygons == 1 and not (inside and outward and not literal):  # (21); out of one the nearest leads
             if moving:
-                _edge_terms((x[0], x[1], h[0], h[1], depth, half), c, world, first, last, inside, choices, out)
-            continue
-        zone = (x[0], x[1], h[0], h[1], depth, half)
-        if (inside and not literal) or (moving and zone_meets_polygon(zone, world.edges, first, last, literal)):
-            distance = sqrt(s2)
-            factor = push(distance, c, inside, outward, repulsive) / distance
-            out[0] += factor * gx
-            out[1] += factor * gy
+                _edge_terms(zone, c, world, first, last, inside, choices, out)
+        elif (inside and not literal) or (moving and zone_meets_polygon(zone, world.edges, first, last, literal)):
+            _add_push(gx, gy, c, inside, choices, out)
     for o in range(world.balls.shape[0]):
         s2, along = 0.0, 0.0
         for k in range(m):
@@ -188,17 +182,16 @@ def obstacle_terms(x, h, moving, depth, half, c, world, choices, out):
         if inside or (apart - radius <= c if buffer else met):
             # b points away from the centre where the agent is inside
             sign = -1.0 if inside else 1.0
-            factor = sign * push(abs(apart - radius), c, inside, outward, repulsive) / apart
+            factor = sign * push(abs(apart - radius), c, inside, choices) / apart
             for k in range(m):
                 out[k] += factor * (world.balls[o, k] - x[k])
     _walls(x, h, moving, depth, half, c, world.box, choices, out)
 
 
-@njit(cache=True)
+@kernel
 def _walls(x, h, moving, depth, half, c, box, choices, out):
     """Add one term for each wall that the zone reaches, or for the nearest of them."""
     buffer, nearest, least = choices.obstacle_zone == 1, choices.walls == 1, inf
-    outward, repulsive = choices.inside == 0, choices.obstacle_force != 2
     axis, force = -1, 0.0
     for k in range(x.size):
         for side in range(2):
@@ -211,7 +204,7 @@ def _walls(x, h, moving, depth, half, c, box, choices, out):
                 continue
             beyond = distance < 0.0
             toward = -normal if beyond else normal
-            term = push(abs(distance), c, beyond, outward, repulsive) * toward
+            term = push(abs(distance), c, beyond, choices) * toward
             if not nearest:
                 out[k] += term
             elif distance < least:

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from flockana.jit import njit
+from flockana.jit import kernel, register_jitable
 from flockana.kernels.candidates import gather, sort_into_cells
 from flockana.kernels.noise import noise
+from flockana.kernels.sums import square_between
 from flockana.kernels.zone_obstacles import obstacle_terms, to_boundary
 
 FloatArray = npt.NDArray[np.float64]
@@ -107,14 +108,14 @@ class Flock(NamedTuple):
     alien: FloatArray
 
 
-@njit(cache=True)
+@kernel
 def saturation(norm, bound):
     """Factor by which (9) and (10) shorten a vector of this norm: tanh(x)/x at x = norm/bound, 1 at 0."""
     x = norm / bound
     return 1.0 - x * x / 3.0 if x < _NEAR_ZERO else tanh(x) / x
 
 
-@njit(cache=True)
+@kernel
 def _length(x):
     s2 = 0.0
     for k in range(x.size):
@@ -122,13 +123,13 @@ def _length(x):
     return sqrt(s2)
 
 
-@njit(cache=True)
+@kernel
 def _weight(table, i, j):
     """Return the weight of a pair from a table, which is one number if all are equal."""
     return table[0, 0] if table.size == 1 else table[i, j]
 
 
-@njit(cache=True)
+@kernel
 def _noise_factor(settings, step, i, j, behaviour):
     """Return the noise factor of a weight in this step."""
     if settings.weight_noise == 0.0:
@@ -136,7 +137,7 @@ def _noise_factor(settings, step, i, j, behaviour):
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
 
 
-@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
+@register_jitable  # a call would hand over a hundred numbers
 def _neighbours(i, near, flock, step, rules, out):
     """Cohesion, alignment and separation of agent i; only agents in `near` can be within its zones.
 
@@ -149,9 +150,7 @@ def _neighbours(i, near, flock, step, rules, out):
     for j in near:
         if j == i:
             continue
-        d2 = 0.0
-        for k in range(m):
-            d2 += (q[j, k] - q[i, k]) ** 2
+        d2 = square_between(q, i, j)
         d = sqrt(d2)
         if d > a or d == 0.0:
             continue
@@ -191,7 +190,7 @@ def _neighbours(i, near, flock, step, rules, out):
     return nearest
 
 
-@njit(cache=True)
+@kernel
 def _aliens(i, flock, step, rules, out):
     """Strategic separation (7) of agent i from the aliens that it watches."""
     q, alien, zones, settings, annulus = flock.q, flock.alien, rules.zones, rules.settings, rules.choices.surveillance
@@ -207,7 +206,7 @@ def _aliens(i, flock, step, rules, out):
                 out[STRATEGIC, k] += w * (d - zones.s[i]) * ((alien[e, k] - q[i, k]) / d)
 
 
-@njit(cache=True)
+@kernel
 def altitude(speed, r, c, a, settings, choices):
     """Length of the obstacle zone along the heading: c, a, or from r at rest to a at the greatest speed."""
     if choices.zone_length == 2:
@@ -215,7 +214,7 @@ def altitude(speed, r, c, a, settings, choices):
     return a if choices.zone_length == 1 else c
 
 
-@njit(cache=True)
+@kernel
 def _grown(reach, a, nearest, settings):
     """Return the next radius of attraction: a if an agent is within a, `reach` if one is within it, else larger."""
     if nearest <= a:
@@ -223,7 +222,7 @@ def _grown(reach, a, nearest, settings):
     return reach if nearest <= reach else reach + settings.dt * settings.growth
 
 
-@njit(cache=True, forceinline=True)  # a call would hand over a hundred numbers
+@register_jitable  # a call would hand over a hundred numbers
 def behave(i, near, flock, step, rules, out):
     """Write the six behaviours of agent i, with `near` around it, into out (6, m).
 
@@ -264,7 +263,7 @@ def behave(i, near, flock, step, rules, out):
     return nearest
 
 
-@njit(cache=True)
+@kernel
 def behaviours(flock, step, rules):
     """The six behaviours of all agents at one instant, shape (6, n, m); headings and estimates are changed."""
     q, reach = flock.q, flock.reach
@@ -278,7 +277,7 @@ def behaviours(flock, step, rules):
     return components
 
 
-@njit(cache=True)
+@kernel
 def _move(i, q, p, u, step, settings, literal):
     """Steps (j), (k): agent i takes its input and a gust, is bounded in speed, and moves with its new velocity."""
     m = q.shape[1]
@@ -293,7 +292,7 @@ def _move(i, q, p, u, step, settings, literal):
         q[i, k] += settings.dt * p[i, k]
 
 
-@njit(cache=True)
+@kernel
 def _move_aliens(alien, q, dt, world):
     """Move every alien towards the nearest agent that it detects, within its territory."""
     m = q.shape[1]
@@ -318,7 +317,7 @@ def _move_aliens(alien, q, dt, world):
                 alien[e, 1] += gy
 
 
-@njit(cache=True)
+@kernel
 def _take_step(flock, u, step, cells, near, rules, out, total):
     """Advance all agents by one step, then the aliens; the cells serve for the whole step."""
     (q, p, _, _, reach, alien), (zones, settings, choices, world) = flock, rules
@@ -343,7 +342,7 @@ def _take_step(flock, u, step, cells, near, rules, out, total):
     _move_aliens(alien, q, settings.dt, world)
 
 
-@njit(cache=True)
+@kernel
 def run(flock, first, rules, steps):
     """Take `steps` steps from the one of this number; the flock's arrays are changed.
 
@@ -352,13 +351,7 @@ def run(flock, first, rules, steps):
     q, p, heading, estimate, reach, alien = flock
     settings, choices = rules.settings, rules.choices
     n, m = q.shape
-    qs, ps, us, hs, es = (
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-        np.empty((steps, n, m)),
-    )
+    states = np.empty((5, steps, n, m))
     aliens, reaches = np.empty((steps, alien.shape[0], m)), np.empty((steps, n))
     u, out, total = np.empty((n, m)), np.empty((6, m)), np.empty(m)
     near = np.empty(n, np.int64)
@@ -366,6 +359,7 @@ def run(flock, first, rules, steps):
     for taken in range(steps):
         step, cells = first + taken, sort_into_cells(q, reach.max() + further)
         _take_step(flock, u, step, cells, near, rules, out, total)
-        qs[taken], ps[taken], us[taken], hs[taken], es[taken] = q, p, u, heading, estimate
+        for k, own in enumerate((q, p, u, heading, estimate)):
+            states[k, taken] = own
         reaches[taken], aliens[taken] = reach, alien
-    return qs, ps, us, hs, es, reaches, aliens
+    return states[0], states[1], states[2], states[3], states[4], reaches, aliens

@@ -6,13 +6,11 @@ from functools import cached_property
 from typing import Any
 
 from flockana.base.errors import ArgumentError
-from flockana.base.scales import Scales
 from flockana.environment.beta import ObstacleField
 from flockana.environment.obstacles import Obstacle
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, BetaInteraction, Gains, PairInteraction
-from flockana.laws.gained import GainedLaw
-from flockana.laws.olfati_saber import PAIR, TARGET, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import GainedLaw, ensure_part
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
@@ -72,17 +70,11 @@ class Algorithm3(GainedLaw):
     references = ("olfati-saber-2006",)
 
     def __post_init__(self) -> None:
-        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_gains(self)
+        super().__post_init__()
         ensure_part("beta", self.beta, BetaInteraction, "BetaInteraction(...)")
-        ensure_part("target", self.target, Target, TARGET)
         obstacles = ensure_obstacles(self.obstacles)
         object.__setattr__(self, "obstacles", obstacles)
         ensure_one_dimension(obstacles, self.target.dimension, "the target has")
-
-    @property
-    def scales(self) -> Scales:  # noqa: D102
-        return alpha_scales(self.alpha, self.gains)
 
     @cached_property
     def obstacle_field(self) -> ObstacleField:

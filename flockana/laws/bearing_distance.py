@@ -28,7 +28,8 @@ from flockana.environment.zone_world import ZoneWorld
 from flockana.interactions import ZoneNoise, ZoneRadii, ZoneWeights
 from flockana.kernels import zones as compiled
 from flockana.kernels.zone_counts import fragments, populations
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.law import Arrays
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "form": ("position", "bearing"),
@@ -220,7 +221,7 @@ class ZoneFlocking(DiscreteLaw):
         self._zones(len(q))
         self.world.check_start(q)
 
-    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """Return the initial memory: headings along velocities, exact velocity estimates, aliens at their starts.
 
         With `growth` the radii of attraction as given, with `noise` step 0.
@@ -236,9 +237,7 @@ class ZoneFlocking(DiscreteLaw):
         needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if needed[name]}
 
-    def step(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one step (Algorithm 1 of the paper), unchecked.
 
         Parameters
@@ -249,9 +248,7 @@ class ZoneFlocking(DiscreteLaw):
         q, p, u, after = self.iterate(t, q, p, memory, 1)
         return q[0], p[0], u[0], {name: values[0] for name, values in after.items()}
 
-    def iterate(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         flock, first = self._state(q, p, memory)
         qs, ps, us, *own = compiled.run(flock, first, self._rules(*q.shape), steps)
         headings, estimates, reach, aliens = own
@@ -277,9 +274,7 @@ class ZoneFlocking(DiscreteLaw):
         components = compiled.behaviours(*self._state(q, p, known), self._rules(*q.shape))
         return dict(zip(BEHAVIOURS, components, strict=True))
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, Any]]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
         n = q.shape[1]
         r, c, a, _ = self.radii.arrays(n)
         parts, counts = fragments(q, a), cache(lambda: populations(q, r, c, a))

@@ -25,8 +25,8 @@ from flockana.environment.target import Target
 from flockana.interactions import BetaInteraction, Gains, PairInteraction
 from flockana.interactions.weights import Weight
 from flockana.laws.algorithm3 import Algorithm3, ensure_obstacles
-from flockana.laws.gained import GainedLaw
-from flockana.laws.olfati_saber import PAIR, TARGET, Algorithm1, Algorithm2, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import PAIR, TARGET, GainedLaw, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.olfati_saber import Algorithm1, Algorithm2
 from flockana.laws.terms.obstacles import ensure_one_dimension
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term

@@ -11,6 +11,7 @@ from flockana.base.checks import FloatArray, ensure_flag, normalise
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.interactions.weights import RationalWeight
+from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.alignment import AlignmentTerm
 from flockana.laws.terms.term import Term
@@ -57,9 +58,7 @@ class CuckerSmale(SumOfTerms):
         """Terms with the energy ½ Σ‖p_i − p̄‖², which falls at the rate Σ_{i<j} a_ij ‖p_j − p_i‖²."""
         return (AlignmentTerm(self.weight, 1.0, self.mean),)
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         return {
             "position_spread": ("√Σ‖q_i − q̄‖² (length)", spread(q)),
             "velocity_spread": ("√Σ‖p_i − p̄‖² (length/time)", spread(p)),

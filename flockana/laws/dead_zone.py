@@ -16,9 +16,10 @@ from flockana.interactions.gains import ensure_gain
 from flockana.kernels.dead_zone import ATTRACTION, DEAD, OUT, zone_forces, zone_margins, zones
 from flockana.kernels.dead_zone_steps import semi_implicit_steps
 from flockana.laws.discrete import IndexArray
+from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
-from flockana.laws.terms.pairs import PairTerm
+from flockana.laws.terms.pairs import PairTerm, ensure_apart
 from flockana.laws.terms.term import Term
 from flockana.measures.nets import links
 
@@ -73,12 +74,12 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if two agents coincide: their force has no direction and their potential is infinite."""
-        ensure_apart(q)
+        ensure_no_contact(q)
         super().check_start(q, p)
 
     def acceleration(self, t: float, q: Any, p: Any) -> FloatArray:  # noqa: D102
         t, q, p = self._checked(t, q, p)
-        ensure_apart(q)
+        ensure_no_contact(q)
         return self.flow(t, q, p)[0]
 
     @cached_property
@@ -96,12 +97,10 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def stiffness(self, q: Any, t: float = 0.0) -> Any:
         """Return the Hessian of Σ ψ̄ off the switches, in the order of ``q.ravel()``, sparse."""
         q = ensure_points("q", q)
-        ensure_apart(q)
+        ensure_no_contact(q)
         return super().stiffness(q, t)
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, Any]]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, tuple[str, Any]]:  # noqa: D102
         def literal() -> FloatArray:
             return np.array([self.literal_energy(x, v) for x, v in zip(q, p, strict=True)])
 
@@ -176,16 +175,6 @@ def contact_scales(interaction: DeadZoneInteraction) -> Scales:
     return Scales(interaction.d1, float(np.sqrt(interaction.d1 / interaction.contact_force)))
 
 
-def ensure_apart(q: FloatArray, force: str = "the dead-zone force") -> None:
+def ensure_no_contact(q: FloatArray, force: str = "the dead-zone force") -> None:
     """Raise if two agents coincide, as their force has no direction; the message names the force."""
-    from scipy.spatial import KDTree
-
-    if len(q) > 1:
-        distance, neighbour = (np.asarray(x) for x in KDTree(q).query(q, k=2))
-        i = int(np.argmin(distance[:, 1]))
-        if distance[i, 1] == 0.0:
-            j = next(int(k) for k in neighbour[i] if k != i)
-            raise ArgumentError(
-                f"agents {min(i, j)} and {max(i, j)} coincide: {force} is infinite there and has no direction; "
-                "expected distinct positions"
-            )
+    ensure_apart(q, f"{force} is infinite there and has no direction")

@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_series, real_array
+from flockana.base.checks import FloatArray, ensure_choice, ensure_series
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_wrappable, input_of
+from flockana.laws.wrapped import Step, View, Wrapper, as_numbers, ensure_hears, ensure_wrappable, input_of
 
 LATE = ("all", "pairs", "neighbours")
 _ROUNDED = 1e-9  # relative: a history that is as long as the delay but for rounding is as long
@@ -58,10 +58,7 @@ class Delayed(Wrapper):
     def __post_init__(self) -> None:
         ensure_wrappable(self.law)
         ensure_choice("late", self.late, LATE)
-        try:
-            lag = real_array(self.delay)
-        except (TypeError, ValueError):
-            lag = np.array(np.nan)
+        lag = as_numbers(self.delay)
         if lag.ndim not in (0, 2) or not lag.size or not (np.isfinite(lag) & (lag >= 0.0)).all():
             raise ArgumentError(
                 f"delay = {format_value(self.delay)}: expected a number >= 0, or one for each pair, (n, n)"
@@ -77,10 +74,7 @@ class Delayed(Wrapper):
     def _check_history(self) -> None:
         """Raise unless the history is valid and covers the delay; store it as tuples."""
         t = ensure_series("history_t", self.history_t)
-        try:
-            q = real_array(self.history_q)
-        except (TypeError, ValueError):
-            q = np.array(np.nan)
+        q = as_numbers(self.history_q)
         if q.ndim != 3 or len(q) != len(t) or not np.isfinite(q).all():
             raise ArgumentError(
                 f"history_q has shape {q.shape}: expected finite positions ({len(t)}, n, m), one row for each time"

@@ -21,6 +21,7 @@ from flockana.interactions import AlphaInteraction
 from flockana.kernels.directed import directed_forces, seen_edges
 from flockana.kernels.neighbours import pair_list
 from flockana.laws.algorithm3 import Algorithm3
+from flockana.laws.law import Arrays
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.laws.terms.pairs import PairTerm
 from flockana.laws.wrapped import WrappingLaw
@@ -156,9 +157,7 @@ class DirectedNet(WrappingLaw):
         head, tail = seen_edges(q, p, *pair_list(q, float(reach.max())), reach, *sight)
         return tuple(sorted(zip(tail.tolist(), head.tolist(), strict=True)))
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         def one_way() -> FloatArray:
             edges = [self.perceived(*state) for state in zip(q, p, strict=True)]
             return np.array([len({*seen} - {(i, j) for j, i in seen}) / max(1, len(seen)) for seen in edges])

@@ -14,12 +14,13 @@ from flockana.base.errors import ArgumentError
 from flockana.base.overrides import ensure_consistent
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
-from flockana.laws.law import Law, LawOfMotion
+from flockana.laws.law import Arrays, Law, LawOfMotion
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 IndexArray = npt.NDArray[np.int64]
+States = tuple[FloatArray, FloatArray, FloatArray, Arrays]  # next q, next p, applied u, next memory
 
 
 class DiscreteLaw(LawOfMotion):
@@ -77,15 +78,11 @@ class DiscreteLaw(LawOfMotion):
         if self.continuous is not None:
             self.continuous.check_start(q, p)
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         return {} if self.continuous is None else self.continuous.measures(t, q, p, extra)
 
     @abstractmethod
-    def step(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return (next q, next p, applied input u, next memory) of one step from t to t + dt, unchecked.
 
         Parameters
@@ -94,9 +91,7 @@ class DiscreteLaw(LawOfMotion):
             What else the law remembers.
         """
 
-    def iterate(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:
         """Return the results of `steps` calls of `step`, stacked along a first axis, unchecked.
 
         `simulate` asks for `steps_at_once` steps at a time. A law whose step costs less than a call from Python
@@ -118,9 +113,7 @@ class DiscreteLaw(LawOfMotion):
         series = {name: np.stack([each[name] for each in memories]) for name in memory}
         return stacked[0], stacked[1], stacked[2], series
 
-    def visit(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+    def visit(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States | None:
         """Return `iterate` at some steps only, where that costs less; None by default.
 
         Once the state is not finite it must stay so, as the steps in between are not seen.
@@ -134,7 +127,7 @@ class DiscreteLaw(LawOfMotion):
         """
         return None
 
-    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """Return the memory before the first step; empty by default."""
         return {}
 

@@ -10,14 +10,23 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative
+from flockana.base.checks import FloatArray, ensure_finite_scalar, ensure_nonnegative, normalise
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import scaled_fields
 from flockana.kernels import force as kernel
 from flockana.kernels.listed import no_energy
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled, TermKernel
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_seed, ensure_wrappable, input_of, normal_numbers
+from flockana.laws.wrapped import (
+    Step,
+    View,
+    Wrapper,
+    as_numbers,
+    ensure_seed,
+    ensure_wrappable,
+    input_of,
+    normal_numbers,
+)
 from flockana.measures.frame import moving_frame
 
 if TYPE_CHECKING:
@@ -98,9 +107,8 @@ class Disturbed(Wrapper):
             )
         if self.times is not None and (np.ndim(self.times) != 1 or (np.diff(self.times) <= 0.0).any()):
             raise ArgumentError(f"times = {format_value(self.times)}: expected rising times, one for each row of table")
-        object.__setattr__(self, "frequency", ensure_nonnegative("frequency", self.frequency))
-        object.__setattr__(self, "phase", ensure_finite_scalar("phase", self.phase))
-        object.__setattr__(self, "intensity", ensure_nonnegative("intensity", self.intensity))
+        normalise(self, ensure_nonnegative, "frequency", "intensity")
+        normalise(self, ensure_finite_scalar, "phase")
         object.__setattr__(self, "seed", ensure_seed(self.seed))
 
     @property
@@ -217,10 +225,7 @@ def _pushes(name: str, value: Any, least: int) -> Any:
     """Return finite numbers with `least` axes or one more as nested tuples; None stays None."""
     if value is None:
         return None
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        array = np.array(np.nan)
+    array = as_numbers(value)
     if array.ndim not in (least, least + 1) or not array.size or not np.isfinite(array).all():
         shape = "(K, m) or (K, n, m)" if least == 2 else "(K,)" if name == "times" else "(m,) for all agents or (n, m)"
         raise ArgumentError(f"{name} = {format_value(value)}: expected finite components, {shape}")

@@ -1,18 +1,67 @@
 """Base class of Algorithms 1 to 3 and compositions: gains and their conversion of units."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Self
 
+import numpy as np
+
+from flockana.base.errors import ArgumentError, format_value
+from flockana.base.scales import Scales
 from flockana.base.units import scaled_fields
+from flockana.environment.target import Target
 from flockana.interactions import Gains, PairInteraction
+from flockana.interactions.gains import gains_of
 from flockana.interactions.weights import Weight
 from flockana.laws.sum_of_terms import SumOfTerms
+
+
+def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
+    """Raise unless a parameter is of its kind."""
+    if not isinstance(value, kind):
+        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
+
+
+PAIR, GAINS, TARGET = (
+    "AlphaInteraction(...), or another pair interaction",
+    "Gains(...)",
+    "a γ-agent such as StaticTarget((0.0, 0.0))",
+)
+
+
+def ensure_gains(law: Any) -> None:
+    """Check the gains of a law; a dictionary of gains becomes `Gains`."""
+    if isinstance(law.gains, Mapping):
+        object.__setattr__(law, "gains", gains_of(law.gains))
+    ensure_part("gains", law.gains, Gains, GAINS)
+
+
+def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
+    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ."""
+    rates = (
+        np.sqrt(gains.c1_alpha * alpha.strength / alpha.length),
+        np.sqrt(np.max(gains.c1_gamma)),
+        gains.c2_alpha,
+        np.max(gains.c2_gamma),
+    )
+    return Scales(alpha.length, 1.0 / float(next((rate for rate in rates if rate > 0.0), 1.0)))
 
 
 class GainedLaw(SumOfTerms):
     """A sum of terms with `gains`: c1α is 1/time², c2α 1/time, unless pair law or weight carry a time of their own."""
 
+    alpha: Any  # the pair law; a composition may lack one
     gains: Gains
+
+    def __post_init__(self) -> None:
+        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
+        ensure_gains(self)
+        if "target" in vars(self):
+            ensure_part("target", self.target, Target, TARGET)
+
+    @property
+    def scales(self) -> Scales | None:  # noqa: D102
+        return alpha_scales(self.alpha, self.gains)
 
     def in_units(self, length: float, time: float) -> Self:
         """Return the law in other units (`flockana.rescale`)."""

@@ -41,6 +41,7 @@ def block_diagonal(blocks: FloatArray) -> csr_array:
     return bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(n * m, n * m)).tocsr()
 
 
+Arrays = Mapping[str, FloatArray]  # by name
 _Term = TypeVar("_Term", bound="Term")
 _LACKING: Mapping[str, Any] = {"target": None, "obstacles": (), "obstacle_field": None}
 
@@ -88,8 +89,8 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
             if name == "pair":
                 return _pair_among(vars(self).values())
             if name in _LACKING:
-                own = self.continuous
-                return _LACKING[name] if own is None or own is self else getattr(own, name)
+                own = vars(self).get("law")  # that it wraps or steps
+                return getattr(own, name) if isinstance(own, Law) else _LACKING[name]
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
 
     @property
@@ -173,9 +174,7 @@ class LawOfMotion(ABC):  # noqa: B024  # each of its two kinds has an abstract m
         """Raise if the law must not be started from this state; `simulate` asks before it integrates."""
         self.check_agents(len(q))
 
-    def measures(
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:
         """Return the measures of a run that only this law has; `Trajectory.metrics` shows them.
 
         Parameters

@@ -13,7 +13,8 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.interactions.gains import ensure_gain
-from flockana.laws.dead_zone import contact_scales, ensure_apart
+from flockana.laws.dead_zone import contact_scales, ensure_no_contact
+from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.leaders import Leaders, known_path
 from flockana.laws.terms.pairs import PairTerm
@@ -114,7 +115,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
         """Raise if two agents coincide, or there are others than `group` has."""
         super().check_start(q, p)
-        ensure_apart(q)
+        ensure_no_contact(q)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -138,9 +139,7 @@ class LedDeadZoneFlocking(SumOfTerms):
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102
         return self.potential_energy(t, q) + 0.5 * float(np.sum((p - self.ties.led(t)[1]) ** 2))
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, tuple[str, FloatArray]]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         led = [self.ties.led(float(time)) for time in t]
         off, slip = (
             np.array([np.linalg.norm(own - each[k], axis=1).max() for own, each in zip(state, led, strict=True)])

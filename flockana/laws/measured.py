@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flockana.base.checks import FloatArray, ensure_choice, ensure_nonnegative
+from flockana.base.checks import FloatArray, ensure_choice, ensure_nonnegative, normalise
 from flockana.laws.law import Law
 from flockana.laws.wrapped import Step, View, Wrapper, ensure_hears, ensure_seed, ensure_wrappable, input_of
 
@@ -48,8 +48,7 @@ class Measured(Wrapper):
 
     def __post_init__(self) -> None:
         ensure_wrappable(self.law)
-        for name in ("position", "velocity"):
-            object.__setattr__(self, name, ensure_nonnegative(name, getattr(self, name)))
+        normalise(self, ensure_nonnegative, "position", "velocity")
         ensure_choice("of", self.of, NOISY)
         object.__setattr__(self, "seed", ensure_seed(self.seed))
         if self.of == "neighbours":

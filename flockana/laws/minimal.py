@@ -23,9 +23,9 @@ from flockana.kernels.minimal import (
     perceived_forces,
     semi_implicit_steps,
 )
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw, States
 from flockana.laws.edges import EdgeData, PerAgent, PerPair, per_agent, per_pair, weighed_edges
-from flockana.laws.law import Law
+from flockana.laws.law import Arrays, Law
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.measure import Series
 from flockana.measures.nets import components
@@ -259,9 +259,7 @@ class MinimalFlocking(Law):
         v = p - p.mean(axis=0)
         return 0.5 * float(np.sum(v * v)) + 0.25 * float(np.sum(mu * stretch * stretch))  # links come twice
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         if self.edges is not None:
             head, tail, _, rho, _ = self._frozen
             errors = np.abs(lengths(q[:, tail] - q[:, head]) - rho)
@@ -357,9 +355,7 @@ class DiscreteMinimalFlocking(SemiImplicitEuler):
             raise ArgumentError(f"law = {self.law!r}: expected MinimalFlocking(...)")
         super().__post_init__()
 
-    def iterate(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         if self.law.steps_many(len(q)) and overrides_consistently(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)

@@ -12,7 +12,8 @@ from flockana.base.units import Powers
 from flockana.interactions import AlphaInteraction, Gains
 from flockana.kernels.inplace import advance_alpha, neighbour_lists
 from flockana.kernels.neighbours import pair_list
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.law import Arrays
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, ensure_one_gain
 
 PRINTED = 1.5  # q + (p + u dt) dt + ½ u dt² = q + p dt + (3/2) u dt² (erratum E9)
@@ -61,9 +62,7 @@ class MSNDiscretisation(DiscreteLaw):
         """The gains."""
         return self.law.gains
 
-    def step(
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
         """Return the state after one iteration, unchecked; no memory, as the net follows from q."""
         later, h = t + self.dt, self.dt
         if not self.in_place:

@@ -1,42 +1,18 @@
 """Algorithms 1 and 2 of Olfati-Saber (2006), in one, two and three dimensions."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
-import numpy as np
-
 from flockana.base.checks import ensure_state
-from flockana.base.errors import ArgumentError, format_value
+from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.environment.target import Target
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.interactions.gains import gains_of
-from flockana.laws.gained import GainedLaw
+from flockana.laws.gained import GAINS, GainedLaw, alpha_scales, ensure_part
 from flockana.laws.terms.parts import parts
 from flockana.laws.terms.term import Term
 from flockana.measures.frame import moving_frame
-
-
-def ensure_part(name: str, value: Any, kind: type, example: str) -> None:
-    """Raise unless a parameter is of its kind."""
-    if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {format_value(value)}: expected {example}")
-
-
-PAIR, GAINS, TARGET = (
-    "AlphaInteraction(...), or another pair interaction",
-    "Gains(...)",
-    "a γ-agent such as StaticTarget((0.0, 0.0))",
-)
-
-
-def ensure_gains(law: Any) -> None:
-    """Check the gains of a law; a dictionary of gains becomes `Gains`."""
-    if isinstance(law.gains, Mapping):
-        object.__setattr__(law, "gains", gains_of(law.gains))
-    ensure_part("gains", law.gains, Gains, GAINS)
 
 
 def ensure_one_gain(gains: Gains) -> None:
@@ -54,17 +30,6 @@ def paper_pair(law: Any) -> AlphaInteraction:
     if not isinstance(law.alpha, AlphaInteraction):
         raise ArgumentError(f"alpha = {law.alpha!r}: expected AlphaInteraction(...), as proofs need it")
     return law.alpha
-
-
-def alpha_scales(alpha: PairInteraction, gains: Gains) -> Scales:
-    """Return d, and the time in which the leading term moves an agent by d: c1α, or else c1γ, c2α or c2γ."""
-    rates = (
-        np.sqrt(gains.c1_alpha * alpha.strength / alpha.length),
-        np.sqrt(np.max(gains.c1_gamma)),
-        gains.c2_alpha,
-        np.max(gains.c2_gamma),
-    )
-    return Scales(alpha.length, 1.0 / float(next((rate for rate in rates if rate > 0.0), 1.0)))
 
 
 @dataclass(frozen=True)
@@ -90,10 +55,6 @@ class Algorithm1(GainedLaw):
     gains: Gains = field(default_factory=Gains)
 
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
-
-    def __post_init__(self) -> None:
-        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_gains(self)
 
     @property
     def scales(self) -> Scales:  # noqa: D102
@@ -138,15 +99,6 @@ class Algorithm2(GainedLaw):
     target: Target = None  # type: ignore[assignment]  # no default makes sense: checked below
 
     references: ClassVar[tuple[str, ...]] = ("olfati-saber-2006",)
-
-    def __post_init__(self) -> None:
-        ensure_part("alpha", self.alpha, PairInteraction, PAIR)
-        ensure_gains(self)
-        ensure_part("target", self.target, Target, TARGET)
-
-    @property
-    def scales(self) -> Scales:  # noqa: D102
-        return alpha_scales(self.alpha, self.gains)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:

@@ -12,7 +12,8 @@ from flockana.base.scales import Scales
 from flockana.base.vectors import lengths
 from flockana.environment.copies import Copies
 from flockana.interactions import AlphaInteraction, Gains, PairInteraction
-from flockana.laws.olfati_saber import PAIR, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.gained import PAIR, alpha_scales, ensure_gains, ensure_part
+from flockana.laws.law import Arrays
 from flockana.laws.sum_of_terms import SumOfTerms
 from flockana.laws.terms.copies import CopiesTerm
 from flockana.laws.terms.pairs import PairTerm
@@ -59,14 +60,9 @@ class PeerToPeer(SumOfTerms):
     @cached_property
     def terms(self) -> tuple[Term, ...]:
         """Terms with the energy c1α V(q) + ½ Σ c1γ_i ‖q_i − q_r^i‖² + ½ Σ‖p_i‖² in the given frame."""
-        return (
-            PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha),
-            CopiesTerm(self.copies, self.gains),
-        )
+        return (PairTerm(self.alpha, self.gains.c1_alpha, self.gains.c2_alpha), CopiesTerm(self.copies, self.gains))
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         places = np.array([self.copies.state(float(time))[0] for time in t])
         spread = lengths(places - places.mean(axis=1, keepdims=True)).max(axis=1)
         away = np.linalg.norm(q.mean(axis=1) - places.mean(axis=1), axis=1)

@@ -10,9 +10,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError, format_value
 from flockana.base.units import Powers
 from flockana.laws.law import Law
-from flockana.laws.wrapped import Step, View, Wrapper, ensure_wrappable, input_of
-
-_SAME = 1e-6  # of a step: how far from a whole number of steps an offset may be
+from flockana.laws.wrapped import Step, View, Wrapper, as_numbers, ensure_wrappable, input_of
 
 
 @dataclass(frozen=True)
@@ -52,10 +50,7 @@ class Sampled(Wrapper):
         object.__setattr__(self, "period", ensure_positive("period", self.period))
         if self.offsets is None:
             return
-        try:
-            offsets = np.asarray(self.offsets, dtype=np.float64)
-        except (TypeError, ValueError):
-            offsets = np.array(np.nan)
+        offsets = as_numbers(self.offsets)
         if offsets.ndim != 1 or not offsets.size or not ((offsets >= 0.0) & (offsets < self.period)).all():
             raise ArgumentError(
                 f"offsets = {format_value(self.offsets)}: expected one for each agent, 0 <= offset < {self.period:g}"

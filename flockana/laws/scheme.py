@@ -7,8 +7,8 @@ from typing import ClassVar
 from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.units import Powers
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
+from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.law import Arrays, Law
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,6 @@ class Scheme(DiscreteLaw):
         # the energy of the law that is stepped; the scheme does not keep its balance
         return self.law.hamiltonian(t, q, p)
 
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         u, h, f = self.law.flow(t, q, p)[0], self.dt, float(self.position_factor or 0.0)
         return q + h * p + (f * h * h) * u, p + h * u, u, memory

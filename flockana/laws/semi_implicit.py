@@ -1,6 +1,5 @@
 """Semi-implicit Euler steps of any continuous law: velocities first, then positions."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeGuard
 
@@ -8,8 +7,8 @@ from flockana.base.checks import FloatArray
 from flockana.base.overrides import overrides_consistently
 from flockana.interactions.dead_zone import DeadZoneInteraction
 from flockana.laws.dead_zone import DeadZoneFlocking
-from flockana.laws.discrete import IndexArray
-from flockana.laws.law import Law
+from flockana.laws.discrete import IndexArray, States
+from flockana.laws.law import Arrays, Law
 from flockana.laws.scheme import Scheme
 
 
@@ -38,9 +37,7 @@ class SemiImplicitEuler(Scheme):
     position_factor = 1.0
     steps_at_once = 2000  # of the dead-zone law, whose loop is compiled: 2 µs a step of 50 agents
 
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         if _is_compiled(self.law):  # the same sums in the same order as `iterate`
             next_q, next_p, applied = self.law.semi_implicit(q, p, self.dt, 1)
             return next_q[0], next_p[0], applied[0], memory
@@ -48,16 +45,12 @@ class SemiImplicitEuler(Scheme):
         p = p + self.dt * u
         return q + self.dt * p, p, u, memory
 
-    def iterate(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         if _is_compiled(self.law) and overrides_consistently(type(self), "iterate", ("step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, steps), {})
         return super().iterate(t, q, p, memory, steps)
 
-    def visit(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+    def visit(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States | None:  # noqa: D102
         if _is_compiled(self.law) and overrides_consistently(type(self), "visit", ("iterate", "step", "start")):
             return (*self.law.semi_implicit(q, p, self.dt, int(wanted[-1]), wanted), {})
         return super().visit(t, q, p, memory, wanted)

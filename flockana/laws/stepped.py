@@ -1,7 +1,6 @@
 """Steps of a wrapped law: Euler-Maruyama, a weak scheme of order 2, and Runge-Kutta of order 4 over the past."""
 
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, isclose
@@ -14,13 +13,16 @@ from flockana.base.errors import ArgumentError
 from flockana.kernels.euler_maruyama import euler_maruyama_steps
 from flockana.kernels.verlet import no_pairs
 from flockana.laws.delayed import Delayed
-from flockana.laws.discrete import IndexArray
+from flockana.laws.discrete import IndexArray, States
 from flockana.laws.disturbed import Disturbed
+from flockana.laws.law import Arrays
 from flockana.laws.scheme import Scheme
 from flockana.laws.wrapped import Step, View, Wrapper, input_of
 
 ORDERS = (1, 2, 4)
 _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
+_Kicking = list[Wrapper]
+_Made = tuple[FloatArray, FloatArray, FloatArray, FloatArray]  # q, p, u that arrived, u that departs
 _Past = deque[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]  # q, p, u that arrives, u that departs
 
 
@@ -88,7 +90,7 @@ class Stepped(Scheme):
     def check_agents(self, n: int) -> None:  # noqa: D102
         self.law.check_agents(n)
 
-    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """Return the past: the history of a delayed law, else a motion with the initial velocities."""
         rows = (self.past_steps, *q.shape)
         ensure_fits("the past of a delay", (4, *rows), "take a shorter delay or longer steps")
@@ -99,20 +101,14 @@ class Stepped(Scheme):
             past = np.stack([before, speeds, push, push], axis=1)
         return {"step": np.array(0.0), "past": past, "held": np.empty((0, *q.shape))}
 
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         q, p, u, after = self.iterate(t, q, p, memory, 1)
         return q[0], p[0], u[0], {name: values[-1] for name, values in after.items()}
 
-    def iterate(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], steps: int
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:  # noqa: D102
         return self.visit(t, q, p, memory, np.arange(1, steps + 1))
 
-    def visit(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray], wanted: IndexArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def visit(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:  # noqa: D102
         if self.order == 1 and (made := self._marched(t, q, p, int(memory["step"]), wanted)) is not None:
             return made
         shape, advance = q.shape, {1: self._euler, 2: self._heun, 4: self._runge_kutta}[self.order]
@@ -140,9 +136,7 @@ class Stepped(Scheme):
         after["past"] = np.array(past) if self.past_steps else np.empty((0, 4, *shape))
         return kept[0], kept[1], kept[2], {name: value[None] for name, value in after.items()}
 
-    def _marched(
-        self, t: float, q: FloatArray, p: FloatArray, first: int, wanted: IndexArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]] | None:
+    def _marched(self, t: float, q: FloatArray, p: FloatArray, first: int, wanted: IndexArray) -> States | None:
         """Return the result of `visit` from one compiled call; None if the law is not compiled or has more wrappers."""
         law, (n, m), steps = self.law, q.shape, int(wanted[-1])
         pushing = [one for one in self._wrappers if isinstance(one, Disturbed)]
@@ -172,25 +166,19 @@ class Stepped(Scheme):
             past.append((last[0], last[1], u if now.number else last[2], u))  # it jumps at the start
         return u
 
-    def _euler(
-        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def _euler(self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: _Kicking, past: _Past) -> _Made:
         u, h = self._begin_step(now, t, q, p, past), self.dt
         after = p + h * u
         return q + (0.5 * h) * (p + after), _kicked(after, now, kicking), u, u
 
-    def _heun(
-        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def _heun(self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: _Kicking, past: _Past) -> _Made:
         first, h = self._begin_step(now, t, q, p, past), self.dt
         guess = _kicked(p + h * first, now, kicking)
         second = self._ask(now, t + h, q + h * p, guess)
         u = 0.5 * (first + second)
         return q + (0.5 * h) * (p + guess), p + h * u + (guess - p - h * first), u, second
 
-    def _runge_kutta(
-        self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: list[Wrapper], past: _Past
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def _runge_kutta(self, now: Step, t: float, q: FloatArray, p: FloatArray, kicking: _Kicking, past: _Past) -> _Made:
         k1, h = self._begin_step(now, t, q, p, past), self.dt
         k2 = self._ask(now, t + h / 2, q + h / 2 * p, p + h / 2 * k1)
         k3 = self._ask(now, t + h / 2, q + h / 2 * (p + h / 2 * k1), p + h / 2 * k2)

@@ -13,7 +13,7 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.interactions.log_potential import LogPotential, length_scale_time, net_derivatives, net_forces
-from flockana.laws.dead_zone import ensure_apart
+from flockana.laws.dead_zone import ensure_no_contact
 from flockana.laws.law import Law
 from flockana.laws.switched import Margins, Pieces, SwitchedLaw
 from flockana.measures.frame import moving_frame
@@ -143,7 +143,7 @@ class ProximityFlocking(SwitchedLaw):
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
         super().check_start(q, p)
-        ensure_apart(q, "the force of the logarithmic potential")
+        ensure_no_contact(q, "the force of the logarithmic potential")
 
     def pieces(self, q: FloatArray) -> Pieces:
         """Return 0 for every pair within R and 1 beyond."""

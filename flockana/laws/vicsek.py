@@ -22,7 +22,8 @@ from flockana.base.scales import Scales
 from flockana.base.units import Powers
 from flockana.kernels.neighbours import pair_list
 from flockana.kernels.noise import noise as random_number
-from flockana.laws.discrete import DiscreteLaw
+from flockana.laws.discrete import DiscreteLaw, States
+from flockana.laws.law import Arrays
 from flockana.measures.nets import LinkArray, components
 
 if TYPE_CHECKING:
@@ -144,14 +145,12 @@ class HeadingAveraging(DiscreteLaw):
         within: LinkArray = pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
         return within
 
-    def start(self, q: FloatArray, p: FloatArray) -> Mapping[str, FloatArray]:
+    def start(self, q: FloatArray, p: FloatArray) -> Arrays:
         """The headings of a start in [zero, zero + 2π); with noise, step 0."""
         heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
         return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
 
-    def step(  # noqa: D102
-        self, t: float, q: FloatArray, p: FloatArray, memory: Mapping[str, FloatArray]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mapping[str, FloatArray]]:
+    def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:  # noqa: D102
         heading = memory["heading"]
         average = _mean_angles if self.average == "headings" else _mean_vectors
         turned, after = average(heading, self.links(q)), dict(memory)
@@ -198,9 +197,7 @@ class HeadingAveraging(DiscreteLaw):
         sums = np.bincount(rows, weights, n)
         return coo_array((weights / sums[rows], (rows, columns)), shape=(n, n)).tocsr()
 
-    def measures(  # noqa: D102
-        self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Mapping[str, FloatArray]
-    ) -> Mapping[str, Any]:
+    def measures(self, t: FloatArray, q: FloatArray, p: FloatArray, extra: Arrays) -> Mapping[str, Any]:  # noqa: D102
         n = q.shape[1]
         counts = np.array([components(n, self.links(x)).max() + 1 for x in q])
         series: dict[str, Any] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,6 @@ from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.law import Law
 from flockana.laws.terms.pairs import PairTerm
-
-if TYPE_CHECKING:
-    from flockana.environment.beta import ObstacleField
-    from flockana.environment.obstacles import Obstacle
-    from flockana.environment.target import Target
 
 _BLOCK = 256  # steps whose random numbers are drawn at once
 _CHANNELS = 8  # kinds of random numbers
@@ -107,21 +102,6 @@ class WrappingLaw(Law):
     """A law around another one, `law`, whose target, obstacles, scales and energy it shows as its own."""
 
     law: Law
-
-    @property
-    def target(self) -> Target | None:  # type: ignore[override]
-        """The γ-agent of the inner law."""
-        return self.law.target
-
-    @property
-    def obstacles(self) -> tuple[Obstacle, ...]:  # type: ignore[override]
-        """Obstacles of the inner law."""
-        return self.law.obstacles
-
-    @property
-    def obstacle_field(self) -> ObstacleField | None:
-        """β-interaction of the inner law with its obstacles."""
-        return self.law.obstacle_field
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
@@ -229,6 +209,14 @@ def ensure_wrappable(law: Any) -> None:
     """Raise unless something can be wrapped."""
     if not isinstance(law, Law):
         raise ArgumentError(f"law = {law!r}: expected a continuous law such as Algorithm1(), or one that wraps a law")
+
+
+def as_numbers(value: Any) -> FloatArray:
+    """Return an array of numbers; NaN for what is none."""
+    try:
+        return checks.real_array(value)
+    except (TypeError, ValueError):
+        return np.array(np.nan)
 
 
 def ensure_seed(seed: Any) -> int:

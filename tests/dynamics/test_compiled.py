@@ -34,10 +34,10 @@ TARGETS = [
     RescaledVelocity(CircleTarget((5.0, 1.0), 8.0, frequency=0.2), 0.25),
 ]
 SPHERES = Sphere((-3.0, 6.0), 2.0), Sphere((12.0, 24.0), 4.0), Sphere((900.0, 0.0), 1.0)
+TRIANGLE = Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)])
 BODIES = [  # near a flock between 0 and 18, none of them in its way: every kind, one and several of them
     (2, ()),
-    (2, (Polygon([(-6.0, 0.0), (-1.0, 2.0), (-2.0, 16.0)]),)),
-    (2, (Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), *SPHERES)),
+    (2, (TRIANGLE, Wall((0.0, -1.0), (0.3, 1.0)), Capsule((-3.0, 0.0), (-2.0, 15.0), 1.0), *SPHERES)),
     (3, (Sphere((-3.0, 6.0, 8.0), 2.0), Sphere((9.0, 9.0, 22.0), 3.0), Wall((-1.0, 0.0, 0.0), (1.0, 0.2, 0.0)))),
 ]
 PER_AGENT = Gains(c1_gamma=np.linspace(0.5, 2.0, 12), c2_gamma=np.linspace(1.0, 3.0, 12))

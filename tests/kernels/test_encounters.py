@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from flockana.kernels import checks
-from flockana.kernels.checks import Rules, share_of_step
+from flockana.kernels import shares
 from flockana.kernels.encounters import (
     Around,
     Ends,
@@ -46,7 +45,9 @@ def share_of_pairs(states, radii):
 def around(radii):
     """No poles and no obstacles."""
     none, edges = np.empty(0, np.uint32), (float(radii.min()), float(radii.max()))
-    return Around(radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0))
+    return Around(
+        radii, FAR, edges, np.empty(0), 1.0, none, none, False, 0, np.empty(0), np.zeros(1, int), (0.0, 0.0), None
+    )
 
 
 def drawn(states, factor):
@@ -143,14 +144,16 @@ def test_a_step_is_cut_by_ways_seen_from_the_mean_motion(m, listed, monkeypatch)
         searched.append(within)
         return search(q, within, near)._replace(**({"count": -1} if listed == "too many for memory" else {}))
 
-    monkeypatch.setattr(checks, "_BLOCK", 50)
+    monkeypatch.setattr(shares, "_BLOCK", 50)
+    monkeypatch.setattr(shares, "BODIES", False)
+    monkeypatch.setattr(shares, "POLES", False)
     kept = no_pairs(40, m)
     if listed in ("all", "too few"):
         kept = Pairs(i, j, i.size if listed == "all" else 0, states.q0, 1e6 if listed == "all" else R, 1)
-    rules = Rules(False, True, False, (0.0, 0.0), False, found)
-    share, near = share_of_step.py_func(0.0, states, around(radii), rules, view, kept, no_pairs(40, m))
+    given = around(radii)._replace(listed=found)
+    share, near = shares.share_of_step.py_func(0.0, states, given, view, kept, no_pairs(40, m))
     assert share == pytest.approx(share_of_pairs(states, radii), rel=1e-9)
     assert share < 1.0
     assert len(searched) == (listed != "all")
-    again, _ = share_of_step.py_func(0.0, states, around(radii), rules, view, kept, near)
+    again, _ = shares.share_of_step.py_func(0.0, states, given, view, kept, near)
     assert (again, len(searched)) == (share, listed != "all")  # a list that was made is kept

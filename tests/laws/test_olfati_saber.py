@@ -9,7 +9,7 @@ from flockana import Algorithm1, Algorithm2, AlphaInteraction, Gains, Law, Linea
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.laws.olfati_saber import alpha_scales
+from flockana.laws.gained import alpha_scales
 from flockana.measures.frame import moving_frame
 
 TWO = Algorithm2(gains=Gains(c1_gamma=2.0, c2_gamma=3.0), target=LinearTarget((10.0, 0.0), (1.0, 0.0)))

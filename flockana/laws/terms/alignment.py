@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from flockana.base.checks import FloatArray
+from flockana.interactions.pair import pair_matrix
 from flockana.interactions.weights import Weight
 from flockana.kernels.listed import no_energy
 from flockana.laws.terms.term import Term, TermKernel
@@ -20,23 +21,24 @@ if TYPE_CHECKING:
 class AlignmentTerm(Term):
     """u_i = g Σ_j a(‖q_j − q_i‖) (p_j − p_i), with no energy and the power −g Σ_{i<j} a_ij ‖p_j − p_i‖².
 
-    Parameters
-    ----------
-    weight : Weight
-        a; a weight of infinite range couples all pairs, at a cost that grows as n².
-    gain : float
-        g >= 0.
-    mean : bool
-        Whether the sum is divided by the number of agents.
+        Parameters
+        ----------
+        weight : Weight
+            a; a weight of infinite range couples all pairs, at a cost that grows as n².
+        gain : float
+            g >= 0.
+        mean : bool
+            Whether the sum is divided by the number of agents.
 
-    Examples
-    --------
-    >>> from flockana.interactions.weights import RationalWeight
-    >>> u = np.zeros((2, 1))
-    >>> AlignmentTerm(RationalWeight(2.0, 1.0)).act(0.0, np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), u)
-    -9.0
-    >>> u.tolist()
-    [[3.0], [-3.0]]
+        Examples
+        --------
+        >>> from flockana.interactions.pair import pair_matrix
+    from flockana.interactions.weights import RationalWeight
+        >>> u = np.zeros((2, 1))
+        >>> AlignmentTerm(RationalWeight(2.0, 1.0)).act(0.0, np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), u)
+        -9.0
+        >>> u.tolist()
+        [[3.0], [-3.0]]
     """
 
     weight: Weight
@@ -67,22 +69,4 @@ class AlignmentTerm(Term):
         i, j, delta, slip, s2 = i[near], j[near], delta[near], slip[near], s2[near]
         pull = gain * kernels.weight(s2, self.weight.par)[:, None, None] * np.eye(m)
         bend = 2.0 * gain * kernels.slope(s2, self.weight.par)[:, None, None] * slip[:, :, None] * delta[:, None, :]
-        return _assembled(i, j, bend, n), _assembled(i, j, pull, n)
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        n, m = q.shape
-        return np.zeros((n, m, m))
-
-
-def _assembled(i: Any, j: Any, blocks: FloatArray, n: int) -> csr_array:
-    """Return the matrix of pair blocks B: −B on the two diagonal blocks, B on the two others."""
-    from scipy.sparse import coo_array
-
-    m = blocks.shape[1]
-    rows, columns, values, axes = [], [], [], np.arange(m)
-    for a, b, sign in ((i, i, -1.0), (j, j, -1.0), (i, j, 1.0), (j, i, 1.0)):
-        rows.append(np.broadcast_to((a[:, None] * m + axes)[:, :, None], blocks.shape).ravel())
-        columns.append(np.broadcast_to((b[:, None] * m + axes)[:, None, :], blocks.shape).ravel())
-        values.append((sign * blocks).ravel())
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    return coo_array(entries, shape=(n * m, n * m)).tocsr()
+        return pair_matrix(i, j, -bend, n), pair_matrix(i, j, -pull, n)

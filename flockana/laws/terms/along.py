@@ -32,11 +32,9 @@ class AlongVelocity(Term):
         return self.brake == 0.0
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        still = np.zeros(p.shape[1])
-        v = np.ascontiguousarray(p)
-        return float(kernel.push_along(v, u, still, self.thrust, self.brake, self.moving))
+        return self.compiled(p.shape[1]).on_agents(t, q, p, u)
 
-    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+    def compiled(self, m: int) -> TermKernel:  # noqa: D102
         numbers = np.array([float(self.moving), self.thrust, self.brake])
         return TermKernel(kernel.act_along, no_energy, numbers, np.empty((0, 0)), 0.0)
 
@@ -44,6 +42,3 @@ class AlongVelocity(Term):
         factor = self.thrust - self.brake * np.einsum("ij,ij->i", p, p)
         by_velocity = factor[:, None, None] * np.eye(p.shape[1]) - 2.0 * self.brake * p[:, :, None] * p[:, None, :]
         return self.hessian(t, q), by_velocity
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return np.zeros((*q.shape, q.shape[1]))

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
 from flockana.base.checks import FloatArray
 from flockana.interactions.pair import PairInteraction
 from flockana.kernels.listed import no_energy
@@ -43,6 +41,3 @@ class Consensus(Term):
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[csr_array, csr_array]:  # noqa: D102
         return self._pairs.derivatives(t, q, p)
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return np.zeros((*q.shape, q.shape[1]))

@@ -40,15 +40,11 @@ class TargetFeedforward(Term):
         return path
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        v, still = np.ascontiguousarray(p), np.zeros(p.shape[1])
-        return float(kernel.push_all(v, u, still, acceleration(self.path, t), self.moving))
+        return self.compiled(p.shape[1]).on_agents(t, q, p, u)
 
-    def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
+    def compiled(self, m: int) -> TermKernel:  # noqa: D102
         numbers = np.concatenate([[float(self.moving), self.path.omega], self.path.terms.ravel()])
         return TermKernel(kernel.act_all, no_energy, numbers, np.empty((0, 0)), 0.0)
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:  # noqa: D102
         return self.hessian(t, q), self.hessian(t, q)
-
-    def hessian(self, t: float, q: FloatArray) -> FloatArray:  # noqa: D102
-        return np.zeros((*q.shape, q.shape[1]))

@@ -8,7 +8,7 @@ import numpy as np
 from flockana.base.checks import FloatArray
 from flockana.base.errors import ArgumentError
 from flockana.base.overrides import overrides_consistently
-from flockana.environment.target import Target
+from flockana.environment.target import Harmonic, Target
 from flockana.interactions.gains import Gains, weighted
 from flockana.kernels import navigation as kernel
 from flockana.laws.terms.term import Invariance, Term, TermKernel
@@ -77,30 +77,35 @@ class Navigation(Term):
         return bend
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
-        if self._straight is not None:
-            return float(kernel.follow(t, x, v, u, self._straight))
-        target = np.array([*self.target.state(t), self.target.rate(t)])
-        still, own = np.zeros(q.shape[1]), np.arange(len(q), dtype=np.uint64)
-        return float(kernel.navigate(x, v, u, target, still, self._gains, self.unit or 0.0, self.moving, own))
+        form = self._straight
+        if form is None:
+            (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
+            still = np.zeros_like(rate)
+            t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, still, still, p_r]), factor=0.0))
+        return form.on_agents(t, q, p, u)
+
+    def _along(self, path: Harmonic) -> TermKernel:
+        """Return the compiled form for a harmonic path."""
+        c1, c2 = self._gains
+        head = [self.moving, self.unit or 0.0, c1.size, path.omega, path.factor]
+        numbers = np.concatenate([head, path.terms.ravel(), c1, c2])
+        return TermKernel(kernel.act, kernel.energy, numbers, np.empty((0, 0)), 0.0)
 
     @cached_property
-    def _path(self) -> FloatArray | None:
-        """Numbers that `flockana.kernels.navigation` reads, for a target whose path is harmonic; else None."""
+    def _form(self) -> TermKernel | None:
+        """Compiled form of a target whose path is harmonic; else None."""
         path = self.target.harmonic
         if path is None or not overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state")):
             return None
-        c1, c2 = self._gains
-        head = [float(self.moving), self.unit or 0.0, c1.size, path.omega, path.factor]
-        return np.concatenate([head, path.terms.ravel(), c1, c2])
+        return self._along(path)
 
     @cached_property
-    def _straight(self) -> FloatArray | None:
-        """Numbers for the kernel of a target at rest or on a line, exact to the last bit; else None."""
-        return None if self._path is None or self.target.harmonic.omega else self._path  # type: ignore[union-attr]
+    def _straight(self) -> TermKernel | None:
+        """`_form` of a target at rest or on a line, where it is exact to the last bit; else None."""
+        return None if self._form is None or self.target.harmonic.omega else self._form  # type: ignore[union-attr]
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
-        return None if self._path is None else TermKernel(kernel.act, kernel.energy, self._path, np.empty((0, 0)), 0.0)
+        return self._form
 
     def energy(self, t: float, q: FloatArray) -> float:  # noqa: D102
         x = moving_frame(q) if self.moving else q - self.target.state(t)[0]

@@ -17,15 +17,13 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 
-def ensure_apart(q: FloatArray) -> None:
-    """Raise if two agents coincide, for a force that has no limit there."""
+def ensure_apart(q: FloatArray, why: str = "the pair force has no limit there") -> None:
+    """Raise if two agents coincide; the message says why they must not."""
     order = np.lexsort(q.T)
     same = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
     if same.size:
         i, j = sorted(int(k) for k in order[same[0] : same[0] + 2])
-        raise ArgumentError(
-            f"agents {i} and {j} coincide: the pair force has no limit there; expected distinct positions"
-        )
+        raise ArgumentError(f"agents {i} and {j} coincide: {why}; expected distinct positions")
 
 
 _SUMS = ("forces", "potential_energy")  # as every pair law has them, from its scalar functions

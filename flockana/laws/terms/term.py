@@ -9,6 +9,7 @@ from flockana.base.checks import FloatArray
 from flockana.jit import Kernel
 from flockana.kernels.blocks import BLOCK
 from flockana.kernels.laws import LawFunctions, LawNumbers, law_functions, law_numbers
+from flockana.kernels.listed import Listed
 from flockana.kernels.runge_kutta import System
 from flockana.kernels.verlet import SKIN, lister
 
@@ -35,6 +36,14 @@ class TermKernel(NamedTuple):
     numbers: FloatArray
     panels: FloatArray
     reach: float
+
+    def on_agents(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
+        """Run `act` of a term without pairs in a frame at rest."""
+        (n, m), none = q.shape, np.empty(0, np.uint32)
+        order, room = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
+        listed = Listed(np.zeros((2, m)), none, none, 0, order, room, np.empty((3, m)))
+        x, v = np.ascontiguousarray(q), np.ascontiguousarray(p)
+        return float(self.act(t, x, v, u, self.numbers, self.panels, listed))
 
 
 class Compiled(NamedTuple):
@@ -117,9 +126,9 @@ class Term(ABC):
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> tuple[Any, Any]:
         """Return (∂u/∂q, ∂u/∂p) of the term's force."""
 
-    @abstractmethod
     def hessian(self, t: float, q: FloatArray) -> Any:
-        """Return the second derivative of `energy` by positions."""
+        """Return the second derivative of `energy` by positions; 0 unless a term has one."""
+        return np.zeros((*q.shape, q.shape[1]))
 
     def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
         """Return the term in compiled form, or several terms that add up to it.

@@ -1,0 +1,102 @@
+"""What share of a step stands: no agent leaps over an obstacle, no pair over an encounter or a pole.
+
+A template (`flockana.kernels.bound`): a run compiles only the checks that its law needs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flockana.jit import inlined, kernel
+from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest
+from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
+from flockana.kernels.paths import bernstein
+from flockana.kernels.poles import crossing_listed
+from flockana.kernels.runge_kutta import frame_at
+from flockana.kernels.verlet import SKIN, covers
+
+# Whether there are obstacles, encounters or poles of pairs, poles, and pairs too many for a list.
+BODIES = True  # bound
+PAIRS = True  # bound
+POLES = True  # bound
+CROWD = True  # bound
+
+POLE, TOO_MANY = -0.5, -2.0  # a step that crossed a pole is halved, and the sign says why; too many pairs for a list
+_BLOCK = 2**16  # pairs looked at together where a list of all would not fit into memory
+
+
+@inlined
+def _at_rest(t, h, points, view):
+    """Return the same paths in the frame in which the obstacles are at rest."""
+    seen, m = points.copy(), view[1].size
+    frame = np.empty((2, m))
+    for k in range(6):
+        frame_at(t + 0.2 * k * h, view, frame)
+        for i in range(len(points)):
+            for c in range(m):
+                seen[i, k, c] += frame[0, c]
+    return seen
+
+
+@inlined
+def _share_of(ends, whole, around, first, second, share):
+    """Return the share of a step that some pairs allow, if less than `share`; negative if one crosses a pole."""
+    common, ways, between = whole
+    if POLES and not around.few:
+        beside = steepest(common[1]), ways[0] + ways[1]
+        if crossing_listed(ends, beside, around.poles, around.toward, first, second):
+            return POLE
+    return share_of_listed(ends, common[0], between, around, first, second, share) if around.radii.size else share
+
+
+@inlined
+def _share_of_crowd(ends, whole, around, share):
+    """Return `_share_of` over all close pairs, found block by block without a list."""
+    q0, within = ends.q0, whole[2][1]
+    (n, m), size, row = q0.shape, 1, 0
+    while size < 4 * n:
+        size *= 2
+    parts = _sort_into_cells(_pad(q0), within * _MARGIN, size)
+    first, second = np.empty(max(_BLOCK, n), np.uint32), np.empty(max(_BLOCK, n), np.uint32)
+    forward = _FORWARD[: (1, 4, 13)[m - 1]]
+    while row < n and share >= 0.0:
+        row, count = _fill_cells(parts, forward, within * within, row, first, second)
+        share = _share_of(ends, whole, around, first[:count], second[:count], share)
+    return share
+
+
+@kernel
+def share_of_step(t, ends, around, view, kept, near):
+    """Return (accepted fraction of a step, list of pairs); the fraction is negative if it is POLE or TOO_MANY.
+
+    The list `kept` is the integrator's, `near` that of these checks, which is made anew where neither holds all pairs
+    that may meet.
+    """
+    share = 1.0
+    if BODIES:
+        points, _, allowance = bernstein(*ends)
+        seen = _at_rest(t, ends.h, points, view)
+        share = around.guard(seen, allowance, around.numbers, around.starts, around.shell[0], around.shell[1], share)
+    if PAIRS and len(ends.q0) > 1:
+        common = common_way(ends)
+        ways = farthest_ways(ends, common)
+        between = band(common, ways, around.edges, around.far)
+        if POLES and around.few:
+            beside = steepest(common[1]), ways[0] + ways[1]
+            if crossing_listed(ends, beside, around.poles, around.toward, around.first, around.second):
+                return POLE, near
+            if not around.radii.size:
+                return share, near
+        held = kept
+        if not covers(kept, ends.q0, between[1]):
+            if not covers(near, ends.q0, between[1]):
+                near = around.listed(ends.q0, (1.0 + SKIN) * between[1], near)
+            held = near
+        if held.count >= 0:
+            first, second = held.first[: held.count], held.second[: held.count]
+            share = _share_of(ends, (common, ways, between), around, first, second, share)
+        elif CROWD:
+            share = _share_of_crowd(ends, (common, ways, between), around, share)
+        else:
+            share = TOO_MANY
+    return share, near
