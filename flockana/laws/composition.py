@@ -130,7 +130,7 @@ class Composition(GainedLaw):
             raise ArgumentError(f"the law has no term: expected at least one of {', '.join(_PARTS)}")
 
     @property
-    def scales(self) -> Scales | None:
+    def scales(self) -> Scales | None:  # type: ignore[override]
         """Length and time scales of the pair law or consensus net; the time of drag or thrust if no gain gives one."""
         known = self.alpha or self.net
         if known is None or isinstance(known, Weight):

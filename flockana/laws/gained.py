@@ -60,7 +60,7 @@ class GainedLaw(SumOfTerms):
             ensure_part("target", self.target, Target, TARGET)
 
     @property
-    def scales(self) -> Scales | None:  # noqa: D102
+    def scales(self) -> Scales:  # noqa: D102
         return alpha_scales(self.alpha, self.gains)
 
     def in_units(self, length: float, time: float) -> Self:
