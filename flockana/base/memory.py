@@ -26,7 +26,7 @@ class ResultCache:
         """
         if name not in self._memory:
             self._memory[name] = compute()
-        return self._memory[name]  # type: ignore[no-any-return]
+        return self._memory[name]
 
     @cached_property
     def _memory(self) -> dict[str, Any]:

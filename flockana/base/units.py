@@ -53,7 +53,7 @@ def rescale(item: _Any, *, length: float = 1.0, time: float = 1.0) -> _Any:
             f"{item!r} has no units: expected a law, target, obstacle, interaction, run or scenario; for bare numbers "
             "use their product with the factor"
         )
-    return _rescaled(item, length, time)  # type: ignore[no-any-return]
+    return _rescaled(item, length, time)
 
 
 def _rescaled(item: Any, length: float, time: float) -> Any:

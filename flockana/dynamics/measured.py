@@ -164,7 +164,7 @@ class MeasuredRun(ResultCache):
 
     @cached_property
     def _own(self) -> Mapping[str, Any]:
-        return self.law.measures(self.t, self.q, self.p, self.extra)  # type: ignore[no-any-return]
+        return self.law.measures(self.t, self.q, self.p, self.extra)
 
     @cached_property
     def _flock(self) -> Flock:

@@ -148,7 +148,7 @@ class Trajectory(MeasuredRun):
     def scales(self) -> Scales:
         """The law's natural length and time; under a law that has none, the flock's extent and the run's duration."""
         if self.law.scales is not None:
-            return self.law.scales  # type: ignore[no-any-return]
+            return self.law.scales
         extent = float(lengths(self.q - centres(self.q)[:, None]).max())
         travel = float(lengths(self.q - self.q[0]).max())
         return Scales(extent or travel or 1.0, float(self.t[-1] - self.t[0]) or 1.0)

@@ -177,7 +177,7 @@ class PairInteraction(ABC):
     @cached_property
     def _constants(self) -> FloatArray:
         """Return `par` as kernels take it in the inner loop."""
-        return thawed(self.par)  # type: ignore[no-any-return]
+        return thawed(self.par)
 
     def potential_energy(self, q: FloatArray) -> float:
         """Return V(q) = ½ Σ_i Σ_{j≠i} ψ: every pair once, those out of range included."""

@@ -245,7 +245,7 @@ def phase_diagram(
     axes.legend([handles[name] for name in order], order, **look)
     if title:
         write_title(axes, title, pad=26)
-    return axes  # type: ignore[no-any-return]
+    return axes
 
 
 def _ensure_table(table: xarray.Dataset, parameters: set[str], claims: Iterable[str] | None, of: str) -> list[str]:
@@ -274,4 +274,4 @@ def _finish(axes: Any, title: str) -> Axes:
     axes.legend(ncols=columns, **LEGEND, **ABOVE)
     if title:
         write_title(axes, title, pad=10 + 14 * -(-len(labels) // columns))
-    return axes  # type: ignore[no-any-return]
+    return axes

@@ -44,7 +44,7 @@ def obstacles(items: Iterable[Obstacle], *, ax: Axes | None = None, view: Any = 
         axes.autoscale_view()  # patches do not move the limits by themselves
         axes.set_aspect("equal", adjustable="datalim")
         finish(axes, "x (length)", "y (length)")
-    return axes  # type: ignore[no-any-return]  # the stubs have no three-dimensional axes
+    return axes  # the stubs have no three-dimensional axes
 
 
 def bounds(items: Iterable[Obstacle]) -> FloatArray:

@@ -143,7 +143,7 @@ def finish(ax: Any, x: str = "", y: str = "") -> Axes:
         ax.set_ylabel("\n".join(map(typeset, lines)))
     if ax.get_legend_handles_labels()[0]:
         place_legend(ax)
-    return ax  # type: ignore[no-any-return]
+    return ax
 
 
 def finish_over_time(ax: Any, t: FloatArray, y: str) -> Axes:
@@ -276,7 +276,7 @@ def frame_space(ax: Any, points: FloatArray, m: int) -> Axes:
         limit(ax, middle - half, middle + half)
         for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
             axis.set_major_locator(MaxNLocator(4))
-    return ax  # type: ignore[no-any-return]
+    return ax
 
 
 def limit(ax: Any, low: FloatArray, high: FloatArray) -> None:

@@ -59,7 +59,7 @@ def _times(frame: Any, layout: Layout, dt: float | None, clock: float | None, wh
     if np.isnan(steps).any() or (steps != np.rint(steps)).any():
         k = int(np.argmax(~(steps == np.rint(steps))))
         raise FileError(f"{row_name(frame, k)}, column {layout.frame!r}: expected a whole number")
-    return steps * dt  # type: ignore[no-any-return]
+    return steps * dt
 
 
 def _is_date(value: Any) -> bool:
