@@ -159,7 +159,9 @@ def inlined(function: Callable[..., Any]) -> Inlined:
     return Inlined(function, False, {"inline": "always"})
 
 
-kernel = njit(cache=True, error_model="numpy", nogil=True)  # all alike, so that what numba compiles for them is shared
+def kernel(function: Callable[..., Any]) -> Kernel:
+    """Return a kernel that is kept on disk; as all have the same options, what numba compiles for them is shared."""
+    return Kernel(function, True, {"error_model": "numpy", "nogil": True})
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import sympy as sp
 
@@ -12,6 +13,7 @@ from proofs.library_formulas import on_symbols
 from proofs.proof import Proof, Step
 
 T, G, W, C, V, GAP = sp.symbols("t g w c v g_1", positive=True)  # g = w^ga, w = w^oa, w^ss or w^ls, v = v^d
+OUTWARD, PRINTED = (SimpleNamespace(inside=k, obstacle_force=0) for k in (0, 1))  # out of an obstacle, or as printed
 SLOW, MORE = sp.symbols("lambda mu", positive=True)  # rates λ and λ + μ of the approach
 
 
@@ -52,17 +54,17 @@ def _push() -> Iterator[Step]:
     distance = C - GAP  # 0 < d < c
     yield Step(
         "the library's push along b, which points from the agent to the boundary: d - c < 0 outside, within c of it",
-        sp.expand(push(distance, C, False, True, False) + GAP) == 0 and (-GAP).is_negative is True,
+        sp.expand(push(distance, C, False, OUTWARD) + GAP) == 0 and (-GAP).is_negative is True,
     )
     yield Step(
         "inside an obstacle or beyond a wall b points outwards, and the printed d - c < 0 pushes further in",
-        sp.expand(push(distance, C, True, False, False) + GAP) == 0 and (-GAP).is_negative is True,
+        sp.expand(push(distance, C, True, PRINTED) + GAP) == 0 and (-GAP).is_negative is True,
         r"(8): \quad (d - c)\,b,\qquad d < c",
     )
     d = sp.Symbol("d", positive=True)
     yield Step(
         "with d + c > 0 it is pushed out",
-        sp.expand(push(d, C, True, True, False) - (d + C)) == 0 and (d + C).is_positive is True,
+        sp.expand(push(d, C, True, OUTWARD) - (d + C)) == 0 and (d + C).is_positive is True,
     )
 
 

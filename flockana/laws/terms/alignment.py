@@ -21,24 +21,23 @@ if TYPE_CHECKING:
 class AlignmentTerm(Term):
     """u_i = g Σ_j a(‖q_j − q_i‖) (p_j − p_i), with no energy and the power −g Σ_{i<j} a_ij ‖p_j − p_i‖².
 
-        Parameters
-        ----------
-        weight : Weight
-            a; a weight of infinite range couples all pairs, at a cost that grows as n².
-        gain : float
-            g >= 0.
-        mean : bool
-            Whether the sum is divided by the number of agents.
+    Parameters
+    ----------
+    weight : Weight
+        a; a weight of infinite range couples all pairs, at a cost that grows as n².
+    gain : float
+        g >= 0.
+    mean : bool
+        Whether the sum is divided by the number of agents.
 
-        Examples
-        --------
-        >>> from flockana.interactions.pair import pair_matrix
-    from flockana.interactions.weights import RationalWeight
-        >>> u = np.zeros((2, 1))
-        >>> AlignmentTerm(RationalWeight(2.0, 1.0)).act(0.0, np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), u)
-        -9.0
-        >>> u.tolist()
-        [[3.0], [-3.0]]
+    Examples
+    --------
+    >>> from flockana.interactions.weights import RationalWeight
+    >>> u = np.zeros((2, 1))
+    >>> AlignmentTerm(RationalWeight(2.0, 1.0)).act(0.0, np.array([[0.0], [1.0]]), np.array([[0.0], [3.0]]), u)
+    -9.0
+    >>> u.tolist()
+    [[3.0], [-3.0]]
     """
 
     weight: Weight

@@ -38,7 +38,13 @@ class TermKernel(NamedTuple):
     reach: float
 
     def on_agents(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
-        """Run `act` of a term without pairs in a frame at rest."""
+        """Run `act` of a term without pairs in a frame at rest.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n, m)
+            Accelerations, to which those of the term are added.
+        """
         (n, m), none = q.shape, np.empty(0, np.uint32)
         order, room = np.arange(n, dtype=np.uint64), np.empty((2, 0), np.uint64)
         listed = Listed(np.zeros((2, m)), none, none, 0, order, room, np.empty((3, m)))

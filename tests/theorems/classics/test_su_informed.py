@@ -95,11 +95,18 @@ def test_the_centre_follows_its_closed_form(c1, c2):
 
 def test_a_wrong_acceleration_is_found(monkeypatch):
     """Told 1 % too much, the centre leaves the closed form."""
-    from flockana.laws.terms import feedforward
+    from flockana.laws.terms.feedforward import TargetFeedforward
 
-    right = feedforward.acceleration
+    right = TargetFeedforward.act
     law = compose(pair=PAIR, consensus=9.0, navigation=CIRCLE, feedforward=True)
-    monkeypatch.setattr(feedforward, "acceleration", lambda path, t: 1.01 * right(path, t))
+
+    def wrong(term, t, q, p, u):
+        pushed = np.zeros_like(u)
+        power = right(term, t, q, p, pushed)
+        u += 1.01 * pushed
+        return power
+
+    monkeypatch.setattr(TargetFeedforward, "act", wrong)
     run = simulate(law, Q, P, (0.0, 6.0), method="scipy-DOP853")
     claim = verify("su-varying", run).claim("centre")
     assert (claim.status, claim.contradicts) == ("inconclusive", "informed-agents")
