@@ -17,7 +17,7 @@ from flockana.theorems.catalogue import catalogue
 from tools.site import lectures, links, mathematics, reference, runs, scenarios, slides, theorems, verdicts
 from tools.site.formulas import DERIVATIONS
 
-INNER = {"pair_derivation"}  # of a formula that a user writes
+INNER = {"pair_derivation", "energy_balance"}  # of a formula that a user writes; a part of several
 NO_PLOTS = {"save"}  # writes a plot to a file
 DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
 
