@@ -40,6 +40,7 @@ nb_execution_cache_path = str(CACHE / f"notebooks-{digest(('flockana', 'proofs',
 nb_execution_timeout = 600
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+nb_output_stderr = "remove"  # that kernels are compiled, once
 
 html_theme = "pydata_sphinx_theme"
 html_title = "flockana"

@@ -34,6 +34,7 @@ try:
 except ImportError:  # Windows: there every process compiles what it needs
     fcntl = None  # type: ignore[assignment]
 
+COMPILES = "flockana compiles for this machine, which happens once and takes up to a minute ..."
 WRITTEN = ("u", "out")  # arguments that a kernel writes to: no frozen array may stand for them
 _PATIENCE, _LOOK = 600.0, 0.02  # seconds: of a wait for another process, and between two looks
 _FORM = b"1"  # another if this file comes to compile otherwise: it is no source of kernels itself
@@ -315,8 +316,7 @@ def _announced() -> Iterator[None]:
 def _announce() -> None:
     """Write one line in a process, if a person reads it: on a terminal or in a notebook, not in worker processes."""
     if (sys.stderr.isatty() or "ipykernel" in sys.modules) and parent_process() is None:
-        text = "flockana compiles for this machine, which happens once and takes up to a minute ..."
-        logging.getLogger("flockana").warning(text)
+        logging.getLogger("flockana").warning(COMPILES)
 
 
 @cache
