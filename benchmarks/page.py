@@ -12,29 +12,29 @@ from benchmarks.pictures import draw
 from benchmarks.rows import Row, from_json, missed, number, table
 
 _RUN = "lattice: an evaluation in a run of RK4, with its share of lists, energies and steps"
-_FASTER, _TIMES = "{} times faster", "{} times its time"
+_FASTER, _TIMES = "{}\u00a0×\u00a0faster", "{}\u00a0×\u00a0the\u00a0time"  # on one line each
 # of the first screen: study, name, agents, beginning of the baseline; what is said of them
 HEADLINES = {
     ("Right-hand side against numpy", "times faster than numpy", 1000, "a numpy loop"): (
         "accelerations of 1,000 agents", _FASTER, "a numpy loop over the agents"),
     ("A law from its formula", "times the hand-written law's", 10_000, ""): (
-        "accelerations by a law typed as a formula, 10,000 agents", _TIMES, "the same law written by hand"),
+        "a law typed as a formula, 10,000 agents", _TIMES, "the same law written by hand"),
     ("Time per pair", "lattice: one evaluation", 10_000, "C, list rebuilt"): (
         "accelerations of 10,000 agents", _TIMES, "C that finds all pairs anew"),
     ("Time per pair", "lattice: an evaluation over a kept list", 10_000, ""): (
-        "the same with a kept list of pairs", _TIMES, "C that keeps its list"),
+        "the same over a kept list of pairs", _TIMES, "C that keeps its list"),
     ("Time per pair", _RUN, 10_000, ""): (
-        "RK4 with lists, energies and checks, 10,000 agents", _TIMES, "C that computes accelerations alone"),
+        "whole steps of RK4, 10,000 agents", _TIMES, "C for the accelerations alone"),
     ("Against molecular dynamics engines", "gas", 100_000, "LAMMPS"): (
-        "accelerations of 100,000 agents", _TIMES, "LAMMPS's Lennard-Jones forces"),
+        "accelerations of 100,000 agents", _TIMES, "LAMMPS's Lennard-Jones"),
     ("Work and precision, Fig. 10", "DOP853 at equal error: times faster, median of 9", 150, ""): (
-        "the run of Fig. 10 at equal error, DOP853", _FASTER, "scipy's solve_ivp with our accelerations"),
+        "Fig. 10 by DOP853 at equal error", _FASTER, "scipy's solve_ivp"),
     ("Whole runs", "all distances between samples, bounded", 150, ""): (
-        "bounds on all distances between samples", _TIMES, "the run of Fig. 10"),
+        "bounds between all samples", _TIMES, "that run"),
     ("What a person waits for", "flockana verify hexagon, with report", None, ""): (
-        "`flockana verify hexagon`, report and all", _TIMES, "the start of Python with numpy and scipy"),
+        "`flockana verify hexagon`, report", _TIMES, "Python's start with scipy"),
     ("What a person waits for", "150 agents: all verdicts", None, ""): (
-        "a run of 150 agents and every verdict on it", _TIMES, "the start of Python with numpy and scipy"),
+        "150 agents and every verdict", _TIMES, "Python's start with scipy"),
 }  # fmt: skip
 _HEAD = "# Performance\n\nMeasured by `{command}`; what stands behind each number is folded below.\n"
 _HOW = """Times are CPU times on one core (waits: clock times on all cores), medians over rounds in which all that is

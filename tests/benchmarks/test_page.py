@@ -46,7 +46,7 @@ def test_page_json_and_pictures_are_written_and_the_page_can_be_written_again(tm
         "| processor | one that computes |",
         "<summary>Pairs</summary>",
         "- no compiler",
-        "| accelerations of 10,000 agents | 1.21 times its time | C that finds all pairs anew |",
+        "| accelerations of 10,000 agents | 1.21\u00a0×\u00a0the\u00a0time | C that finds all pairs anew |",
     ):
         assert words in page
     assert "| gas | 1 000 | 2 ns per pair | C | 1.2 | <= 1.5 | yes |" in page
