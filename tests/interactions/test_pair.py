@@ -232,3 +232,8 @@ def test_a_run_that_was_edited_so_that_agents_coincide_is_refused():
         fl.verify("energy", replace(run, q=q))
     with pytest.raises(ArgumentError, match="agents 0 and 1 are 0 apart"):
         fl.DeadZoneFlocking().jacobian(0.0, q[-1], run.p[-1])
+
+
+def test_whether_agents_may_coincide_is_a_truth_value():
+    assert AlphaInteraction().coincidence is True
+    assert fl.DeadZoneFlocking().interaction.coincidence is False
