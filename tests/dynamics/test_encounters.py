@@ -9,9 +9,12 @@ import pytest
 
 from flockana import Algorithm3, Capsule, Delayed, Law, Polygon, Sphere, StaticTarget, Wall, scenario, verify
 from flockana.base.errors import ArgumentError
-from flockana.dynamics.encounters import SHARE, Encounters, State
+from flockana.dynamics import encounters
+from flockana.dynamics.encounters import SHARE, Encounters, State, StepChecks
 from flockana.dynamics.simulate import ADAPTIVE, METHODS, simulate
 from flockana.interactions import BetaInteraction, DeadZoneInteraction, Gains
+from flockana.jit import callback_like, kernel
+from flockana.kernels.verlet import Pairs, no_pairs
 from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.minimal import MinimalFlocking
 from flockana.laws.notebook import PushedAlgorithm1
@@ -370,3 +373,26 @@ class TestFarAway:
         q = 1e9 + self.Q
         one, two = (simulate(DeadZoneFlocking(), q, np.ones((3, 2)), (0.0, 20.0), rtol=rtol) for rtol in (1e-8, 1e-10))
         assert one.stats["steps"] < two.stats["steps"]
+
+
+@kernel
+def no_room(q, reach, pairs):
+    """A list that holds nothing, as there are too many pairs."""
+    return Pairs(pairs.first, pairs.second, -1, q.copy(), reach, pairs.made + 1)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853"])
+def test_pairs_too_many_for_a_list_cut_the_same_steps(method, monkeypatch):
+    """Two that fly through each other's range in one long step, beside a third: checked without a list of pairs."""
+    q, p = np.array([[0.0, 0.0], [30.0, 1.0], [0.0, 40.0]]), np.array([[0.0, 0.0], [-9.0, 0.0], [0.0, 0.0]])
+    listed = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
+    pairs, looked = no_pairs(1, 2), []
+    callback = callback_like(no_room, pairs, np.empty((1, 2)), 0.0, pairs)
+    monkeypatch.setattr(encounters, "lister", lambda: callback)
+    at_crowd = StepChecks.looks_at_crowd
+    monkeypatch.setattr(StepChecks, "looks_at_crowd", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
+    crowd = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
+    assert True in looked
+    assert crowd.status == "complete"
+    np.testing.assert_array_equal(crowd.t, listed.t)
+    np.testing.assert_allclose(crowd.q, listed.q, atol=1e-12)
