@@ -31,9 +31,8 @@ class Command(TyperCommand):
         hints = get_type_hints(inspect.unwrap(callback))
         for param in self.params:
             kind = hints.get(str(param.name))
-            if given.get(str(param.name)) == "" and (
-                kind is Path or Path in get_args(kind)
-            ):  # as from an unset variable
+            is_path = kind is Path or Path in get_args(kind)
+            if is_path and given.get(str(param.name)) == "":  # as from an unset variable
                 name = param.opts[0] if param.param_type_name == "option" else param.metavar
                 here = "; this folder is '.'" if param.metavar in _FOLDERS else ""
                 raise FileError(f"{name} '': the name is empty; choose another name{here}")

@@ -62,7 +62,7 @@ class Engine(Stepper):
         t = float(self.block.t[made.steps])
         if made.status == CROWDED:
             self.failure = f"more pairs within reach at t = {t:g} than a list has room for: try method='{_UNLISTED}'"
-        elif made.status == SINGULAR and not checks.looks_at_crowd():
+        elif made.status == SINGULAR and not checks.switch_to_blocks():
             self.failure = at_a_pole(t)
         elif made.status in (TOO_SMALL, NOT_FINITE):
             why = _SMALL if made.status == TOO_SMALL else "the state is no longer finite"

@@ -149,10 +149,10 @@ class StepChecks:
         """Return (length to repeat the step with, 0 if it is accepted; whether the run ends at a pole)."""
         judged = self.judged(order, compiled=False)
         shorter, singular, self.near = checked(block, 0, judged, self._view, kept, self.near)
-        return self.examine(block, order, kept) if singular and self.looks_at_crowd() else (shorter, singular)
+        return self.examine(block, order, kept) if singular and self.switch_to_blocks() else (shorter, singular)
 
-    def looks_at_crowd(self) -> bool:
-        """Whether pairs turned out to be too many for a list just now: the next step looks at them block by block."""
+    def switch_to_blocks(self) -> bool:
+        """Check pairs block by block from now on if they do not fit into a list; return whether that is new."""
         if self._crowd or self.near.count >= 0:
             return False
         self._crowd, self._order = True, np.empty(0)

@@ -131,10 +131,21 @@ def falsify(
     if record.best.found and not deepen:
         ended = "found"
     case, best = begin if record.point is None else space.case(record.point), record.best
-    name, values = best.claim or claim or "", {x: float(law_parameter(case.law, x)) for x in space.parameters}
-    table, restarts = record.columns(name), search.restarts
+    name = best.claim or claim or ""
+    margins, statuses = record.columns(name)
     found = Falsification(
-        item.id, name, case, values, best.verdict, *table, seed, budget, restarts, ended, record.message
+        theorem=item.id,
+        claim=name,
+        case=case,
+        parameters={x: float(law_parameter(case.law, x)) for x in space.parameters},
+        verdict=best.verdict,
+        margins=margins,
+        statuses=statuses,
+        seed=seed,
+        budget=budget,
+        restarts=search.restarts,
+        ended=ended,
+        message=record.message,
     )
     return sealed(found)
 

@@ -9,7 +9,7 @@ from flockana.equilibria.terminal import TerminalState, terminal_state
 from flockana.lattice import classify
 from flockana.laws.olfati_saber import Algorithm1
 from flockana.theorems.basin import Basin
-from flockana.theorems.limits import dies_out
+from flockana.theorems.limits import decays_to_zero
 from flockana.theorems.olfati_saber.attraction import final_basin
 from flockana.theorems.toolkit import EPS, Certificate, Claim, Enclosure, Needs, Observed, Tolerances, limit_claim
 
@@ -19,7 +19,7 @@ def velocities_match(
 ) -> Claim:
     """Return the claim that velocities match in the moving frame in the limit: by a certificate or a proof."""
     what: dict[str, Any] = {"what": "velocity mismatch K̃", "of": "K̃", "start": "K̃ at the start"}
-    return dies_out(seen, name, needs, caught, series=seen.mismatch.mid, stated="K̃ -> 0", proof=proof, **what)
+    return decays_to_zero(seen, name, needs, caught, series=seen.mismatch.mid, stated="K̃ -> 0", proof=proof, **what)
 
 
 def settled(end: TerminalState, tolerances: Tolerances, scales: Scales) -> bool:

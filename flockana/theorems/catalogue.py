@@ -243,7 +243,7 @@ def _of_another_law(item: Theorem, run: Trajectory, tolerances: Tolerances, subj
     around = ", ".join(type(one).__name__ for one in wrappers_of(run.law))
     detail = f"the law of the run is wrapped in {around}; the theorem is about the law alone"
     missed = Hypothesis("the law acts undisturbed, at once and without a limit", "unmet", detail=detail)
-    return item.verdict(((missed,), item.silenced(missed)), tolerances, subject)
+    return item.verdict(((missed,), item.vacuous_claims(missed)), tolerances, subject)
 
 
 def _verified_tube(item: Theorem, tube: Any, basin: Any, tolerances: Tolerances, subject: str) -> Verdict:

@@ -77,7 +77,7 @@ def limit_claim(
     return replace(claim, detail="; ".join(filter(None, parts)))
 
 
-def dies_out(
+def decays_to_zero(
     seen: Any,
     name: str,
     needs: Needs,
@@ -85,12 +85,14 @@ def dies_out(
     *,
     series: Any,
     what: str,
+    of: str = "",
+    start: str = "",
     **fields: Any,
 ) -> Claim:
     """Return the claim that a series of a run tends to 0: `of` is its symbol, `start` the name of its first value."""
-    t, start, of = seen.t, fields.pop("start", ""), fields.pop("of", "")
-    told = evidence(t, series, of) if of else ""
-    return limit_claim(name, needs, certificates, evidence=told, **fields).described(
+    t = seen.t
+    shown = evidence(t, series, of) if of else ""
+    return limit_claim(name, needs, certificates, evidence=shown, **fields).described(
         computed=float(series[-1]),
         witness={"time": float(t[-1])} | ({start: float(series[0])} if start else {}),
         detail=f"{what} goes from {series[0]:.3g} to {series[-1]:.3g} at t = {t[-1]:g}",

@@ -48,11 +48,11 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
     detail = f"the run is in steps of {law.dt:g} of {type(law.law).__name__} by {type(law).__name__}"
     missed = Hypothesis("the law acts in continuous time", "unmet", detail=detail)
     if item.id not in ON_STEPS or len(seen.t) < 2:
-        return (missed,), item.silenced(missed)
+        return (missed,), item.vacuous_claims(missed)
     flow = _of_law(seen, law)
     needs, _ = item.check(flow, tolerances)
     since = start_of_condition(flow) if item.id == "os-6" else 0
-    return (missed,), (*item.silenced(missed), *_of_energy(seen.run, since, list(needs), tolerances))
+    return (missed,), (*item.vacuous_claims(missed), *_of_energy(seen.run, since, list(needs), tolerances))
 
 
 def _of_law(seen: Observed, law: Scheme) -> Observed:

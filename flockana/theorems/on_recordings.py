@@ -124,7 +124,7 @@ def verify_recording(
     first = Hypothesis("the samples follow the law", follow.status, follow.margin, follow.detail)
     named = f"{_named(rec, subject)}: {rec.accuracy}"
     if follow.status == "unmet":
-        claims = item.silenced(first) or (vacuous("all", first, by=item.author),)
+        claims = item.vacuous_claims(first) or (vacuous("all", first, by=item.author),)
         return item.verdict(((first,), claims), tolerances, named)
     seen = rec.cached(f"observed under {law!r}", lambda: observed_recording(rec, law, follow))
     examined = on_steps if is_about_steps(item, seen) else Theorem.examine

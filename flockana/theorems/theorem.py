@@ -345,7 +345,7 @@ class Theorem:
         """
         return Verdict(self.id, *known, used, on, self.author)
 
-    def silenced(self, missed: Hypothesis) -> tuple[Claim, ...]:
+    def vacuous_claims(self, missed: Hypothesis) -> tuple[Claim, ...]:
         """Return all claims as vacuous under an unmet hypothesis.
 
         Parameters

@@ -389,8 +389,8 @@ def test_pairs_too_many_for_a_list_cut_the_same_steps(method, monkeypatch):
     pairs, looked = no_pairs(1, 2), []
     callback = callback_like(no_room, pairs, np.empty((1, 2)), 0.0, pairs)
     monkeypatch.setattr(encounters, "lister", lambda: callback)
-    at_crowd = StepChecks.looks_at_crowd
-    monkeypatch.setattr(StepChecks, "looks_at_crowd", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
+    at_crowd = StepChecks.switch_to_blocks
+    monkeypatch.setattr(StepChecks, "switch_to_blocks", lambda self: (looked.append(at_crowd(self)), looked[-1])[1])
     crowd = simulate(Algorithm1(), q, p, (0.0, 6.0), method=method)
     assert True in looked
     assert crowd.status == "complete"

@@ -22,7 +22,7 @@ import numpy as np
 
 from flockana.measures.perception import edge_vectors
 from flockana.theorems.bearing_distance.tree_case import TreeCase
-from flockana.theorems.limits import Certificate, dies_out
+from flockana.theorems.limits import Certificate, decays_to_zero
 from flockana.theorems.observed import End
 from flockana.theorems.rounding import frame_error
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, FloatArray, Hypothesis, Observed, lengths
@@ -75,7 +75,7 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
     """Return the claim that the velocities at both ends of every edge match in the limit."""
     speeds = lengths(edge_vectors(seen.run.p, case.links)).max(axis=1)
     about: dict[str, Any] = {"series": speeds, "what": "the largest |x_e'|", "of": "|x_e'|", "start": "at the start"}
-    return dies_out(seen, "velocities", needs, [settles(case, seen.end)], stated=stated, **about)
+    return decays_to_zero(seen, "velocities", needs, [settles(case, seen.end)], stated=stated, **about)
 
 
 def kept(case: TreeCase, end: End) -> float:

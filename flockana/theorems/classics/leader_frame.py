@@ -12,7 +12,7 @@ from flockana.environment.targets import LinearTarget, StaticTarget
 from flockana.laws.olfati_saber import Algorithm2
 from flockana.laws.terms.feedforward import acceleration
 from flockana.measures.nets import components, links
-from flockana.theorems.limits import Certificate, dies_out
+from flockana.theorems.limits import Certificate, decays_to_zero
 from flockana.theorems.rounding import EPS
 from flockana.theorems.toolkit import Claim, FloatArray, Hypothesis, Needs, Observed, Trajectory, condition, lengths
 
@@ -111,5 +111,5 @@ def comes_to_rest(
     speeds, count = lengths(seen.run.p[:, who]).max(axis=1, initial=0.0), int(np.count_nonzero(who))
     what = f"the largest of {count} differences from the leader's velocity"
     about: dict[str, Any] = {"series": speeds, "what": what, "of": "the largest difference", "stated": "p_i - p_r -> 0"}
-    claim = dies_out(seen, name, needs, certificates, proof=proof, **about)
+    claim = decays_to_zero(seen, name, needs, certificates, proof=proof, **about)
     return claim.described(witness={"time": float(seen.t[-1]), "agents": count})

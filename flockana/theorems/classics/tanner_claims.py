@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from flockana.theorems.asymptotics import velocities_match
-from flockana.theorems.limits import dies_out
+from flockana.theorems.limits import decays_to_zero
 from flockana.theorems.sampling import least_distance
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Needs, Observed, by_count, judged
 
@@ -44,7 +44,7 @@ def comes_to_rest(seen: Observed, needs: Needs, names: tuple[str, str], *, force
     what: dict[str, Any] = {"what": "the largest force", "of": "the largest force", "stated": "the largest force -> 0"}
     return [
         velocities_match(seen, needs, name=names[0], proof=MATCHED),
-        dies_out(seen, names[1], needs, series=force, proof=forces, **what),
+        decays_to_zero(seen, names[1], needs, series=force, proof=forces, **what),
     ]
 
 

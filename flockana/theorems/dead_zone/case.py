@@ -11,7 +11,7 @@ from flockana.laws.dead_zone import DeadZoneFlocking
 from flockana.laws.semi_implicit import SemiImplicitEuler
 from flockana.measures.metrics import min_distance
 from flockana.theorems.dead_zone.parting import Components, components_of
-from flockana.theorems.limits import Certificate, dies_out
+from flockana.theorems.limits import Certificate, decays_to_zero
 from flockana.theorems.olfati_saber.collisions import least_distance
 from flockana.theorems.toolkit import EPS, Claim, Enclosure, Hypothesis, Needs, Observed, Trajectory, condition, judged
 
@@ -64,7 +64,7 @@ def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str
     """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
     what: dict[str, Any] = {"what": "K̃", "of": "K̃", "start": "K̃ at the start", "stated": "K̃ -> 0: all velocities match"}
     certificates = [settling(end)] if end.count == 1 else []
-    return dies_out(seen, name, needs, certificates, series=seen.mismatch.mid, escape=end.separation, **what)
+    return decays_to_zero(seen, name, needs, certificates, series=seen.mismatch.mid, escape=end.separation, **what)
 
 
 def distance_bound(seen: Observed, law: DeadZoneFlocking) -> Enclosure:

@@ -15,7 +15,7 @@ from flockana.lattice import harborth
 from flockana.laws.olfati_saber import Algorithm1, Algorithm2, paper_pair
 from flockana.theorems.asymptotics import velocities_match
 from flockana.theorems.hypotheses import hypothesis_from_fact, smooth_pair, weight_nonnegative
-from flockana.theorems.limits import dies_out
+from flockana.theorems.limits import decays_to_zero
 from flockana.theorems.meeting import above_least, least_is_known, meeting
 from flockana.theorems.olfati_saber import collisions
 from flockana.theorems.sampling import nets_at, radius_over
@@ -139,7 +139,7 @@ def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
     """Claim that forces tend to 0: the flock tends to the critical points of its potential."""
     forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
     stated = "the largest force on an agent at rest -> 0"
-    return dies_out(seen, name, needs, series=forces, what="the largest force", stated=stated, proof=LIMITS)
+    return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated, proof=LIMITS)
 
 
 def _needs(seen: Observed) -> list[Hypothesis]:
