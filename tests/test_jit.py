@@ -299,6 +299,7 @@ def test_one_process_compiles_at_a_time_and_none_waits_for_one_that_was_killed(m
 def test_long_compiling_is_announced_once_on_a_terminal(terminal, monkeypatch, caplog):
     monkeypatch.setattr(jit, "_SILENT", 0.01)
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)  # another test may have loaded it
     jit._announce.cache_clear()
     for _ in range(2):
         with jit.compiling():
