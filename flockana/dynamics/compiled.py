@@ -8,13 +8,14 @@ from flockana.base.checks import FloatArray
 from flockana.base.interrupts import defer_sigint
 from flockana.dynamics.encounters import StepChecks, at_a_pole
 from flockana.dynamics.frame import Frame, Plan
+from flockana.dynamics.sample import Start
 from flockana.dynamics.stepper import Stepper
 from flockana.jit import thawed
 from flockana.kernels.advance import advance
 from flockana.kernels.march import CROWDED, NOT_FINITE, SINGULAR, TOO_SMALL, Block, Room
 from flockana.kernels.runge_kutta import Method
 from flockana.kernels.tableaus import tableau
-from flockana.kernels.verlet import SKIN, list_pairs, no_pairs, spatial_order
+from flockana.kernels.verlet import Pairs, list_pairs, no_pairs, spatial_order
 from flockana.laws.law import Law
 from flockana.laws.terms.term import Compiled
 
@@ -35,13 +36,13 @@ class Engine(Stepper):
         self.frame, self.plan, (n, m) = frame, plan, frame.shape
         self.failure, self.evaluations, self.redone = "", 1, 0
         self.stops, self.due = plan.stops[plan.stops > frame.t0], plan.due[plan.due > frame.t0]
-        self.pairs, self._sorted, self._h = no_pairs(n, m), -_LISTS, 0.0
+        self.pairs, self._sorted, self._h = no_pairs(n, m), 0, 0.0
         rows = int(np.clip(_NUMBERS // (4 * frame.size), 1, _STEPS)) + 1
         self.block = Block(*(np.empty((rows, *shape)) for shape in ((), y.shape, y.shape, ())))
         for each, value in zip(self.block, (frame.t0, y, f, np.nan), strict=True):
             each[0] = value
         self._system = form.system(frame.view, n, m)
-        self.order = self._system.order
+        self.order, self._reach = self._system.order, sum(self._system.reach)
         given: list[Any] = [thawed(each) if isinstance(each, np.ndarray) else each for each in tableau(plan.method)]
         self._room = Room(np.empty((int(max(given[4])) + 1, y.size)), np.empty(y.size))
         rtol, floor, longest = plan.control
@@ -49,7 +50,7 @@ class Engine(Stepper):
         self._method = Method(*given)
 
     def advance(self, checks: StepChecks) -> int:  # noqa: D102
-        if self._system.reach[0] > 0.0 and self.pairs.made >= self._sorted + _LISTS:
+        if self._reach and self.pairs.made >= self._sorted + _LISTS:
             self._sort()
         judged = checks.judged(self.order)
         with defer_sigint():  # raised while numba makes the result of a kernel, it crashes the process
@@ -69,13 +70,25 @@ class Engine(Stepper):
             self.failure = self.plan.describe_failure(t + made.h, why)
         return int(made.steps)
 
+    def list_pairs(self) -> bool:
+        """List the pairs of the start; return whether they fit into memory."""
+        if self._reach:
+            self._sort()
+            first, second, count = list_pairs(self._places, self._reach, self.pairs.first, self.pairs.second)
+            self.pairs = Pairs(first, second, count, self._places.copy(), self._reach, 1)
+        return self.pairs.count >= 0
+
+    @property
+    def _places(self) -> FloatArray:
+        n, m = self.frame.shape
+        return self.block.y[0, : n * m].reshape(n, m)
+
     def _sort(self) -> None:
         """Sort the agents by cell."""
-        (n, m), reach = self.frame.shape, sum(self._system.reach)
-        order = spatial_order(self.block.y[0, : n * m].reshape(n, m), reach)
+        (n, m), order = self.frame.shape, spatial_order(self._places, self._reach)
         for rows in (self.block.y, self.block.f):
             both = rows[0, : 2 * n * m].reshape(2, n, m)
-            both[:] = both[:, order]
+            both[:] = both.take(order.view(np.int64), axis=1)
         self.order = self.order[order]
         self._system = self._system._replace(order=self.order)
         self.pairs = self.pairs._replace(places=np.empty((0, m)))
@@ -86,15 +99,13 @@ class Engine(Stepper):
         return self.due[: len(work)], states, work
 
 
-def engine_of(law: Law, q0: FloatArray, p0: FloatArray, t0: float, plan: Plan) -> Engine | None:
+def engine_of(law: Law, start: Start, plan: Plan) -> Engine | None:
     """Return the compiled integrator of a law and a method; None without a compiled form, or with too many pairs."""
-    form = law.compiled(q0.shape[1]) if plan.method in METHODS else None
-    if form is None or not np.isfinite(law.hamiltonian(t0, q0, p0)):
+    form = law.compiled(start.q.shape[1]) if plan.method in METHODS else None
+    if form is None or not start.energetic:
         return None
-    few = np.empty(1, np.uint32)
-    if list_pairs(q0, (1.0 + SKIN) * form.reach, few, few)[2] < 0:
-        return None
-    frame = Frame.of(t0, q0, p0, energetic=True)
-    u, power = law.flow(t0, q0, p0)
-    y0 = frame.start(q0, p0)
-    return Engine(form, frame, plan, y0, np.concatenate([y0[frame.size : 2 * frame.size], u.ravel(), [power]]))
+    frame = Frame.of(start.t, start.q, start.p, energetic=True)
+    y0 = frame.start(start.q, start.p)
+    f0 = np.concatenate([y0[frame.size : 2 * frame.size], start.u.ravel(), [start.power]])
+    engine = Engine(form, frame, plan, y0, f0)
+    return engine if engine.list_pairs() else None

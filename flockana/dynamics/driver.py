@@ -13,7 +13,7 @@ from flockana.base.checks import FloatArray
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
-from flockana.dynamics.sample import Sample, Samples, Tally, has_energy
+from flockana.dynamics.sample import Sample, Samples, Start, Tally
 from flockana.dynamics.solvers import Solver
 from flockana.dynamics.stepper import Stepper
 from flockana.dynamics.switches import Switches, switched
@@ -21,35 +21,33 @@ from flockana.laws.law import Law
 from flockana.laws.switched import SwitchedLaw
 
 
-def integrated(
-    law: Law, q0: FloatArray, p0: FloatArray, t0: float, plan: Plan, keep: FloatArray | None, tally: Tally
-) -> Iterator[Sample | Samples]:
+def integrated(law: Law, start: Start, plan: Plan, keep: FloatArray | None, tally: Tally) -> Iterator[Sample | Samples]:
     """Yield samples and steps of a run as they are made; `keep` lists the sample times, None keeps every step."""
     # A step that leaps over an encounter or a pole, or breaks the energy's balance, is made again, and shorter. A law
     # with jumps is integrated from switch to switch, except by RK4; one that slides ends the run. `tally.notes` gets
     # the numbers of steps made again and of switches.
     jumps = isinstance(law, SwitchedLaw) and law.located and not plan.dt
-    engine = None if jumps else engine_of(law, q0, p0, t0, plan)
+    engine = None if jumps else engine_of(law, start, plan)
     if engine is not None:
-        yield from _driven(engine, law, q0, p0, keep, tally)
+        yield from _driven(engine, law, start, keep, tally)
         return
-    frame = Frame.of(t0, q0, p0, energetic=has_energy(law, t0, q0, p0))
-    switches = Switches(law, q0) if jumps else None  # type: ignore[arg-type]
-    solver = Solver(law, frame, plan, frame.start(q0, p0), None if switches is None else switches.flow)
+    frame = Frame.of(start.t, start.q, start.p, energetic=start.energetic)
+    switches = Switches(law, start.q) if jumps else None  # type: ignore[arg-type]
+    solver = Solver(law, frame, plan, frame.start(start.q, start.p), None if switches is None else switches.flow)
     if switches is None:
-        yield from _driven(solver, law, q0, p0, keep, tally)
+        yield from _driven(solver, law, start, keep, tally)
     else:
-        yield from switched(solver, switches, q0, p0, keep, tally)
+        yield from switched(solver, switches, start, keep, tally)
 
 
 def _driven(
-    stepper: Stepper, law: Law, q0: FloatArray, p0: FloatArray, keep: FloatArray | None, tally: Tally
+    stepper: Stepper, law: Law, start: Start, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample | Samples]:
     """Yield steps up to the last stop, and samples at the times that are due."""
-    frame, checks = stepper.frame, StepChecks(law, stepper.frame, stepper.plan)
-    tally.notes["redone"], t0 = 0, frame.t0
-    if keep is None or keep[0] == t0:  # not a rounding beside it, as in the frame
-        yield Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], {"work": np.array(0.0)} if frame.energetic else {})
+    checks = StepChecks(law, stepper.frame, stepper.plan)
+    tally.notes["redone"] = 0
+    if keep is None or keep[0] == start.t:  # not a rounding beside it, as in the frame
+        yield start.sample
     while stepper.stops.size:
         good = stepper.advance(checks)
         tally.evaluations, tally.notes["redone"] = stepper.evaluations, stepper.redone
@@ -77,8 +75,9 @@ def _parted(stepper: Stepper, good: int, wanted: FloatArray | None) -> Iterator[
     due, seen, done = stepper.between()
     chosen, apart = _among(made, wanted), ~_among(due, made)  # where a step ended there is nothing in what is between
     if not chosen.all():
-        t, other = (made[~chosen], states[~chosen]) if chosen.any() else (made, states)
-        yield samples(t, other, work, wanted=False)
+        own = np.flatnonzero(~chosen)
+        rows = slice(own[0], own[-1] + 1) if own[-1] - own[0] < own.size else own  # a view where they are contiguous
+        yield samples(made[rows], states[rows], work, wanted=False)
     if chosen.any() or apart.any():
         t = np.concatenate([made[chosen], due[apart]])
         order = np.argsort(t)

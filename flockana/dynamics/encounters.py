@@ -98,13 +98,14 @@ class Encounters:
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
         """Return the encounters for compiled code, with agents permuted by `order`."""
-        radii, few, place = self.radii[order], self.among is not None, np.argsort(order).astype(np.uint32)
-        among = np.empty((0, 2), np.int32) if self.among is None else self.among
-        edges = [*self.radii.ravel(), *(() if few else self.poles)] or [0.0]
-        first, second = (place[each] for each in among.T)
+        few = self.among is not None
+        first, second = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
+        edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
+        least, largest = (edges.min(), edges.max()) if edges.size else (0.0, 0.0)
         return Around(
-            radii, float(self.far), (float(min(edges)), float(max(edges))), thawed(self.poles), toward, first, second,
-            few, *self._guard, (float(self.shell), float(self.skirt)), lister(),
+            self.radii[order], float(self.far), (float(least), float(largest)), thawed(self.poles), toward,
+            np.ascontiguousarray(first), np.ascontiguousarray(second), few, *self._guard,
+            (float(self.shell), float(self.skirt)), lister(),
         )  # fmt: skip
 
     @cached_property

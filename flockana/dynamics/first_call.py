@@ -1,4 +1,4 @@
-"""Check of a law's first results before integration, so that an error names the law and what it returned."""
+"""A law's first results, checked before integration, so that an error names the law and what it returned."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,27 +7,32 @@ import numpy as np
 
 from flockana.base.checks import FloatArray, ensure_returned_array
 from flockana.base.errors import ArgumentError, format_value
+from flockana.dynamics.sample import Start
 from flockana.laws.discrete import DiscreteLaw
 from flockana.laws.law import Law
 
 
-def check_first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> None:
-    """Raise unless a law returns real numbers in the flock's shape, finite at the start."""
+def first_call(law: Law | DiscreteLaw, t0: float, q0: FloatArray, p0: FloatArray) -> Start:
+    """Return the start of a run; raise unless the law returns real numbers in the flock's shape, finite there."""
     name, at = type(law).__name__, f"at the start, t = {t0:g}"
     if isinstance(law, Law):
-        _check_finite(law, *law.checked_flow(t0, q0, p0), t0, q0, p0, at)
-        return
+        u, power = law.checked_flow(t0, q0, p0)
+        start = Start(t0, q0, p0, u, power, law.hamiltonian(t0, q0, p0))
+        _check_finite(name, start, at)
+        return start
     memory = {key: np.array(value) for key, value in law.start(q0, p0).items()}
     given: Any = law.step(t0, q0.copy(), p0.copy(), memory)
     if not isinstance(given, tuple) or len(given) != 4 or not isinstance(given[3], Mapping):
         raise ArgumentError(f"{name} gives {format_value(given)} {at}: expected (q, p, u, memory)")
     for part, value in zip("qpu", given, strict=False):
         ensure_returned_array(f"{name} gives {part}", value, q0.shape, at)
+    public = {key: np.array(value) for key, value in law.start(q0, p0).items() if key not in law.private}
+    return Start(t0, q0, p0, np.zeros_like(q0), memory=public)
 
 
-def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray, p0: FloatArray, at: str) -> None:
+def _check_finite(name: str, start: Start, at: str) -> None:
     """Raise unless accelerations are finite, and so is the energy's rate if there is an energy."""
-    name, energy = type(law).__name__, law.hamiltonian(t0, q0, p0)
+    u, energy = start.u, start.energy
     if not (known := np.isfinite(u).all(axis=1)).all():
         i = int(np.argmin(known))
         raise ArgumentError(f"{name} gives u[{i}] = {u[i]} {at}: expected finite accelerations there")
@@ -35,8 +40,8 @@ def _check_finite(law: Law, u: FloatArray, rate: Any, t0: float, q0: FloatArray,
         raise ArgumentError(
             f"{name} gives H = {format_value(energy)} {at}: expected a real number, or NaN without energy"
         )
-    if np.isfinite(energy) and not np.isfinite(rate):
+    if start.energetic and not np.isfinite(start.power):
         raise ArgumentError(
-            f"{name} gives H = {energy:g}, but dH/dt = {rate} {at}: expected the rate of that energy, or H = NaN for a "
-            "law without one"
+            f"{name} gives H = {energy:g}, but dH/dt = {start.power} {at}: expected the rate of that energy, or H = "
+            "NaN for a law without one"
         )

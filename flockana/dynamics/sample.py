@@ -10,8 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from flockana.base.checks import FloatArray
-from flockana.laws.discrete import DiscreteLaw
-from flockana.laws.law import Law
 
 
 class Sample(NamedTuple):
@@ -52,6 +50,29 @@ class Samples(NamedTuple):
             yield Sample(t, self.q[k], self.p[k], self.u[k], extra, self.wanted)
 
 
+class Start(NamedTuple):
+    """Initial state of a run, and what its law gives there."""
+
+    t: float
+    q: FloatArray
+    p: FloatArray
+    u: FloatArray
+    power: float = np.nan  # dH/dt
+    energy: float = np.nan  # NaN of a law without energy
+    memory: Mapping[str, FloatArray] = {}  # of a map
+
+    @property
+    def energetic(self) -> bool:
+        """Whether the law has an energy, so that its work can be integrated."""
+        return bool(np.isfinite(self.energy))
+
+    @property
+    def sample(self) -> Sample:
+        """The initial state as a sample."""
+        work = {"work": np.array(0.0)} if self.energetic else {}
+        return Sample(self.t, self.q, self.p, self.u, {**self.memory, **work})
+
+
 @dataclass
 class Tally:
     """Status and counts of a run, updated as it goes so that they survive an interruption."""
@@ -67,15 +88,6 @@ class Tally:
         self.status, self.message = "failed", message
 
 
-def start_sample(law: Law | DiscreteLaw, q0: FloatArray, p0: FloatArray, t0: float) -> Sample:
-    """The initial state as a sample."""
-    if isinstance(law, DiscreteLaw):
-        memory = {name: value for name, value in law.start(q0, p0).items() if name not in law.private}
-        return Sample(t0, q0, p0, np.zeros_like(q0), copied(memory))
-    extra = {"work": np.array(0.0)} if has_energy(law, t0, q0, p0) else {}
-    return Sample(t0, q0, p0, law.flow(t0, q0, p0)[0], extra)
-
-
 def copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """Return copies of a map's memory, which the map may overwrite."""
     return {name: np.array(value) for name, value in memory.items()}
@@ -84,8 +96,3 @@ def copied(memory: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
 def finite(*values: Any) -> bool:
     """Whether all numbers in all arrays are finite."""
     return all(bool(np.isfinite(value).all()) for value in values)
-
-
-def has_energy(law: Law, t: float, q: FloatArray, p: FloatArray) -> bool:
-    """Whether a law has an energy, so that its work can be integrated."""
-    return bool(np.isfinite(law.hamiltonian(t, q, p)))

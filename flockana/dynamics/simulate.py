@@ -26,10 +26,10 @@ from flockana.base.seals import sealed
 from flockana.dynamics.between import Between, Recorder
 from flockana.dynamics.delayed import followed
 from flockana.dynamics.driver import integrated
-from flockana.dynamics.first_call import check_first_call
+from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.iterate import count_steps, discrete
-from flockana.dynamics.sample import Sample, Samples, Tally, copied, start_sample
+from flockana.dynamics.sample import Sample, Samples, Tally, copied
 from flockana.dynamics.solvers import SCIPY
 from flockana.dynamics.tolerance import Control, ensure_atol, error_floor
 from flockana.dynamics.trajectory import Trajectory
@@ -120,7 +120,7 @@ def simulate(
     law.check_start(q0, p0)
     t_span = ensure_time_span(t_span)
     keep = _check_t_eval(t_eval, t_span)
-    check_first_call(law, t_span[0], q0, p0)
+    start = first_call(law, t_span[0], q0, p0)
     if watch is not None and not callable(watch):
         raise ArgumentError(f"watch = {watch!r}: expected a function of a sample, or None")
     tally, how = Tally(), dict[str, Any]()
@@ -139,24 +139,23 @@ def simulate(
         _ensure_samples_fit(how["dt"], t_span, q0, keep)
         stops = np.array(list(_stops(t_span, how["dt"], keep)))
         plan = Plan("RK4", stops, np.empty(0), dt=how["dt"])
-        samples = integrated(law, q0, p0, t_span[0], plan, stops if keep is None else keep, tally)
+        samples = integrated(law, start, plan, stops if keep is None else keep, tally)
     else:
         how = {"rtol": ensure_positive("rtol", rtol), "atol": ensure_atol("atol", atol)}
-        floor = error_floor(law, q0, p0, t_span, **how)
+        floor = error_floor(law.scales, start, t_span[1] - t_span[0], **how)
         longest = np.inf if max_step is None else _ensure_step("max_step", max_step, t_span)
         control, due = Control(how["rtol"], floor, longest), np.empty(0) if keep is None else keep
         plan = Plan(method, np.array([t_span[1]]), due, control)
-        samples = integrated(law, q0, p0, t_span[0], plan, keep, tally)
+        samples = integrated(law, start, plan, keep, tally)
         how |= {"floors": list(floor)} if max_step is None else {"floors": list(floor), "max_step": longest}
     started = time.perf_counter()
     kept, between = _collect(samples, t_span, tally, progress, watch)
     counts = {"method": method, "steps": tally.steps, "evaluations": tally.evaluations}
     stats = counts | tally.notes | how | {"seconds": time.perf_counter() - started}
     if not kept:  # ended before the first time to keep
-        first = start_sample(law, q0, p0, t_span[0])
-        kept = [first]
+        kept = [start.sample]
         if watch is not None:
-            watch(_copy(first))
+            watch(_copy(start.sample))
     t, q, p, u, extra = _stacked(kept)
     return sealed(Trajectory(t, q, p, u, law, extra, tally.status, tally.message, stats, between))
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from flockana.base.checks import FloatArray
 from flockana.dynamics.encounters import StepChecks
 from flockana.dynamics.frame import Frame, Plan
-from flockana.kernels.advance import recorded
+from flockana.kernels.advance import record
 from flockana.kernels.march import Block
 
 
@@ -35,8 +35,9 @@ class Stepper(ABC):
 
     def states(self, good: int) -> tuple[FloatArray, FloatArray]:
         """(states of shape (good, 3, n, m), work) at the ends of the steps."""
-        found: tuple[FloatArray, FloatArray] = recorded(self.block, good, self.order, self.frame.view)
-        return found
+        states, work = np.empty((good, 3, *self.frame.shape)), np.empty(good)
+        record(self.block, self.order, self.frame.view, states, work)
+        return states, work
 
     def continue_from(self, good: int) -> None:
         """Go on from the end of the last step."""

@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 
 from flockana.base.checks import FloatArray
 from flockana.base.vectors import lengths
-from flockana.dynamics.sample import Sample, Tally
+from flockana.dynamics.sample import Sample, Start, Tally
 from flockana.dynamics.solvers import Solver
 from flockana.laws.switched import Pieces, SwitchedLaw
 
@@ -45,7 +45,7 @@ class Switches:
 
 
 def switched(
-    solver: Solver, switches: Switches, q0: FloatArray, p0: FloatArray, keep: FloatArray | None, tally: Tally
+    solver: Solver, switches: Switches, start: Start, keep: FloatArray | None, tally: Tally
 ) -> Iterator[Sample]:
     """Steps from switch to switch, and samples at times to keep; a sliding mode ends the run."""
     frame, flow, t = solver.frame, switches.flow, solver.frame.t0
@@ -56,8 +56,7 @@ def switched(
         return Sample(t, q, p, flow(t, q, p)[0], {"work": np.array(y[-1])} if frame.energetic else {})
 
     if keep is None or due[0] == t:
-        work = {"work": np.array(0.0)} if frame.energetic else {}
-        yield Sample(t, q0, p0, flow(t, q0, p0)[0], work)  # not a rounding beside it, as in the frame
+        yield start.sample._replace(u=flow(t, start.q, start.p)[0])  # not a rounding beside it, as in the frame
         _drop(due, t)
     tally.notes["switches"] = 0
     while solver.stops.size:

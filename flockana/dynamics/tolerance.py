@@ -9,7 +9,7 @@ from flockana.base.checks import FloatArray, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.scales import Scales
 from flockana.base.units import times
-from flockana.laws.law import Law
+from flockana.dynamics.sample import Start
 
 Atol = float | tuple[float, float] | None  # a length, (length, speed), or by default a share of rtol
 
@@ -57,18 +57,15 @@ def options_in_units(options: Mapping[str, Any], length: float, time: float) -> 
     return scaled
 
 
-def error_floor(
-    law: Law, q0: FloatArray, p0: FloatArray, t_span: tuple[float, float], rtol: float, atol: Atol
-) -> ErrorFloors:
+def error_floor(scales: Scales | None, start: Start, duration: float, rtol: float, atol: Atol) -> ErrorFloors:
     """Return absolute tolerances: those given, completed by the law's own speed, or by default a hundredth of `rtol`.
 
     A law without scales is measured by the extent of its start and by the duration. Work is measured against the energy
     that it is the change of, not against zero, where it starts. Far from the origin places are known to their rounding
     only, and forces to what it makes of them: nothing below that can be asked for.
     """
-    scales = law.scales
+    q0, p0 = start.q, start.p
     if scales is None:
-        duration = t_span[1] - t_span[0]
         extent, travel = (float(np.abs(x - x.mean(axis=0)).max()) for x in (q0, p0 * duration))
         scales = Scales(extent or travel or float(np.abs(p0).max()) * duration or 1.0, duration)
     if isinstance(atol, tuple):
@@ -77,12 +74,11 @@ def error_floor(
         length = FLOOR * rtol * scales.length if atol is None else atol
         speed = length / scales.length * scales.speed
     energy = min(length / scales.length, speed / scales.speed) * len(q0) * scales.energy
-    reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * (t_span[1] - t_span[0]))
+    reach = float(np.abs(q0).max() + np.abs(p0.mean(axis=0)).max() * duration)
     blur = _ROUNDINGS * (rtol / FINEST) ** _COARSER * float(np.spacing(reach)) / scales.length
     length, speed = max(length, blur * scales.length), max(speed, blur * scales.speed)
     energy = max(energy, blur * len(q0) * scales.energy)
-    start = law.hamiltonian(t_span[0], q0, p0)
-    return ErrorFloors(length, speed, max(energy, rtol * abs(start)) if np.isfinite(start) else energy)
+    return ErrorFloors(length, speed, max(energy, rtol * abs(start.energy)) if start.energetic else energy)
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:

@@ -41,14 +41,15 @@ def _record(y, f, order, frame, out):
 
 
 @kernel
-def recorded(block, count, order, view):
-    """Return (states, work) at the ends of the first steps of a block, in the agents' own order."""
-    m = view[1].size
-    states, work, frame = np.empty((count, 3, order.size, m)), np.empty(count), np.empty((2, m))
-    for k in range(count):
+def record(block, order, view, states, work):
+    """Write states and work at the ends of the first steps of a block, in the agents' own order.
+
+    The room is numpy's, for large pages (`flockana.kernels.pair_sums.forces`).
+    """
+    frame = np.empty((2, view[1].size))
+    for k in range(work.size):
         frame_at(block.t[k + 1], view, frame)
         work[k] = _record(block.y[k + 1], block.f[k + 1], order, frame, states[k])
-    return states, work
 
 
 @inlined

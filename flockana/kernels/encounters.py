@@ -188,12 +188,11 @@ def common_way(ends):
 
 
 @inlined
-def farthest_ways(ends, common):
-    """Return (longest way of an agent relative to the common one, largest allowance), both to rounding."""
+def _largest_squares(ends, common, m):
+    """Squares of the longest way of an agent relative to the common one, and of the two parts of its allowance."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
-    n, m = q0.shape
-    far, blur, s, z = 0.0, 0.0, h / 5.0, h * h / 20.0
-    for i in range(n):
+    way2, most2, most3, s, z = 0.0, 0.0, 0.0, h / 5.0, h * h / 20.0
+    for i in range(q0.shape[0]):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
             gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
@@ -206,9 +205,19 @@ def farthest_ways(ends, common):
             d5 += (w5 - (mean[5, c] + slope[5, c] * along)) ** 2
             off2 += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
             off3 += (0.3 * gone - back - 0.5 * out + bend1) ** 2
-        slack = ALLOWED * (np.sqrt(off2) + np.sqrt(off3))
-        far, blur = max(far, np.sqrt(max(max(max(d1, d2), max(d3, d4)), d5)) + slack), max(blur, slack)
-    return far, blur
+        way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
+    return way2, most2, most3
+
+
+@inlined
+def farthest_ways(ends, common):
+    """Return bounds of the longest way of an agent relative to the common one, and of its allowance, to rounding."""
+    if ends.q0.shape[1] == 2:  # said outright, as in `pull_to`
+        way2, most2, most3 = _largest_squares(ends, common, 2)
+    else:
+        way2, most2, most3 = _largest_squares(ends, common, ends.q0.shape[1])
+    blur = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
+    return np.sqrt(way2) + blur, blur
 
 
 @inlined
@@ -224,20 +233,48 @@ def band(common, farthest, edges, far):
 
 
 @inlined
-def share_of_listed(ends, mean, between, around, first, second, share):
-    """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
+def _stays_beyond(ends, i, j, edge):
+    """Whether a pair that starts beyond `edge` stays there, as its control points seen along its first line show."""
+    h, q0, p0, u0, q1, p1, u1 = ends
+    s2 = d1 = d2 = d3 = d4 = d5 = 0.0
+    s, z = h / 5.0, h * h / 20.0
+    for c in range(q0.shape[1]):
+        gap, out, back = q0[j, c] - q0[i, c], s * (p0[j, c] - p0[i, c]), s * (p1[j, c] - p1[i, c])
+        bend0, bend1 = z * (u0[j, c] - u0[i, c]), z * (u1[j, c] - u1[i, c])
+        _, x1, x2, x3, x4, x5 = polygon(gap, q1[j, c] - q1[i, c], out, back, bend0, bend1)
+        s2, d1, d2, d3 = s2 + gap * gap, d1 + gap * x1, d2 + gap * x2, d3 + gap * x3
+        d4, d5 = d4 + gap * x4, d5 + gap * x5
+    return min(min(s2, min(d1, d2)), min(d3, min(d4, d5))) >= edge * np.sqrt(s2) * _WIDER
 
-    Only pairs are looked at whose distance is within a band where the step begins.
-    """
-    (h, q0, p0, u0, q1, p1, u1), radii = ends, around.radii
-    room, low2, high2 = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2
-    m = q0.shape[1]
+
+@inlined
+def _within(q0, first, second, band2, chosen, m):
+    """Write which pairs start within a band of squared distances; return how many."""
+    count = 0
     for k in range(first.size):
-        i, j = np.uint64(first[k]), np.uint64(second[k])
-        s2 = 0.0
+        i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
         for c in range(m):
             s2 += (q0[j, c] - q0[i, c]) ** 2
-        if low2 <= s2 < high2:
+        chosen[count] = k
+        count += (s2 >= band2[0]) & (s2 < band2[1])
+    return count
+
+
+@inlined
+def share_of_listed(ends, common, between, around, first, second, share):
+    """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
+
+    `common` are the mean control points and the largest allowance. Only pairs are looked at whose distance is within a
+    band where the step begins.
+    """
+    (h, q0, p0, u0, q1, p1, u1), radii, (mean, blur) = ends, around.radii, common
+    room, band2 = pair_room(radii.shape[1]), (between[0] ** 2, between[1] ** 2)
+    m, outer, chosen = q0.shape[1], around.edges[1] + 2.0 * blur, np.empty(first.size + 1, np.uint32)
+    # 2 is said outright, as in `pull_to`
+    count = _within(q0, first, second, band2, chosen, 2) if m == 2 else _within(q0, first, second, band2, chosen, m)
+    for k in range(count):
+        i, j = np.uint64(first[chosen[k]]), np.uint64(second[chosen[k]])
+        if not _stays_beyond(ends, i, j, outer):
             for a in range(2):
                 one, curve = i if a == 0 else j, room.points[a]
                 put(radii[one], room.radii[a])

@@ -46,7 +46,11 @@ def _share_of(ends, whole, around, first, second, share):
         beside = steepest(common[1]), ways[0] + ways[1]
         if crossing_listed(ends, beside, around.poles, around.toward, first, second):
             return POLE
-    return share_of_listed(ends, common[0], between, around, first, second, share) if around.radii.size else share
+    return (
+        share_of_listed(ends, (common[0], ways[1]), between, around, first, second, share)
+        if around.radii.size
+        else share
+    )
 
 
 @inlined

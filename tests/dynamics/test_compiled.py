@@ -9,6 +9,7 @@ from flockana import Algorithm3, Capsule, ObstacleTerm, PairTerm, Polygon, Spher
 from flockana.dynamics import compiled
 from flockana.dynamics.compiled import engine_of
 from flockana.dynamics.encounters import StepChecks
+from flockana.dynamics.first_call import first_call
 from flockana.dynamics.frame import Plan
 from flockana.dynamics.tolerance import Control, ErrorFloors
 from flockana.environment.targets import (
@@ -99,7 +100,7 @@ def laws():
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
     control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
-    engine = engine_of(law, q0, p0, 0.5, Plan("DOP853", np.array([0.7]), np.empty(0), control))
+    engine = engine_of(law, first_call(law, 0.5, q0, p0), Plan("DOP853", np.array([0.7]), np.empty(0), control))
     made = engine.advance(StepChecks(law, engine.frame, engine.plan))
     t, f = float(engine.block.t[made]), engine.block.f[made]
     states, work = engine.states(made)
@@ -174,7 +175,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
     ours, plain = (simulate(one, q, p, (0.0, 3.0), rtol=1e-7) for one in (law, stepped))
     np.testing.assert_allclose(ours.q[-1], plain.q[-1], atol=1e-5)
     assert body.clearance(ours.path.q.reshape(-1, 2)).min() < law.beta.d
-    assert engine_of(law, q, p, 0.0, Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
+    assert engine_of(law, first_call(law, 0.0, q, p), Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
 
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
@@ -243,11 +244,13 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     ]
     dop853, lsoda = (Plan(method, np.array([0.5]), np.empty(0)) for method in ("DOP853", "LSODA"))
     for law in plain:
-        assert engine_of(law, q, p, 0.0, dop853) is None, law
-    assert engine_of(Algorithm1(), q, p, 0.0, lsoda) is None
+        assert engine_of(law, first_call(law, 0.0, q, p), dop853) is None, law
+    assert engine_of(Algorithm1(), first_call(Algorithm1(), 0.0, q, p), lsoda) is None
     around = Sphere((-2.0, 12.0), 3.0)
     for law in (Fenced(target=TARGETS[1]), Doubled(target=TARGETS[1], obstacles=[around])):
-        assert engine_of(law, q, p, 0.0, dop853) is not None  # its obstacles are guarded, whatever its terms are
+        assert (
+            engine_of(law, first_call(law, 0.0, q, p), dop853) is not None
+        )  # its obstacles are guarded, whatever its terms are
         ours, theirs = (simulate(law, q, p, (0.0, 0.5), method=name, rtol=1e-10) for name in ("DOP853", "scipy-DOP853"))
         np.testing.assert_allclose(ours.q[-1], theirs.q[-1], atol=1e-7)
     lied = simulate(plain[1], q, p, (0.0, 0.5), rtol=1e-9)
@@ -257,7 +260,10 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
     monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
-    assert engine_of(Algorithm1(), q, p, 0.0, Plan("DOP853", np.array([0.01]), np.empty(0))) is None
+    assert (
+        engine_of(Algorithm1(), first_call(Algorithm1(), 0.0, q, p), Plan("DOP853", np.array([0.01]), np.empty(0)))
+        is None
+    )
     monkeypatch.undo()
     advance = compiled.advance
     monkeypatch.setattr(compiled, "advance", lambda *given: advance(*given)._replace(status=compiled.CROWDED))
