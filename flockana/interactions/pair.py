@@ -168,11 +168,7 @@ class PairInteraction(ABC):
         u = np.zeros_like(q) if out is None else out
         par = self._constants
         sums = self.kernels.sums(q.shape[1], par.size)
-        summed, dissipation = sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
-        if not summed:  # too sparse for a grid of cells
-            for i, j in pair_blocks(q, self.range):
-                dissipation += sums.forces_of(q, p, i, j, par, stiffness, damping, u)
-        return u, dissipation
+        return u, sums.forces(q, p, self.range, par, stiffness, damping, u, np.empty((3, *q.shape)))
 
     @cached_property
     def _constants(self) -> FloatArray:

@@ -14,7 +14,6 @@ IndexArray = npt.NDArray[np.int64]
 
 _FEW = 64  # flocks up to this size are searched agent by agent
 _CROWDED = 4  # least number of blocks of adjacent cells; with fewer, most agents are near each other
-_WIDER = 64  # times that cells are made twice as wide, where the box is sparse
 _SLACK = 1.0 + 1e-9  # for who is near by the rounding of a root
 
 
@@ -34,13 +33,7 @@ def sort_into_cells(q, reach):
     none = np.empty(0, np.int64)
     if n <= _FEW:
         return Cells(none, none, none, none)
-    side = reach
-    order, start, rows = sort_into_grid(q, side)
-    for _ in range(_WIDER):
-        if start.size > 0:
-            break
-        side *= 2.0
-        order, start, rows = sort_into_grid(q, side)
+    order, start, rows = sort_into_grid(q, reach)
     if start.size <= _CROWDED * 3**m:
         return Cells(none, none, none, none)
     cell = np.empty(n, np.int64)

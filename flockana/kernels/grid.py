@@ -4,10 +4,50 @@ from __future__ import annotations
 
 import numpy as np
 
-from flockana.jit import kernel
+from flockana.jit import inlined, kernel
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
-_PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most: a sparser box is left to the search by hashed cells
+_PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most
+
+
+@inlined
+def _place(x, low, width, last):
+    """Number of the cell of a coordinate, the first of what is no number."""
+    place = min((x - low) / width, last)
+    return np.int64(place) if place > 0.0 else 0
+
+
+@inlined
+def _ends(x, k):
+    low = high = x[0, k]
+    for i in range(len(x)):
+        low, high = min(low, x[i, k]), max(high, x[i, k])
+    return low, high
+
+
+@kernel
+def _closed_up(q, width, most):
+    """Return a flock whose gaps along each coordinate are closed up to two cells: the same agents are near each other.
+
+    Gaps are those of a row of `most` bins: as fine as cells once the widest gaps are closed.
+    """
+    x, full, gone = q.copy(), np.empty(np.int64(most), np.bool_), np.empty(np.int64(most))
+    for k in range(q.shape[1]):
+        wide = np.inf
+        while wide > width:
+            low, high = _ends(x, k)
+            wide = max(width, (high - low) / most)
+            if not wide < np.inf:
+                break
+            full[:] = False
+            for i in range(len(x)):
+                full[_place(x[i, k], low, wide, most - 1.0)] = True
+            gone[0] = 0.0
+            for b in range(1, full.size):
+                gone[b] = gone[b - 1] + (0.0 if full[b] or full[b - 1] else wide)
+            for i in range(len(x)):
+                x[i, k] -= gone[_place(x[i, k], low, wide, most - 1.0)]
+    return x
 
 
 @kernel
@@ -15,40 +55,46 @@ def sort_into_grid(q, side):
     """(order, start, rows): agents by cell, first agent of each cell, and where the later adjacent rows of cells are.
 
     Cells are numbered row by row, with an empty margin around. What is adjacent to cell c, each two cells once, is the
-    rest of c, cell c + 1, and of each row d in `rows` the cells c + d − 1 to c + d + 1. `start` is empty where the box
-    is so sparse that cells would be many more than agents.
+    rest of c, cell c + 1, and of each row d in `rows` the cells c + d − 1 to c + d + 1. Where cells would be many more
+    than agents, gaps are closed up; if that does not do, cells are strips across the longest side.
     """
-    n, m = q.shape
-    low, strides, total = np.empty(m), np.empty(m + 1, np.int64), 1.0
-    strides[0] = 1
-    for k in range(m):
-        lowest = highest = q[0, k]
-        for i in range(n):
-            lowest, highest = min(lowest, q[i, k]), max(highest, q[i, k])
-        low[k] = lowest
-        across = np.floor((highest - lowest) / (side * _MARGIN)) + 3.0
-        total *= across
-        if not total <= max(_PER_AGENT * n, _AT_LEAST):
-            return np.empty(0, np.uint64), np.empty(0, np.uint64), np.empty(0, np.uint64)
-        strides[k + 1] = strides[k] * np.int64(across)
-    start, cell = np.zeros(strides[m] + 1, np.uint64), np.empty(n, np.int64)
+    (n, m), most, width, x = q.shape, max(_PER_AGENT * q.shape[0], _AT_LEAST), side * _MARGIN, q
+    low, across, strides, total = np.empty(m), np.empty(m), np.zeros(m, np.int64), np.inf
+    for attempt in range(2):
+        if total <= most:
+            break
+        if attempt == 1:
+            x = _closed_up(q, width, most)
+        total = 1.0
+        for k in range(m):
+            low[k], high = _ends(x, k)
+            across[k] = np.floor((high - low[k]) / width) + 3.0
+            strides[k] = np.int64(total) if total <= most else 0
+            total *= across[k]
+    strips = not total <= most  # of NaN too
+    if strips:
+        strides[:], longest = 0, 0
+        for k in range(m):
+            if across[k] > across[longest]:
+                longest = k
+        strides[longest], total = 1, most
+    cells = np.int64(total)
+    start, cell = np.zeros(cells + 1, np.uint64), np.empty(n, np.int64)
     for i in range(n):
         c = 0
         for k in range(m):
-            place = (q[i, k] - low[k]) / (side * _MARGIN)
-            c += strides[k] * (1 + (np.int64(place) if place > 0.0 else 0))  # NaN too, which is within no range
-        cell[i] = c
-        start[c + 1] += np.uint64(1)
-    for c in range(strides[m]):
+            c += strides[k] * (1 + _place(x[i, k], low[k], width, most))
+        cell[i] = min(c, cells - 2)
+        start[cell[i] + 1] += np.uint64(1)
+    for c in range(cells):
         start[c + 1] += start[c]
     fill, order = start[:-1].copy(), np.empty(n, np.uint64)
     for i in range(n):
         order[fill[cell[i]]] = i
         fill[cell[i]] += np.uint64(1)
-    rows = np.empty((0, 1, 4)[m - 1], np.uint64)
-    if m == 2:
+    rows = np.empty((0, 1, 4)[0 if strips else m - 1], np.uint64)
+    if rows.size == 1:
         rows[0] = strides[1]
-    if m == 3:
-        rows[0], rows[1] = strides[1], strides[2] - strides[1]
-        rows[2], rows[3] = strides[2], strides[2] + strides[1]
+    elif rows.size == 4:
+        rows[0], rows[1], rows[2], rows[3] = strides[1], strides[2] - strides[1], strides[2], strides[2] + strides[1]
     return order, start, rows

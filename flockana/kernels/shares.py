@@ -9,7 +9,8 @@ import numpy as np
 
 from flockana.jit import inlined, kernel
 from flockana.kernels.encounters import band, common_way, farthest_ways, share_of_listed, steepest
-from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
+from flockana.kernels.grid import sort_into_grid
+from flockana.kernels.neighbours import fill_from_grid
 from flockana.kernels.paths import bernstein
 from flockana.kernels.poles import crossing_listed
 from flockana.kernels.runge_kutta import frame_at
@@ -57,14 +58,14 @@ def _share_of(ends, whole, around, first, second, share):
 def _share_of_crowd(ends, whole, around, share):
     """Return `_share_of` over all close pairs, found block by block without a list."""
     q0, within = ends.q0, whole[2][1]
-    (n, m), size, row = q0.shape, 1, 0
-    while size < 4 * n:
-        size *= 2
-    parts = _sort_into_cells(_pad(q0), within * _MARGIN, size)
+    (n, m), cell, row = q0.shape, np.int64(0), np.int64(0)  # typed, as in `advance`
+    grid, x = sort_into_grid(q0, within), np.empty(q0.shape)
+    for i in range(n):
+        for c in range(m):
+            x[i, c] = q0[grid[0][i], c]
     first, second = np.empty(max(_BLOCK, n), np.uint32), np.empty(max(_BLOCK, n), np.uint32)
-    forward = _FORWARD[: (1, 4, 13)[m - 1]]
     while row < n and share >= 0.0:
-        row, count = _fill_cells(parts, forward, within * within, row, first, second)
+        cell, row, count = fill_from_grid(x, grid, within * within, cell, row, first, second)
         share = _share_of(ends, whole, around, first[:count], second[:count], share)
     return share
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from flockana.jit import callback_like, inlined, kernel
 from flockana.kernels.grid import sort_into_grid
-from flockana.kernels.neighbours import _FORWARD, _MARGIN, _fill_cells, _pad, _sort_into_cells
 from flockana.kernels.sums import put, slope_along
 
 
@@ -37,9 +36,8 @@ MOST = 2**27  # room for pairs, at most: a gigabyte
 
 
 def spatial_order(q: Any, side: float) -> Any:
-    """An order of the agents in which those in one cell follow each other; as they come where the box is too sparse."""
-    order, start, _ = sort_into_grid(q, side)
-    return order if start.size else np.arange(len(q), dtype=np.uint64)
+    """An order of the agents in which those in one cell follow each other."""
+    return sort_into_grid(q, side)[0]
 
 
 @inlined
@@ -52,9 +50,15 @@ def _grown(first, second, needed):
     return more_first, more_second
 
 
-@inlined
-def _list_by_grid(q, reach, order, start, rows, first, second):
-    """Return the pairs of a flock sorted into a grid: cell by cell, each agent with those after it."""
+@kernel
+def list_pairs(q, reach, first, second):
+    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
+
+    The count is −1, and nothing is listed, where there are too many for memory.
+    """
+    if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
+        return first, second, 0
+    order, start, rows = sort_into_grid(q, reach)
     m = q.shape[1]
     x, limit, count = np.empty(q.shape), max(reach * reach, 5e-324), 0
     for i in range(order.size):
@@ -68,12 +72,13 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
         for row in range(rows.size):
             there = np.int64(cell) + np.int64(rows[row])
             candidates += np.int64(start[there + 2] - start[there - 1])
-        needed = count + candidates * np.int64(end - begin)
-        if needed > MOST:
+        if rows.size > 0 and count + candidates * np.int64(end - begin) > MOST:  # cells as wide as the reach
             return first, second, -1
-        if needed > first.size:
-            first, second = _grown(first, second, needed)
         for i in range(begin, end):
+            if count + candidates > first.size:
+                if count + candidates > MOST:
+                    return first, second, -1
+                first, second = _grown(first, second, count + candidates)
             for row in range(-1, np.int64(rows.size)):
                 low, high = i + np.uint64(1), start[cell + 2]
                 if row >= 0:
@@ -87,33 +92,6 @@ def _list_by_grid(q, reach, order, start, rows, first, second):
                     first[count], second[count] = order[i], order[j]
                     count += square < limit
     return first, second, count
-
-
-@kernel
-def list_pairs(q, reach, first, second):
-    """(first, second, count): the pairs closer than `reach`, written into the arrays given, or longer ones.
-
-    The count is −1, and nothing is listed, where there are too many for memory.
-    """
-    n, m = q.shape
-    if not reach > 0.0:  # of a law without pairs: none is closer, and no cell has that size
-        return first, second, 0
-    order, start, rows = sort_into_grid(q, reach)
-    if start.size:
-        return _list_by_grid(q, reach, order, start, rows, first, second)
-    x, limit, row, count, size = _pad(q), max(reach * reach, 5e-324), np.int64(0), 0, 1  # row typed, as in `advance`
-    while size < 4 * n:
-        size *= 2
-    forward = _FORWARD[: (1, 4, 13)[m - 1]]
-    parts = _sort_into_cells(x, reach * _MARGIN, size)
-    while True:
-        row, more = _fill_cells(parts, forward, limit, row, first[count:], second[count:])
-        count += more
-        if row == n:
-            return first, second, count
-        if count + n > MOST:
-            return first, second, -1
-        first, second = _grown(first, second, count + n)
 
 
 @kernel

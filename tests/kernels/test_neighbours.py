@@ -71,7 +71,7 @@ def test_coincident_agents_are_a_pair_however_small_the_range(dense):
 
 @pytest.mark.parametrize("far", [1e9, 1e13, 1e200, -1e200])
 @pytest.mark.parametrize("m", [1, 2, 3])
-def test_one_agent_far_away_hashes_the_cells(far, m):
+def test_one_agent_far_away_costs_no_pair(far, m):
     q = np.random.default_rng(7).normal(0.0, 20.0, (300, m))
     q[17] = far
     with np.errstate(over="ignore"):
@@ -84,8 +84,8 @@ def test_a_flock_far_from_the_origin(offset):
     assert check(q, 8.4) > 100
 
 
-def test_sparse_boxes_share_buckets():
-    """Agents spread so wide that the hash folds many cells into one bucket."""
+def test_a_sparse_box_is_cut_into_strips():
+    """Triples spread so wide that a grid of cells would not fit."""
     rng = np.random.default_rng(1)
     centres = rng.integers(-(10**6), 10**6, (150, 3)) * 50.0
     q = np.repeat(centres, 3, axis=0) + rng.uniform(0.0, 4.0, (450, 3))
