@@ -14,6 +14,7 @@ links are. What rounding of the positions themselves did before is not undone: i
 equation, two links that ought to cross may miss each other by a rounding. `separation` tells by how much links miss.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,11 +23,13 @@ import numpy as np
 from flockana.base.checks import FloatArray, ensure_links, ensure_points, ensure_positive
 from flockana.base.errors import ArgumentError
 from flockana.base.vectors import scaled_near_one
-from flockana.kernels.crossings import crossing_blocks, nearest_links
-from flockana.kernels.segments import meet
+from flockana.jit import thawed
+from flockana.kernels.crossings import crossing_signs, nearest_links
+from flockana.kernels.segments import UNSURE, meet
 from flockana.measures.nets import LinkArray
 
 _FARTHEST = 1e300  # where positions differ by so many orders of magnitude that no unit fits all
+_TOGETHER = 1_000_000  # pairs of links looked at in one go, about
 _ROUNDINGS = 8.0  # of eps: two subtractions and a product on either side
 
 
@@ -61,21 +64,38 @@ def crossings(q: Any, links: Any, *, limit: int | None = None) -> LinkArray:
     links = ensure_links(links, len(q))
     if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int | np.integer) or limit < 1):
         raise ArgumentError(f"limit = {limit!r}: expected a whole number >= 1, or None for all")
-    exact, q = _Exact(q, links), _squarable(q)
+    exact, x, planes = _Exact(q, links), _padded(_squarable(q)), 3 if q.shape[1] == 3 else 1
     blocks, count = [np.empty((0, 2), dtype=np.int32)], 0
-    for a, b, sure in crossing_blocks(q, links):
-        true = sure.copy()
-        for k in np.flatnonzero(~sure):
-            true[k] = exact.cross(int(a[k]), int(b[k]))
-        blocks.append(np.column_stack([np.minimum(a, b), np.maximum(a, b)])[true])
+    for a, b in _close_links(x, links, 0.0):
+        signs = crossing_signs(x, thawed(links), a, b, planes)
+        for k in np.flatnonzero(signs == UNSURE):
+            signs[k] = exact.cross(int(a[k]), int(b[k]))
+        blocks.append(np.column_stack([a, b])[signs == 1].astype(np.int32))
         count += len(blocks[-1])
         if limit is not None and count >= limit:
-            blocks = [np.unique(np.concatenate(blocks), axis=0)]
-            count = len(blocks[0])
-            if count >= limit:
-                break
-    pairs: LinkArray = np.unique(np.concatenate(blocks), axis=0)
+            break
+    pairs = np.concatenate(blocks)
+    pairs = pairs[np.lexsort(pairs.T[::-1])]
     return pairs if limit is None else pairs[:limit]
+
+
+def _padded(q: FloatArray) -> FloatArray:
+    """Return positions in space, with zeros for the coordinates that they lack."""
+    return np.pad(q, ((0, 0), (0, 3 - q.shape[1])))
+
+
+def _close_links(x: FloatArray, links: LinkArray, reach: float) -> Iterator[tuple[Any, Any]]:
+    """Yield arrays (a, b), a < b, of links whose boxes, seen along the third axis, come within reach of each other."""
+    import shapely
+
+    ends, slack = x[links, :2], 0.5 * reach * (1.0 + 1e-9)
+    boxes = shapely.box(*(ends.min(axis=1) - slack).T, *(ends.max(axis=1) + slack).T)
+    tree, begin, step = shapely.STRtree(boxes), 0, 1
+    while begin < len(links):
+        a, b = tree.query(boxes[begin : begin + step])
+        a += begin
+        begin, step = begin + step, 1 + min(2 * step, _TOGETHER * step // (a.size + 1))
+        yield a[a < b], b[a < b]
 
 
 def _squarable(q: FloatArray) -> FloatArray:
@@ -196,5 +216,8 @@ def separation(q: Any, links: Any, *, reach: float) -> Separation:
     if len(touching):
         return Separation(0.0, (int(touching[0, 0]), int(touching[0, 1])))
     near, (within,), unit = scaled_near_one(q, reach)
-    distance, a, b = nearest_links(near, links, within)
-    return Separation(distance * unit, None if a < 0 else (min(a, b), max(a, b)))
+    x, found = _padded(near), None
+    for a, b in _close_links(x, links, within):
+        within, k = nearest_links(x, thawed(links), a, b, q.shape[1] < 3, within)
+        found = found if k < 0 else (int(a[k]), int(b[k]))
+    return Separation(within * unit, found)

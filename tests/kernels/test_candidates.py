@@ -66,7 +66,7 @@ def test_neighbours_at_exactly_the_radius_count():
 @pytest.mark.parametrize("order", ["synchronous", "sequential"])
 @pytest.mark.parametrize("form", ["position", "bearing"])
 def test_steps_are_those_over_all_pairs_to_the_last_bit(m, order, form):
-    """One agent who looks so far that all others share a cell makes all pairs be looked at, and is within nobody's zones."""
+    """One agent who looks so far that all others share a cell: all pairs are looked at, and it is in nobody's zones."""
     q, p = flock(300, m, spacing=2.5 if m > 1 else 1.0)
     radii = ZoneRadii(1.5, c=3.0, a=tuple(np.random.default_rng(3).uniform(4.0, 5.0, 300).tolist()))
     with_far = ZoneRadii(1.5, c=3.0, a=(*radii.a, 1e30))
