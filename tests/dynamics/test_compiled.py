@@ -96,14 +96,19 @@ def laws():
         yield m, Algorithm3(target=LinearTarget((1.0, 2.0, 3.0)[:m], (0.5, 0.25, 1.0)[:m]), obstacles=bodies)
 
 
+def engine(law, q, p, plan, t=0.0):
+    """The compiled integrator of a law at its start."""
+    return engine_of(law, first_call(law, t, q, p), plan)
+
+
 @pytest.mark.parametrize(("m", "law"), list(laws()))
 def test_the_compiled_form_is_the_law_to_rounding(m, law):
     q0, p0 = start(m=m)
     control = Control(1e-10, ErrorFloors(1e-10, 1e-10, 1e-10))
-    engine = engine_of(law, first_call(law, 0.5, q0, p0), Plan("DOP853", np.array([0.7]), np.empty(0), control))
-    made = engine.advance(StepChecks(law, engine.frame, engine.plan))
-    t, f = float(engine.block.t[made]), engine.block.f[made]
-    states, work = engine.states(made)
+    made_of = engine(law, q0, p0, Plan("DOP853", np.array([0.7]), np.empty(0), control), 0.5)
+    made = made_of.advance(StepChecks(law, made_of.frame, made_of.plan))
+    t, f = float(made_of.block.t[made]), made_of.block.f[made]
+    states, work = made_of.states(made)
     q, p, found = states[-1]
     (u, power), energy = law.flow(t, q, p), law.hamiltonian(t, q, p)
     stiff = np.abs(law.jacobian(t, q, p)).sum(axis=1).max()  # times a rounding of the places: what the frame may change
@@ -111,7 +116,7 @@ def test_the_compiled_form_is_the_law_to_rounding(m, law):
     np.testing.assert_allclose(found, u, rtol=1e-12, atol=rounding)
     assert f[-1] == pytest.approx(power, rel=1e-12, abs=1e-13 * float(np.abs(u * p).sum()))
     assert t > 0.5
-    assert engine.block.energy[made] == pytest.approx(energy, rel=1e-12)
+    assert made_of.block.energy[made] == pytest.approx(energy, rel=1e-12)
     assert work[-1] == pytest.approx(energy - law.hamiltonian(0.5, q0, p0), abs=1e-9 * abs(energy))
 
 
@@ -175,7 +180,7 @@ def test_no_obstacle_is_leapt_over(body, beside):
     ours, plain = (simulate(one, q, p, (0.0, 3.0), rtol=1e-7) for one in (law, stepped))
     np.testing.assert_allclose(ours.q[-1], plain.q[-1], atol=1e-5)
     assert body.clearance(ours.path.q.reshape(-1, 2)).min() < law.beta.d
-    assert engine_of(law, first_call(law, 0.0, q, p), Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
+    assert engine(law, q, p, Plan("RK4", np.array([3.0]), np.empty(0), dt=2.0)) is not None
 
 
 def test_rk4_grows_back_after_an_encounter_as_step_by_step():
@@ -244,13 +249,11 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     ]
     dop853, lsoda = (Plan(method, np.array([0.5]), np.empty(0)) for method in ("DOP853", "LSODA"))
     for law in plain:
-        assert engine_of(law, first_call(law, 0.0, q, p), dop853) is None, law
-    assert engine_of(Algorithm1(), first_call(Algorithm1(), 0.0, q, p), lsoda) is None
+        assert engine(law, q, p, dop853) is None, law
+    assert engine(Algorithm1(), q, p, lsoda) is None
     around = Sphere((-2.0, 12.0), 3.0)
     for law in (Fenced(target=TARGETS[1]), Doubled(target=TARGETS[1], obstacles=[around])):
-        assert (
-            engine_of(law, first_call(law, 0.0, q, p), dop853) is not None
-        )  # its obstacles are guarded, whatever its terms are
+        assert engine(law, q, p, dop853) is not None  # its obstacles are guarded, whatever its terms are
         ours, theirs = (simulate(law, q, p, (0.0, 0.5), method=name, rtol=1e-10) for name in ("DOP853", "scipy-DOP853"))
         np.testing.assert_allclose(ours.q[-1], theirs.q[-1], atol=1e-7)
     lied = simulate(plain[1], q, p, (0.0, 0.5), rtol=1e-9)
@@ -260,10 +263,7 @@ def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
 def test_a_crowd_is_stepped_and_one_that_gathers_on_the_way_is_told(monkeypatch):
     q, p = start()
     monkeypatch.setattr(compiled, "list_pairs", lambda q, *_: (None, None, -1))
-    assert (
-        engine_of(Algorithm1(), first_call(Algorithm1(), 0.0, q, p), Plan("DOP853", np.array([0.01]), np.empty(0)))
-        is None
-    )
+    assert engine(Algorithm1(), q, p, Plan("DOP853", np.array([0.01]), np.empty(0))) is None
     monkeypatch.undo()
     advance = compiled.advance
     monkeypatch.setattr(compiled, "advance", lambda *given: advance(*given)._replace(status=compiled.CROWDED))

@@ -16,7 +16,7 @@ def listed(q, reach, room=1):
 
 @pytest.mark.parametrize("reach", [1.0, 0.3, 8.4])
 @given(st.integers(0, 10**6), st.integers(1, 60), st.integers(1, 3), st.floats(0.05, 60.0), st.booleans())
-def test_every_pair_once_from_the_grid_and_from_hashed_cells(reach, seed, n, m, side, sparse):
+def test_every_pair_once_of_a_dense_and_of_a_sparse_flock(reach, seed, n, m, side, sparse):
     rng = np.random.default_rng(seed)
     q = reach * rng.uniform(0.0, side, (n, m))
     if sparse:  # a box of far more cells than agents
