@@ -188,11 +188,13 @@ def common_way(ends):
 
 
 @inlined
-def _largest_squares(ends, common, m):
-    """Squares of the longest way of an agent relative to the common one, and of the two parts of its allowance."""
+def farthest_ways(ends, common):
+    """Return bounds of the longest way of an agent relative to the common one, and of its allowance, to rounding."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
-    way2, most2, most3, s, z = 0.0, 0.0, 0.0, h / 5.0, h * h / 20.0
-    for i in range(q0.shape[0]):
+    n, m = q0.shape
+    way2 = most2 = most3 = 0.0
+    s, z = h / 5.0, h * h / 20.0
+    for i in range(n):
         d1 = d2 = d3 = d4 = d5 = off2 = off3 = 0.0
         for c in range(m):
             gone, out, back, along = q1[i, c] - q0[i, c], s * p0[i, c], s * p1[i, c], q0[i, c] - centre[c]
@@ -206,16 +208,6 @@ def _largest_squares(ends, common, m):
             off2 += (out + 0.5 * back + bend0 - 0.3 * gone) ** 2
             off3 += (0.3 * gone - back - 0.5 * out + bend1) ** 2
         way2, most2, most3 = max(way2, max(max(max(d1, d2), max(d3, d4)), d5)), max(most2, off2), max(most3, off3)
-    return way2, most2, most3
-
-
-@inlined
-def farthest_ways(ends, common):
-    """Return bounds of the longest way of an agent relative to the common one, and of its allowance, to rounding."""
-    if ends.q0.shape[1] == 2:  # said outright, as in `pull_to`
-        way2, most2, most3 = _largest_squares(ends, common, 2)
-    else:
-        way2, most2, most3 = _largest_squares(ends, common, ends.q0.shape[1])
     blur = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
     return np.sqrt(way2) + blur, blur
 
@@ -248,19 +240,6 @@ def _stays_beyond(ends, i, j, edge):
 
 
 @inlined
-def _within(q0, first, second, band2, chosen, m):
-    """Write which pairs start within a band of squared distances; return how many."""
-    count = 0
-    for k in range(first.size):
-        i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
-        for c in range(m):
-            s2 += (q0[j, c] - q0[i, c]) ** 2
-        chosen[count] = k
-        count += (s2 >= band2[0]) & (s2 < band2[1])
-    return count
-
-
-@inlined
 def share_of_listed(ends, common, between, around, first, second, share):
     """Return the largest share of the step, at most the one given, in which no listed pair leaps over an encounter.
 
@@ -268,10 +247,14 @@ def share_of_listed(ends, common, between, around, first, second, share):
     band where the step begins.
     """
     (h, q0, p0, u0, q1, p1, u1), radii, (mean, blur) = ends, around.radii, common
-    room, band2 = pair_room(radii.shape[1]), (between[0] ** 2, between[1] ** 2)
+    room, low2, high2, count = pair_room(radii.shape[1]), between[0] ** 2, between[1] ** 2, 0
     m, outer, chosen = q0.shape[1], around.edges[1] + 2.0 * blur, np.empty(first.size + 1, np.uint32)
-    # 2 is said outright, as in `pull_to`
-    count = _within(q0, first, second, band2, chosen, 2) if m == 2 else _within(q0, first, second, band2, chosen, m)
+    for k in range(first.size):
+        i, j, s2 = np.uint64(first[k]), np.uint64(second[k]), 0.0
+        for c in range(m):
+            s2 += (q0[j, c] - q0[i, c]) ** 2
+        chosen[count] = k
+        count += (s2 >= low2) & (s2 < high2)
     for k in range(count):
         i, j = np.uint64(first[chosen[k]]), np.uint64(second[chosen[k]])
         if not _stays_beyond(ends, i, j, outer):
